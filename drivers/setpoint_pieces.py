@@ -24,9 +24,13 @@ class Piece(NamedTuple):
 
 def at(piece: Piece, t: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
     """Position and velocity at ``t``, held at the piece's end when ``t`` lies behind it."""
-    dt = min(max(t - piece.t, 0.0), piece.dt)
-    p = tuple([x + (v + 0.5 * a * dt) * dt for x, v, a in zip(piece.p, piece.v, piece.a, strict=True)])
-    return p, tuple([v + a * dt for v, a in zip(piece.v, piece.a, strict=True)])
+    begins, lasts, at_p, at_v, at_a = piece
+    dt = t - begins
+    if not 0.0 <= dt <= lasts:  # quicker than min and max: drives ask for this a thousand times a second
+        dt = 0.0 if dt < 0.0 else lasts
+    half = 0.5 * dt
+    p = tuple([x + (v + a * half) * dt for x, v, a in zip(at_p, at_v, at_a, strict=True)])
+    return p, tuple([v + a * dt for v, a in zip(at_v, at_a, strict=True)])
 
 
 _TRIM = 64  # pieces; forgetting the past one by one would cost more than keeping it

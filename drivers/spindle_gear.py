@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from bisect import bisect_right
 from collections.abc import Sequence
+from itertools import accumulate
 from typing import NamedTuple
 
 from core.ports import Cam, DriverError, Geared, Segments, at_rest
@@ -74,6 +76,30 @@ class Wall(NamedTuple):
     square: float
 
 
+class Walls:
+    """The walls of a way in its order; all of it bears a change of speed of ``softest`` turns/s²."""
+
+    def __init__(self, walls: Sequence[Wall], softest: float) -> None:
+        self._walls = walls
+        self._begins = [wall.begins for wall in walls]
+        self._twice = 2.0 * softest
+        # From each wall on, what the nearest of them leaves at turn 0: not all ahead are looked through.
+        onwards = accumulate((wall.square + self._twice * wall.begins for wall in reversed(walls)), min)
+        self._onwards = [*reversed([*onwards]), math.inf]
+
+    def square(self, turns: float, reach: float) -> float:
+        """The square of the speed that is free at ``turns``, turns²/s²: each wall may still be met ``reach``
+        turns before it begins.
+        """
+        near = turns + reach
+        ahead = bisect_right(self._begins, near)
+        square = self._onwards[ahead] - self._twice * near if ahead < len(self._walls) else math.inf
+        for _, ends, most in self._walls[max(bisect_right(self._begins, turns) - 1, 0) : ahead]:
+            if ends > turns:
+                square = min(square, most)
+        return square
+
+
 class Gearing:
     """One cam and where on it the slides are; not thread-safe, its driver locks.
 
@@ -92,8 +118,7 @@ class Gearing:
         if self._speed < _STANDS:
             raise DriverError("the spindle does not turn; no slide can follow it", "thread-no-encoder")
         self._queue = self._empty()
-        self._walls: list[Wall] = []
-        self._softest = math.inf
+        self._walls = Walls([], math.inf)
         self.load(cam)
 
     def load(self, cam: Cam) -> None:
@@ -105,7 +130,7 @@ class Gearing:
         queue.trim(self.turns)
         queue.splice(cam.way, self.turns)
         self._cam, self._queue = cam, queue
-        self._walls, self._softest = self._walls_of(queue.pieces)
+        self._walls = Walls(*self._walls_of(queue.pieces))
 
     def _empty(self) -> SetpointQueue:
         position, velocity = self._slides.tolerance.position, self._slides.tolerance.velocity
@@ -199,16 +224,12 @@ class Gearing:
         earlier: a setpoint holds for its interval.
         """
         _, per_turn, accel = self._queue.motion_at(self.turns)
-        square, bend = math.inf, math.inf
-        for begins, ends, most in self._walls:
-            if ends > self.turns:
-                ahead = max(begins - self.turns - reach, 0.0)
-                square = min(square, most + 2.0 * self._softest * ahead if ahead else most)
+        bend = math.inf
         for v, a, amax in zip(per_turn, accel, self._slides.amax, strict=True):
             if v:
                 spare = _RESERVE * amax - abs(a) * self._speed**2
                 bend = min(bend, max(spare, _LEFT * amax) / abs(v))
-        return math.sqrt(square), bend
+        return math.sqrt(self._walls.square(self.turns, reach)), bend
 
     def _walls_of(self, pieces: Sequence[Piece]) -> tuple[list[Wall], float]:
         """How fast each piece of the way may be played, and the change of speed that all of them bear."""

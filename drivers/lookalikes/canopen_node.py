@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import struct
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import can
 import canopen
@@ -67,6 +67,38 @@ class _NoTask(canopen.network.PeriodicMessageTask):
         """Nothing runs."""
 
 
+_Entry = tuple[int, int, int]  # index, sub-index and bytes of an entry of a PDO
+
+
+class _Taken(NamedTuple):
+    """An RPDO."""
+
+    number: int
+    waits: bool  # for the next SYNC
+    entries: list[_Entry]
+
+
+class _Sent(NamedTuple):
+    """A TPDO that goes out at every ``kind``-th SYNC."""
+
+    cob: int
+    kind: int
+    entries: list[_Entry]
+
+
+class _Communication(NamedTuple):
+    """What the objects of CiA 301 say, read once behind every write to them; times in s, 0 is never."""
+
+    beat: float
+    watched: int  # COB-ID of the heartbeat that is watched
+    patience: float
+    sync: float
+    longest: float  # between two of the first RPDO
+    taken: dict[int, _Taken]
+    sent: list[_Sent]
+    hears: frozenset[int]
+
+
 class DeviceNode:
     """One device on the bus. Tests may make it ``silent``, or let it ``reboot``."""
 
@@ -88,19 +120,17 @@ class DeviceNode:
         self._syncs = 0
         self._sync_at: float | None = None  # of the last SYNC, and of the last of its first PDO
         self._told_at: float | None = None
-        self._waiting: dict[int, bytes] = {}  # RPDO number → data until the next SYNC
-        # What was read of the stored objects since one of them was written: COB-ID and number of each RPDO,
-        # the entries of each PDO, and numbers by their place.
-        self._rpdos: list[tuple[int, int]] | None = None
-        self._entries: dict[int, list[tuple[int, int, int]]] = {}
-        self._numbers: dict[tuple[int, int], int] = {}
+        self._waiting: dict[
+            int, tuple[list[_Entry], bytes]
+        ] = {}  # by number of the RPDO, until the next SYNC
+        self._communication: _Communication | None = None  # None: to be read again
         self.boot()
 
     def boot(self) -> None:
         """Say that it is there; everything volatile is gone."""
         self.state = _PRE_OPERATIONAL
         self.local.data_store.clear()
-        self._forget()
+        self._communication = None
         self._waiting.clear()
         self._host_heard = self._sync_at = self._told_at = None
         self.device.reset()
@@ -108,41 +138,40 @@ class DeviceNode:
 
     def take(self, can_id: int, data: bytes) -> None:
         """One frame of the bus."""
-        if self.silent:
+        told = self._told()
+        if self.silent or can_id not in told.hears:
             return
         if can_id == 0 and len(data) >= 2 and data[1] in {0, self.id}:
             self._command(data[0])
         elif can_id == 0x600 + self.id and self.state != _STOPPED:
             self.local.sdo.on_request(can_id, bytearray(data), self.now)
-        elif can_id == 0x700 + self._watched()[0]:
+        elif can_id == told.watched:
             self._host_heard = self.now
         elif self.state == _OPERATIONAL:
-            self._process_data(can_id, data)
+            self._process_data(can_id, data, told)
 
     def tick(self, now: float) -> None:
         """Heartbeat, and watching the host's."""
         self.now = now
-        period = self._stored(od.HEARTBEAT, 0) / 1000.0
-        if period and now >= self._next_beat and not self.silent:
-            self._next_beat = now + period
+        told = self._told()
+        if told.beat and now >= self._next_beat and not self.silent:
+            self._next_beat = now + told.beat
             self.network.send_message(0x700 + self.id, bytes([self.state]))
-        patience = self._watched()[1]
-        if patience and self._host_heard is not None and now - self._host_heard > patience:
+        if told.patience and self._host_heard is not None and now - self._host_heard > told.patience:
             self._host_heard = None
             self.emergency(0x8130)
             self.device.host_lost()
-        self._miss_setpoints(now)
+        self._miss_setpoints(now, told)
 
-    def _miss_setpoints(self, now: float) -> None:
+    def _miss_setpoints(self, now: float, told: _Communication) -> None:
         """A SYNC, or a first PDO, that stays away for longer than this device was told."""
         if self.state != _OPERATIONAL:
             self._sync_at = self._told_at = None
-        period, longest = 1e-6 * self._stored(od.SYNC_PERIOD, 0), 0.001 * self._stored(od.COMMANDED, 5)
-        if period and self._sync_at is not None and now - self._sync_at > _PATIENT * period:
+        if told.sync and self._sync_at is not None and now - self._sync_at > _PATIENT * told.sync:
             self._sync_at = None
             self.emergency(0x8700)
             self.device.host_lost()
-        elif longest and self._told_at is not None and now - self._told_at > longest:
+        elif told.longest and self._told_at is not None and now - self._told_at > told.longest:
             self._told_at = None
             self.emergency(0x8250)
             self.device.host_lost()
@@ -158,76 +187,85 @@ class DeviceNode:
         elif code in {_RESET, _RESET_COMMUNICATION}:
             self.boot()
 
-    def _process_data(self, can_id: int, data: bytes) -> None:
+    def _process_data(self, can_id: int, data: bytes, told: _Communication) -> None:
         if can_id == 0x80:
             self._syncs, self._sync_at = self._syncs + 1, self.now
-            for number, waiting in sorted(self._waiting.items()):
-                self._apply(number, waiting)
+            for _, (entries, waiting) in sorted(self._waiting.items()):
+                self._apply(entries, waiting)
             self._waiting.clear()
-            self._answer()
-        for taken, number in self._taken():
-            if can_id == taken:
-                self._told_at = self._told_at if number else self.now
-                if self._stored(0x1400 + number, 2) <= _SYNCHRONOUS:
-                    self._waiting[number] = data
-                else:
-                    self._apply(number, data)
+            self._answer(told)
+        elif can_id in told.taken:
+            number, waits, entries = told.taken[can_id]
+            self._told_at = self._told_at if number else self.now
+            if waits:
+                self._waiting[number] = entries, data
+            else:
+                self._apply(entries, data)
 
-    def _apply(self, number: int, data: bytes) -> None:
+    def _apply(self, entries: list[_Entry], data: bytes) -> None:
         at = 0
-        for index, sub, size in self._mapped(0x1600 + number):
+        for index, sub, size in entries:
             part = data[at : at + size]
             if len(part) == size:
                 self.local.set_data(index, sub, part)
             at += size
 
-    def _answer(self) -> None:
-        for number in range(4):
-            cob, kind = self._stored(0x1800 + number, 1), self._stored(0x1800 + number, 2)
-            due = 1 <= kind <= _SYNCHRONOUS and self._syncs % kind == 0
-            if cob and not cob & _OFF and due:
-                parts = [self.local.get_data(index, sub) for index, sub, _ in self._mapped(0x1A00 + number)]
-                self.network.send_message(cob & 0x7FF, b"".join(parts))
+    def _answer(self, told: _Communication) -> None:
+        for cob, kind, entries in told.sent:
+            if self._syncs % kind == 0:
+                self.network.send_message(cob, b"".join([self._value(*entry) for entry in entries]))
 
-    def _taken(self) -> list[tuple[int, int]]:
-        """COB-ID and number of each RPDO that has one."""
-        if self._rpdos is None:
-            told = [(self._stored(0x1400 + number, 1), number) for number in range(4)]
-            self._rpdos = [each for each in told if each[0]]
-        return self._rpdos
+    def _value(self, index: int, sub: int, size: int) -> bytes:
+        """As the library's node has it, which takes longer."""
+        value = self.device.read(index, sub)
+        if value is None:
+            return bytes(self.local.get_data(index, sub))
+        return value.to_bytes(size, "little", signed=value < 0)
 
-    def _forget(self) -> None:
-        self._rpdos = None
-        self._entries.clear()
-        self._numbers.clear()
+    def _told(self) -> _Communication:
+        """What this device was told of its communication."""
+        if self._communication is None:
+            self._communication = self._read()
+        return self._communication
 
-    def _mapped(self, index: int) -> list[tuple[int, int, int]]:
-        """(index, sub-index, bytes) of each entry."""
-        if index in self._entries:
-            return self._entries[index]
-        found = self._entries[index] = []
-        for sub in range(1, self._stored(index, 0) + 1):
-            entry = self._stored(index, sub)
-            found.append((entry >> 16, entry >> 8 & 0xFF, (entry & 0xFF) // 8))
-        return found
+    def _read(self) -> _Communication:
+        stored, numbers = self._stored, range(4)
+        taken = {
+            cob: _Taken(number, stored(0x1400 + number, 2) <= _SYNCHRONOUS, self._mapped(0x1600 + number))
+            for number in numbers
+            if (cob := stored(0x1400 + number, 1))
+        }
+        sent = [
+            _Sent(cob & 0x7FF, kind, self._mapped(0x1A00 + number))
+            for number in numbers
+            if (cob := stored(0x1800 + number, 1)) and not cob & _OFF
+            if 1 <= (kind := stored(0x1800 + number, 2)) <= _SYNCHRONOUS
+        ]
+        watched = 0x700 + (stored(od.WATCHED, 1) >> 16 & 0x7F)
+        return _Communication(
+            beat=stored(od.HEARTBEAT, 0) / 1000.0,
+            watched=watched,
+            patience=(stored(od.WATCHED, 1) & 0xFFFF) / 1000.0,
+            sync=1e-6 * stored(od.SYNC_PERIOD, 0),
+            longest=0.001 * stored(od.COMMANDED, 5),
+            taken=taken,
+            sent=sent,
+            hears=frozenset({0, 0x80, 0x600 + self.id, watched, *taken}),
+        )
+
+    def _mapped(self, index: int) -> list[_Entry]:
+        """What a PDO holds."""
+        entries = [self._stored(index, sub) for sub in range(1, self._stored(index, 0) + 1)]
+        return [(entry >> 16, entry >> 8 & 0xFF, (entry & 0xFF) // 8) for entry in entries]
 
     def _stored(self, index: int, sub: int) -> int:
         """A number that is kept as it was written, such as those of communication; 0 where none is."""
-        known = self._numbers.get((index, sub))
-        if known is None:
-            kept = self.local.data_store.get(index, {}).get(sub, b"")
-            known = self._numbers[index, sub] = int.from_bytes(kept, "little")
-        return known
-
-    def _watched(self) -> tuple[int, float]:
-        """Node whose heartbeat is watched, and for how long it may be missing."""
-        value = self._stored(od.WATCHED, 1)
-        return value >> 16 & 0x7F, (value & 0xFFFF) / 1000.0
+        return int.from_bytes(self.local.data_store.get(index, {}).get(sub, b""), "little")
 
     def _on_read(self, index: int, subindex: int, **_: object) -> int | None:
         return self.device.read(index, subindex)
 
     def _on_write(self, index: int, subindex: int, od: ODVariable, data: bytes) -> None:
         if index < 0x2000:  # of CiA 301; the device's own are not asked here
-            self._forget()
+            self._communication = None
         self.device.write(index, subindex, int(od.decode_raw(data)))
