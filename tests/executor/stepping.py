@@ -21,6 +21,7 @@ from tests.executor.rig import Rig
 
 STOPPED = {State.BLOCK_END, State.PROGRAM_STOP}
 _QUICK = 8.0  # times the feeds and through the dwells: steps and places are the same
+_LEAST_FEED = 1.0  # mm/s
 _TICK = 0.02
 _LONGEST = 1000.0  # s of the machine
 _APART = 5  # ticks of .08 s between a stop and the next start
@@ -39,7 +40,8 @@ def _quick(block: Block) -> Block:
     if isinstance(block.action, Dwell):
         return dataclasses.replace(block, action=Dwell(block.action.seconds / _QUICK))
     if block.action is None and block.kind is not Kind.THREAD and not block.rapid:
-        return dataclasses.replace(block, feed=block.feed * _QUICK)
+        least = 0.0 if block.per_rev else _LEAST_FEED
+        return dataclasses.replace(block, feed=max(block.feed * _QUICK, least))
     return block
 
 

@@ -50,8 +50,11 @@ class Odd:
         raise self._error("nobody has thought of this")
 
 
+@dataclasses.dataclass
 class OddRig(Rig):
-    """The executor on ports of which one is odd."""
+    """The executor on ports of which one is odd, at the longest of the ticks that it has."""
+
+    every: float = 0.02
 
     def break_into(self, port: str, call: str, error: type[BaseException]) -> Odd:
         real = self.sim.ports
