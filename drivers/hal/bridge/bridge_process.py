@@ -11,6 +11,7 @@ import importlib
 import json
 import os
 import select
+import signal
 import socket
 import sys
 import time
@@ -33,7 +34,11 @@ _WAYS = {"in": "HAL_IN", "out": "HAL_OUT", "io": "HAL_IO"}
 
 
 def main(arguments: list[str]) -> int:
-    """Until the driver has gone, or HAL is not as the machine file says."""
+    """Until the driver has gone, or HAL is not as the machine file says.
+
+    Ctrl+C is for the control: it brakes the slides and then lets this go, whoever else it was sent to.
+    """
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
     said = json.loads(Path(arguments[0]).read_text(encoding="utf-8"))
     sock = socket.socket(fileno=said["fd"])
     try:

@@ -80,6 +80,13 @@ def test_a_killed_bridge_and_reset_starts_hal_anew(running: LiveLathe) -> None:
     assert running.shot.alarms[0].cause == "the bridge to HAL has ended"
 
 
+def test_ctrl_c_that_reaches_the_bridge_stops_nothing(running: LiveLathe) -> None:
+    running.kill(BRIDGE, signal.SIGINT)
+    before = place(running)
+    running.until(lambda shot: bool(shot.alarms) or abs(place(running) - before) > 0.1 * SPEED)
+    assert running.codes == []
+
+
 def test_a_bridge_that_stands_and_goes_on_keeps_the_place(running: LiveLathe) -> None:
     running.kill(BRIDGE, signal.SIGSTOP)
     before = place(running)
