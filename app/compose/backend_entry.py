@@ -5,14 +5,23 @@ from __future__ import annotations
 import importlib
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, fields
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from app.compose.machine_drivers import BACKENDS
-from app.desk.station_hands import StationPanel
 from core.machine.machine_model import Axis, Machine
 from core.ports import Clock, DriverError, MachinePorts
-from drivers.feeder.feeder_server import Driven
 from drivers.setpoint_queue import AxisFigures
+
+if TYPE_CHECKING:
+    from app.desk.station_hands import StationPanel
+    from drivers.feeder.feeder_server import Driven
+
+BACKENDS = {
+    "sim": "simulated_backend",
+    "canopen": "canopen_backend",
+    "grblhal": "grblhal_backend",
+    "hal": "hal_backend",
+}
+"""By the word in machine.backend the module of this room with its ``BACKEND``."""
 
 STATION = ("start", "hold")  # a machine whose file has neither has no operator station of its own
 Play = Callable[
@@ -76,6 +85,11 @@ def axis_figures(axis: Axis, machine: Machine) -> dict[str, Any]:
 def has_station(machine: Machine) -> bool:
     """Whether the machine has buttons of its own, or is operated by those on the screen."""
     return any(name in machine.inputs for name in STATION)
+
+
+def has_inverter(machine: Machine) -> bool:
+    """Whether an inverter of its own turns the spindle."""
+    return machine.hardware.spindle_driver == "vfd"
 
 
 def played(machine: Machine) -> bool:

@@ -5,9 +5,8 @@ from __future__ import annotations
 import os
 from collections.abc import Callable
 
-from app.compose.backend_entry import Connected, backend_of, has_station, played
+from app.compose.backend_entry import Connected, backend_of, has_inverter, has_station, played
 from app.compose.feeder_process import driven
-from app.compose.inverter_backend import has_inverter
 from app.compose.pendant_wire import wired, with_pendant
 from core.machine.machine_model import Machine
 from core.ports import Clock, DriverError

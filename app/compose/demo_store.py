@@ -5,8 +5,7 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from app.compose.backend_entry import played
-from app.compose.inverter_backend import has_inverter
+from app.compose.backend_entry import has_inverter, played
 from app.compose.machine_setup import read_machine
 from app.compose.workshop import samples
 from app.desk.command_errors import CommandError

@@ -9,8 +9,8 @@ import subprocess
 import sys
 from dataclasses import replace
 
-from app.compose.backend_entry import backend_of
-from app.compose.inverter_backend import has_inverter, with_inverter
+from app.compose.backend_entry import backend_of, has_inverter
+from app.compose.inverter_backend import with_inverter
 from core.machine.machine_model import Machine
 from core.ports import Clock, DriverError
 from drivers.canopen.canopen_table import CYCLIC, EVENED_OUT, CanopenTable

@@ -20,11 +20,6 @@ BY_FREQUENCY = (
 )
 
 
-def has_inverter(machine: Machine) -> bool:
-    """Whether an inverter of its own turns the spindle."""
-    return machine.hardware.spindle_driver == "vfd"
-
-
 def with_inverter(
     machine: Machine,
     ports: MachinePorts,

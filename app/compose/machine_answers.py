@@ -7,9 +7,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from app.compose.backend_entry import backend_of, played
+from app.compose.backend_entry import backend_of, has_inverter, played
 from app.compose.backends import connect, real_time
-from app.compose.inverter_backend import has_inverter
 from app.compose.page_server import listening_at
 from app.compose.sharing_desk import place_of
 from app.compose.shop_floor import try_shop_floor

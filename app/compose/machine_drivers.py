@@ -1,4 +1,4 @@
-"""The one list of drivers: what each adds to a machine file, and who puts it together."""
+"""The one list of drivers: what each adds to a machine file; and files read with all of it."""
 
 from __future__ import annotations
 
@@ -22,26 +22,24 @@ from drivers.mtconnect import mtconnect_table
 from drivers.pendant import pendant_table
 from drivers.simulated import simulated_table
 
-# One entry a driver, in the order in which a machine file's owner is told of them: what it adds to the file
-# and, of a backend, the module of this room that puts it together (``backend_entry``).
-_ENTRIES = (
-    (simulated_table.DRIVER, "simulated_backend"),
-    (canopen_table.DRIVER, "canopen_backend"),
-    (inverter_table.DRIVER, ""),
-    (grblhal_table.DRIVER, "grblhal_backend"),
-    (hal_table.DRIVER, "hal_backend"),
-    (board_table.DRIVER, ""),
-    (serial_table.DRIVER, ""),
-    (gauge_table.DRIVER, ""),
-    (setter_table.DRIVER, ""),
-    (pendant_table.DRIVER, ""),
-    (mtconnect_table.DRIVER, ""),
-    (shop_network_tables.DRIVER, ""),
-    (backup_table.DRIVER, ""),
-    (sharing_table.DRIVER, ""),
+# What each driver adds to the file, in the order in which a machine file's owner is told of them. The module
+# that puts a backend together stands in ``backend_entry``, where no table has to be loaded for it.
+DRIVERS: tuple[Driver, ...] = (
+    simulated_table.DRIVER,
+    canopen_table.DRIVER,
+    inverter_table.DRIVER,
+    grblhal_table.DRIVER,
+    hal_table.DRIVER,
+    board_table.DRIVER,
+    serial_table.DRIVER,
+    gauge_table.DRIVER,
+    setter_table.DRIVER,
+    pendant_table.DRIVER,
+    mtconnect_table.DRIVER,
+    shop_network_tables.DRIVER,
+    backup_table.DRIVER,
+    sharing_table.DRIVER,
 )
-DRIVERS: tuple[Driver, ...] = tuple(driver for driver, _ in _ENTRIES)
-BACKENDS = {driver.backend: module for driver, module in _ENTRIES if module}
 
 
 def read_machine_file(text: str, source: str) -> Machine:

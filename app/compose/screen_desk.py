@@ -9,13 +9,12 @@ from functools import partial
 from pathlib import Path
 
 from app.compose.accepted_machine import file_changes, guarded
-from app.compose.backend_entry import Connected, played
+from app.compose.backend_entry import Connected, has_inverter, played
 from app.compose.backends import connect
 from app.compose.desk_functions import furnish
 from app.compose.desk_quality import give_quality
 from app.compose.error_log import Log
 from app.compose.feeder_process import NO_PRIORITY
-from app.compose.inverter_backend import has_inverter
 from app.compose.jobs_desk import give_jobs
 from app.compose.journal import Journal
 from app.compose.kinematics_chain import kinematics_of

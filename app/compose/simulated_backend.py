@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from app.compose.backend_entry import Backend, Connected, axis_figures
-from app.compose.inverter_backend import has_inverter, with_inverter
+from typing import TYPE_CHECKING
+
+from app.compose.backend_entry import Backend, Connected, axis_figures, has_inverter
 from core.machine.machine_model import Axis, Machine
 from core.machine.setter_table import SetterModel
 from core.ports import Clock
-from drivers.feeder.feeder_server import RESTS, Driven
 from drivers.lookalikes.plant_config import (
     SimAxis,
     SimCollet,
@@ -18,6 +18,9 @@ from drivers.lookalikes.plant_config import (
 )
 from drivers.simulated.simulated_machine import Simulation, build_simulation
 from drivers.simulated.simulated_table import SimulatedTable
+
+if TYPE_CHECKING:
+    from drivers.feeder.feeder_server import Driven
 
 
 def simulated(machine: Machine, clock: Clock) -> Simulation:
@@ -61,6 +64,8 @@ def _axis(axis: Axis, machine: Machine) -> SimAxis:
 
 def _driven(machine: Machine, clock: Clock) -> Driven:
     """For the feeder; the plant goes on also when nobody looks."""
+    from drivers.feeder.feeder_server import RESTS, Driven
+
     ports, hands = simulated(machine, clock)
     wakeup = ports.wakeup
     assert wakeup is not None
@@ -76,6 +81,8 @@ def _in_process(machine: Machine, clock: Clock) -> Connected:
     ports, hands = simulated(machine, clock)
     close = _nothing
     if has_inverter(machine):
+        from app.compose.inverter_backend import with_inverter
+
         ports, close = with_inverter(machine, ports, clock, close)
     return Connected(ports, hands, hands.set_input, close)
 
