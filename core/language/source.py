@@ -64,7 +64,7 @@ class Source:
     @cached_property
     def lines(self) -> tuple[str, ...]:
         """The lines without their ends; a last empty line after the final newline does not count."""
-        lines = _LINE_END.split(self.text) if "\r" in self.text else self.text.split("\n")
+        lines = _lines(self.text)
         if not lines[-1]:
             lines.pop()
         return tuple(lines)
@@ -125,8 +125,16 @@ def _characters(data: bytes) -> str:
         return data.decode("cp437" if dos else "latin-1")
 
 
+def _lines(text: str) -> list[str]:
+    """The lines without their ends; the last one is empty where the text ends with a line end."""
+    return _LINE_END.split(text) if "\r" in text else text.split("\n")
+
+
 def _check_line_lengths(name: str, text: str) -> None:
-    for number, line in enumerate(_LINE_END.split(text), start=1):
+    lines = _lines(text)
+    if max(map(len, lines)) <= _LONGEST_LINE:
+        return
+    for number, line in enumerate(lines, start=1):
         if len(line) > _LONGEST_LINE:
             raise _refused(
                 "line-too-long",

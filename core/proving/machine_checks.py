@@ -13,15 +13,13 @@ from core.tool_edges import edge_name
 MM_PER_INCH = 25.4
 
 
-def travel_findings(blocks: Sequence[Block], machine: Machine) -> list[Diagnostic]:
+def travel_findings(blocks: Sequence[Block], machine: Machine) -> Iterator[Diagnostic]:
     """An error for each block whose machine positions leave the travel; curved ways all along."""
     limits = [(axis, *axis.reach) for axis in machine.axes]
-    return [
-        _beyond(machine, block, axis, low, high)
-        for block in _outside(blocks, limits)
-        for (axis, least, most), (low, high) in zip(limits, block.machine_reach(), strict=True)
-        if low < least or high > most
-    ]
+    for block in _outside(blocks, limits):
+        for (axis, least, most), (low, high) in zip(limits, block.machine_reach(), strict=True):
+            if low < least or high > most:
+                yield _beyond(machine, block, axis, low, high)
 
 
 def _outside(blocks: Sequence[Block], limits: Sequence[tuple[Axis, float, float]]) -> Iterator[Block]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from itertools import chain
 
 import numpy as np
 import numpy.typing as npt
@@ -191,11 +192,12 @@ class ProofPass:
         self._tally.add(parts)
         for part in parts:
             self._need(part)
-            if len(self._beyond) < MAX_FINDINGS:
-                self._look_beyond(part)
+            self._look_beyond(part)
 
     def _look_beyond(self, part: Part) -> None:
-        for finding in (*travel_findings(part, self._machine), *c_findings(part, self._machine)):
+        for finding in chain(travel_findings(part, self._machine), c_findings(part, self._machine)):
+            if len(self._beyond) >= MAX_FINDINGS:
+                return
             self._beyond.setdefault((finding.line, finding.message[:1]), finding)
 
     def _need(self, blocks: Part) -> None:
