@@ -69,6 +69,7 @@ def report_json(
         "stops": stops_of(report, optional_stop=optional_stop),
         "cutting_length": length(report.cutting_length),
         "rapid_length": length(report.rapid_length),
+        "corner_tolerance": length(report.corner_tolerance),
         "tools": list(report.tools),
         "limits": {
             "x": [length(x) for x in reach.x],

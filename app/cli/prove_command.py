@@ -193,6 +193,13 @@ def _reached(report: Report, length: Callable[[float], float], unit: str) -> str
     return f"  X radius {length(x0):.5f} … {length(x1):.5f}   Z {length(z0):.5f} … {length(z1):.5f} {unit}\n"
 
 
+def _eased(report: Report, length: Callable[[float], float], unit: str) -> str:
+    """How far from its words the tip may pass, where the machine file allows that."""
+    if not report.corner_tolerance:
+        return ""
+    return f"  joints of short chords within {length(report.corner_tolerance):.5f} {unit} of their words\n"
+
+
 def _ways(report: Report) -> str:
     """What else the program may do: by its inputs, and by block delete."""
     ways = report.ways
@@ -225,6 +232,7 @@ def _sheet(path: Path, report: Report, part: PartReport | None) -> str:
         f"{_ways(report)}"
         f"  path {length(report.cutting_length):.4f} {unit} cutting,"
         f" {length(report.rapid_length):.4f} {unit} rapid\n"
+        f"{_eased(report, length, unit)}"
         f"{_reached(report, length, unit)}"
         f"  spindle {reach.rpm[0]:.0f} … {reach.rpm[1]:.0f} rpm"
         f"   feed {slow:.3f} … {fast:.3f} {unit}/min\n"

@@ -130,6 +130,7 @@ def _machine(reading: Reading, added: DriverReading, kinematics: KinematicsReadi
         m_ignored=frozenset(signal_rules.ignored_codes(reading)),
         source=source,
         clearance=values.number("limits.clearance"),
+        corner_tolerance=values.number("limits.corner_tolerance"),
         inch=bool(values.inch),
         kind=reading.kind,
         language=values.text("machine.language"),

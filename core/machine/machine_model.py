@@ -142,6 +142,7 @@ class Machine:
     absent: frozenset[str] = frozenset()  # outputs that it has not: a collet closed by hand
     source: str = ""  # the file it came from
     clearance: float = 0.0  # mm, how far a slide may run on after the last renewal of a jog
+    corner_tolerance: float = 0.0  # mm by which joints of short chords may be moved; 0: by a count alone
     inch: bool = True  # what its builder counts in
     clamping: ClampingModel = field(default_factory=ClampingModel)
     tooling: str = "single"  # "gang": all tools ride one slide; "turret"; one at a time

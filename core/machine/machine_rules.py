@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 from itertools import combinations
 from typing import NamedTuple
@@ -84,6 +85,21 @@ def _jog_run_on(axis: str) -> Rule:
     return Rule("machine.lease_ms", (vmax, amax, "limits.clearance"), wrong)
 
 
+def _corner_tolerance(axis: str) -> Rule:
+    """Joints are moved by a count on each slide whatever is said: a smaller tolerance would be exceeded."""
+    path, count = "limits.corner_tolerance", f"axis.{axis}.count"
+
+    def wrong(values: Values) -> str:
+        said, least = values.number(path), math.sqrt(2.0) * values.number(count)
+        if said == 0.0 or said >= least * (1 - 1e-9):
+            return ""
+        inch = bool(values.inch)
+        least_shown = shown(least, Unit.LENGTH, inch)
+        return f"rounding to {count} alone takes {least_shown}; state as much or more, or leave it out"
+
+    return Rule(path, (count,), wrong)
+
+
 def _homing(axis: str) -> Rule:
     path = f"axis.{axis}.absolute"
 
@@ -133,6 +149,7 @@ def _slide(axis: str) -> tuple[Rule, ...]:
         _home_inside(axis),
         _fixed_points(axis),
         _jog_run_on(axis),
+        _corner_tolerance(axis),
         _homing(axis),
         _below("limits.max_feed", f"{path}.vmax", "no slide goes faster than its vmax", Unit.FEED),
         _below("limits.manual_rapid", f"{path}.vmax", "no slide goes faster than its vmax", Unit.FEED),

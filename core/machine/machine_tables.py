@@ -34,6 +34,7 @@ LIMITS = (
     Field("manual_rapid", _NUMBER, Unit.FEED, 0.1, 500.0, derived=True),
     Field("resolution", _NUMBER, Unit.LENGTH, 1e-5, 0.02, derived=True),
     Field("clearance", _NUMBER, Unit.LENGTH, 0.1, 100.0, default=31.75),
+    Field("corner_tolerance", _NUMBER, Unit.LENGTH, 0.0, 0.1, default=0.0),
 )
 _STILL = Field("still_ms", _NUMBER, Unit.MILLISECONDS, 0.05, 2.0, default=0.2)  # a servo settles in less
 SLIDE = (

@@ -43,8 +43,8 @@ class MotionLimits:
     ``interval`` (s) is the time between two setpoints: within it an axis changes its velocity by
     ``amax * interval`` at most, so a corner may ask for as much and no more. ``jerk`` is the named place
     of a limit that the law does not have yet; docs/decisions/0003-time-law.md says where it will act.
-    ``grain`` (mm) is the step to which words are rounded, and by which joints of short chords may be moved;
-    0 leaves every joint where it is written.
+    ``grain`` (mm) is the step to which words are rounded, and by which joints of short chords may be moved
+    on each slide; 0 leaves every joint where it is written.
 
     Raises MotionError where a figure is not positive and finite.
     """
@@ -64,13 +64,17 @@ class MotionLimits:
             raise MotionError(f"The step of the slides is {self.grain} mm; give a positive number, or 0.")
 
     @classmethod
-    def of(cls, axes: Sequence[AxisLike], interval: float) -> MotionLimits:
-        """The limits of a machine's axes."""
+    def of(cls, axes: Sequence[AxisLike], interval: float, corner_tolerance: float = 0.0) -> MotionLimits:
+        """The limits of a machine's axes.
+
+        A joint of chords may be moved by ``corner_tolerance`` (mm) as the way of both slides together, and by
+        the count on each that rounding takes anyway.
+        """
         return cls(
             vmax=tuple(axis.vmax for axis in axes),
             amax=tuple(axis.amax for axis in axes),
             interval=interval,
-            grain=max(axis.count for axis in axes[:2]),
+            grain=max(*(axis.count for axis in axes[:2]), corner_tolerance / math.sqrt(2.0)),
         )
 
     @property

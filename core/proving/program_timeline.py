@@ -160,7 +160,7 @@ class Timeline:
         self.start = setup.start
         self._machine = machine
         self._ideal = ideal
-        limits = MotionLimits.of(machine.axes, machine.timing.setpoint)
+        limits = MotionLimits.of(machine.axes, machine.timing.setpoint, machine.corner_tolerance)
         if ideal:
             limits = replace(limits, amax=(_AT_ONCE,) * len(limits.amax))
         self._planner = ChunkPlanner(limits, rpm_max=machine.spindle.rpm_max)

@@ -85,6 +85,7 @@ class Report:
     ways: Ways = field(default_factory=Ways)
     stops: int = 0  # M00
     optional_stops: int = 0  # M01
+    corner_tolerance: float = 0.0  # mm that the machine file allows where chords meet; 0: rounding alone
 
     @property
     def errors(self) -> tuple[Diagnostic, ...]:
