@@ -13,7 +13,7 @@ from core.quality.measured_feature import CorrectedBy, Feature, FeatureKind
 from core.store import measured_parts, part_cycles, tool_lives
 from core.store.job_queue import JobRow
 from core.store.measured_parts import FeatureRow, ReadingRow
-from core.store.part_cycles import CorrectionRow, CycleRow, StopRow
+from core.store.part_cycles import CorrectionRow, CycleRow, CycleTime, StopRow
 from core.store.store import Store
 from core.store.store_errors import StoreError
 from core.store.store_rows import Kind, utc
@@ -37,7 +37,7 @@ class PartsData:
     cycles: tuple[CycleRow, ...] = ()
     stops: tuple[StopRow, ...] = ()
     corrections: tuple[CorrectionRow, ...] = ()
-    day: tuple[CycleRow, ...] = ()  # cycles of all programs, as long ago as a shift may be
+    day: tuple[CycleTime, ...] = ()  # when all programs ran, as long ago as a shift may be
     jobs: tuple[JobRow, ...] = ()  # the queue
 
     def readings_of(self, feature: int) -> tuple[ReadingRow, ...]:
@@ -103,7 +103,7 @@ def parts_data(store: Store, program: str, limit: int = NEWEST, tools: Kind = Ki
             part_cycles.cycles(connection, program, limit),
             part_cycles.stops(connection, None, limit),
             part_cycles.corrections(connection, program, limit),
-            part_cycles.cycles_since(connection, utc(datetime.now(UTC) - _DAYS)),
+            part_cycles.times_since(connection, utc(datetime.now(UTC) - _DAYS)),
             jobs,
         )
 

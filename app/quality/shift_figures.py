@@ -20,7 +20,7 @@ from core.quality.availability import Availability, Span, availability
 from core.quality.stops import ReasonShare, Stop, pareto
 from core.store import event_log, measured_parts, offset_tables, part_cycles, tool_lives
 from core.store.measured_parts import FeatureRow, ReadingRow
-from core.store.part_cycles import CycleRow, StopRow
+from core.store.part_cycles import CycleRow, CycleTime, StopRow
 from core.store.store import Store
 from core.store.store_rows import Change, EventRow, Kind
 from core.store.tool_lives import InsertChange, LifeRow
@@ -81,7 +81,7 @@ def stamp(at: str) -> float:
     return datetime.fromisoformat(at).timestamp()
 
 
-def span_of(row: CycleRow, now: float) -> Span | None:
+def span_of(row: CycleRow | CycleTime, now: float) -> Span | None:
     """When a cycle ran: from its beginning for its seconds; of one under way nobody knows more than now."""
     start = stamp(row.started)
     if row.ended is None or start > now:
@@ -89,7 +89,7 @@ def span_of(row: CycleRow, now: float) -> Span | None:
     return Span(start, max(start, min(start + row.seconds, now)))
 
 
-def spans_of(rows: Iterable[CycleRow], now: float) -> list[Span]:
+def spans_of(rows: Iterable[CycleRow | CycleTime], now: float) -> list[Span]:
     """Of several cycles."""
     return [span for row in rows if (span := span_of(row, now)) is not None]
 

@@ -14,6 +14,7 @@ import random
 import resource
 import signal
 import sys
+import tempfile
 import time
 from dataclasses import asdict
 from pathlib import Path
@@ -22,13 +23,13 @@ import coverage
 import pytest
 from _pytest.runner import runtestprotocol
 
+from tests.benchmarks.bench_branches import figures
 from tests.benchmarks.footprint import RESULTS, keep_result
 from tests.benchmarks.mutants import Mutant, mutants_of, put_in
 
 ROOMS = {
     "core/executor": (120, ("tests/executor",)),
-    "core/motion": (70, ("tests/motion", "tests/executor/test_chords.py",
-        "tests/executor/test_properties.py")),
+    "core/motion": (70, ("tests/motion", "tests/executor/test_chords.py")),
     "core/interpreter": (80, ("tests/interpreter", "tests/klartext", "tests/sinumerik")),
     "drivers/simulated": (30, ("tests/drivers/test_plant.py", "tests/drivers/test_plant_samples.py",
         "tests/drivers/test_schedule.py", "tests/drivers/test_station.py", "tests/drivers/test_gear.py",
@@ -77,7 +78,7 @@ class Session:
 
     def _map(self, session: pytest.Session) -> dict[tuple[str, int], list[str]]:
         """By line the fast tests that come by it."""
-        cover = coverage.Coverage(source=[self.room], data_file=None, config_file=False)
+        cover = coverage.Coverage(source=[self.room], data_file=None, config_file=False, branch=True)
         cover.start()
         for item, following in zip(session.items, [*session.items[1:], None], strict=True):
             cover.switch_context(item.nodeid)
@@ -90,11 +91,22 @@ class Session:
         cover.stop()
         data, here = cover.get_data(), f"{Path.cwd()}/"
         say(f"{len(session.items)} tests, {sum(self._took.values()):.0f} s of processor time\n")
+        self._tell_branches(cover)
         return {
             (file.removeprefix(here), line): [name for name in names if self._is_fast(name)]
             for file in data.measured_files()
             for line, names in data.contexts_by_lineno(file).items()
         }
+
+    def _tell_branches(self, cover: coverage.Coverage) -> None:
+        """Those that the fast tests take."""
+        with tempfile.TemporaryDirectory() as folder:
+            report = Path(folder) / "report.json"
+            cover.json_report(outfile=str(report))
+            found = figures(json.loads(report.read_text()))
+        say(f"{found['taken']} of {found['branches']} branches, {found['per cent']} %\n")
+        for each in found["not taken"]:
+            say(f"    {each['file']}: {each['lines']}\n")
 
     def _is_fast(self, name: str) -> bool:
         return bool(name) and name not in self._failed and self._took[name] < SLOW
@@ -165,7 +177,7 @@ def main() -> int:
     wanted = parser.parse_args()
     number, tests = ROOMS[wanted.room]
     plugin = Session(wanted.room, wanted.number or number, wanted.seed, wanted.keep)
-    words = ["-q", "-p", "no:cacheprovider", "-p", "no:xdist", "--capture=fd", *tests]
+    words = ["-q", "-p", "no:cacheprovider", "-p", "no:xdist", "-m", "not long", "--capture=fd", *tests]
     pytest.main(words, plugins=[plugin])
     told = sum(outcome == TOLD for _, outcome, _ in plugin.results)
     say(f"{wanted.room}: {told} of {len(plugin.results)} told\n")

@@ -14,6 +14,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import asdict
@@ -23,7 +24,7 @@ from typing import Any
 from core.store.store import Store
 from tests.benchmarks.bench_night_shift import counted_in
 from tests.benchmarks.footprint import Footprint, footprint, keep_result, plain
-from tests.benchmarks.night_shift import INCH, NAME, PROGRAM, TOOLS, Truth, Witness
+from tests.benchmarks.night_shift import INCH, NAME, PROGRAM, TOOLS, Truth
 from tests.stories.x11 import Server, server
 
 PAGES = ("F3", "F5", "F6", "F8", "F9", "F10", "b", "q", "w", "j", "F2")
@@ -36,24 +37,31 @@ STANDS = {"READY", "FEED_HOLD", "INTERRUPTED", "OPTIONAL_STOP", "PROGRAM_STOPPED
 
 
 def desk(words: list[str]) -> int:
-    """The screen as it is; beside it a witness looks at every snapshot, and tells at the end what it saw."""
+    """The screen as it is; beside it pins are counted at the slide itself, and told at the end.
+
+    X is behind the middle of the parting tool only while a pin is parted off, and the plant knows the slide
+    at every millisecond, however late its control is.
+    """
     from app.cli.main import console  # noqa: PLC0415  the parent needs none of it
-    from core.executor.executor import Executor  # noqa: PLC0415
+    from drivers.lookalikes.plant import Plant  # noqa: PLC0415
 
-    witness, tick = Witness(), Executor.tick
+    follow, middle = Plant._servos_follow, TOOLS[3][0] * INCH
+    pins, behind = 0, False
 
-    def seen(executor: Executor) -> None:
-        tick(executor)
-        witness.look(executor.snapshot, {}, lambda: executor.snapshot.demand)
+    def seen(plant: Plant, *how: Any) -> bool:
+        nonlocal pins, behind
+        answer = follow(plant, *how)
+        now = plant.servos[0].where < middle
+        pins += now and not behind
+        behind = now
+        return answer
 
-    Executor.tick = seen  # type: ignore[method-assign]
+    Plant._servos_follow = seen  # type: ignore[method-assign]
     sys.argv = ["turndesk", *words]
     try:
         return console()
     finally:
-        truth = witness.truth
-        told = {"pins": truth.pins, "uncounted": truth.uncounted, "alarms": truth.alarms}
-        say(json.dumps({**told, "at_stop": len(truth.at_stop)}) + "\n")
+        say(json.dumps({"pins": pins}) + "\n")
 
 
 # --- who sits in front of it ----------------------------------------------------------------------------
@@ -162,15 +170,16 @@ def watched(home: Path, seed: int, minutes: float) -> dict[str, Any]:
         looker.finish()
     assert looker.popen.stdout is not None
     told = json.loads(looker.popen.stdout.read().splitlines()[-1])
-    truth = Truth(pins=told["pins"], uncounted=told["uncounted"])
     with Store.open(home, read_only=True) as store:
-        counts = counted_in(store, truth)
+        counts = counted_in(store, Truth(pins=told["pins"]))
+        alarms = Counter(
+            event.text.split(" line ")[0] for event in store.events(limit=1000, kinds=("alarm",))
+        )
     return {
         "minutes": minutes,
         "marks": plain(marks),
         "counts": counts,
-        "at the stop": told["at_stop"],
-        "alarms": told["alarms"],
+        "alarms": alarms,
         "done": {"pages": looker.pages, "holds": looker.holds, "starts": looker.starts},
         "in an hour": grown(list(marks.values()), minutes),
     }
@@ -191,7 +200,11 @@ def say(text: str) -> None:
 
 
 def main() -> int:
-    """Print the hour, keep its figures; status 1 when a count is not what was made."""
+    """Print the hour, keep its figures; status 1 when a count is not what was made.
+
+    A program that an alarm breaks off behind the parting leaves a pin that nobody counts: there are at most
+    as many of them as starts.
+    """
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--minutes", type=float, default=60.0)
     parser.add_argument("--seed", type=int, default=1)
@@ -200,8 +213,9 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as folder:
         figures = watched(Path(folder) / "home", wanted.seed, wanted.minutes)
     say(f"{keep_result('screen_hour', figures, wanted.keep)}\n{figures['counts']}\n{figures['in an hour']}\n")
-    made = figures["counts"]["seen at the slides"]
-    return int(any(figures["counts"][who] != made for who in ("store", "log", "cycles")))
+    made, starts = figures["counts"]["seen at the slides"], figures["done"]["starts"]
+    counted = {figures["counts"][who] for who in ("store", "log", "cycles")}
+    return int(len(counted) > 1 or not all(made - starts <= count <= made for count in counted))
 
 
 if __name__ == "__main__":
