@@ -40,11 +40,14 @@ def folder_with_halrun(folder: Path) -> Path:
     return folder
 
 
-def opened_for_all(folder: Path) -> None:
-    """Whoever runs HAL can read what lies there: pytest's folders are for their owner alone."""
-    for each in (folder, *folder.parents):
-        if (each.stat().st_mode & 0o055) != 0o055:
-            each.chmod(0o755)
+@contextmanager
+def folder_for_all() -> Iterator[Path]:
+    """A folder that whoever runs HAL can read. In pytest's own he can until another pytest begins on this
+    computer, which shuts them for everybody but their owner.
+    """
+    with tempfile.TemporaryDirectory(prefix="turndesk-lathe-", ignore_cleanup_errors=True) as name:
+        os.chmod(name, 0o755)
+        yield Path(name)
 
 
 def as_halrun() -> list[str]:

@@ -16,7 +16,6 @@ import pytest
 
 import resources
 from tests.drivers.hal.board_pins import PINS, without_board
-from tests.drivers.hal.halrun import opened_for_all
 from tests.drivers.hal.lathes import PATIENT, changed
 from tests.drivers.hal.live import LiveLathe, live
 from tests.drivers.hal.test_hal_files import STAND_IN
@@ -132,7 +131,6 @@ def switch(lathe: LiveLathe, folder: Path, on: list[str]) -> None:
 
 def lathe_without_board(board: str, folder: Path, on: list[str]) -> Path:
     """The machine file beside its HAL file, both as shipped but for homing and the board."""
-    opened_for_all(folder)
     name = f"gt75-{board}"
     machine = resources.machine_file(f"{name}.toml")
     machine = re.sub(r"absolute = false\nhome = .*", "absolute = true", machine)

@@ -13,7 +13,7 @@ import pytest
 from core.executor.commands import EnableDrives, Home, Reset, Touch, Wheel, WheelOff
 from core.executor.snapshot import Snapshot, State
 from drivers.hal.boards.hal_lines import text_of
-from tests.drivers.hal.halrun import halrun_on_path, opened_for_all
+from tests.drivers.hal.halrun import folder_for_all, halrun_on_path
 from tests.drivers.hal.lathes import PATIENT, Changes, lathe
 from tests.drivers.hal.live import LiveLathe, live
 from tests.drivers.hal.test_written_c import AS_C, written
@@ -93,11 +93,9 @@ MACHINE: Changes = (
 
 
 @pytest.fixture(scope="module")
-def behind_hal(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LiveLathe]:
-    folder = tmp_path_factory.mktemp("lathe")
-    opened_for_all(folder)
+def behind_hal() -> Iterator[LiveLathe]:
     text = text_of(written("gt75-hal", *AS_C["gt75-hal"]))  # the spindle's drive is C
-    with halrun_on_path(), live(lathe(folder, MACHINE, HAL, text)) as made:
+    with folder_for_all() as folder, halrun_on_path(), live(lathe(folder, MACHINE, HAL, text)) as made:
         yield made
 
 

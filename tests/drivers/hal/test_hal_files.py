@@ -19,7 +19,6 @@ from app.compose.hal_file import hal_file
 from app.compose.machine_files import shipped_machine
 from drivers.hal.boards.hal_lines import HalFile, text_of
 from tests.drivers.hal.board_pins import PINS, without_board
-from tests.drivers.hal.halrun import opened_for_all
 
 FILES = ("gt75-hal", "gt75-parport", "gt75-mesa-7i76e", "gt75-mesa-7i97", "gt75-ethercat")
 STAND_IN = Path(__file__).parent / "board_stand_in.py"
@@ -110,7 +109,6 @@ def load(folder: Path, name: str, text: str) -> subprocess.CompletedProcess[str]
     """halrun with this text, its board replaced, to its start."""
     place = folder / name
     place.mkdir()
-    opened_for_all(folder)
     pins = list(PINS.get(name.removeprefix("gt75-"), tuple)())
     stand_in = ""
     if pins:

@@ -14,7 +14,7 @@ import pytest
 from core.executor.commands import Reset
 from core.executor.snapshot import State
 from core.ports import ALL_UNKNOWN
-from tests.drivers.hal.halrun import halrun_on_path, opened_for_all
+from tests.drivers.hal.halrun import folder_for_all, halrun_on_path
 from tests.drivers.hal.lathes import lathe
 from tests.drivers.hal.live import LiveLathe, live
 
@@ -28,10 +28,8 @@ BRIDGE, FEEDER, THREAD = "bridge_process.py", "app.compose.feeder_process", "rta
 
 
 @pytest.fixture(scope="module")
-def lathe_behind_hal(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LiveLathe]:
-    folder = tmp_path_factory.mktemp("lathe")
-    opened_for_all(folder)
-    with halrun_on_path(), live(lathe(folder)) as made:
+def lathe_behind_hal() -> Iterator[LiveLathe]:
+    with folder_for_all() as folder, halrun_on_path(), live(lathe(folder)) as made:
         yield made
 
 
