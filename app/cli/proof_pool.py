@@ -46,8 +46,8 @@ class WorkerSource(Protocol):
     def open(self, jobs: int | None = None, /) -> Executor:
         """Workers, as many as there are or so many."""
 
-    def stop(self) -> None:
-        """End what is under way."""
+    def stop(self, executor: Executor | None, /, *, done: bool) -> None:
+        """Let the workers go; of what is not ``done`` end what is under way."""
 
 
 class Workers:
@@ -67,11 +67,18 @@ class Workers:
         """So many workers, or all."""
         return ProcessPoolExecutor(jobs or self.jobs, mp_context=self._context, initializer=_begin)
 
-    def stop(self) -> None:
-        """End the workers at once, with what they are at.
+    def stop(self, executor: Executor | None, *, done: bool) -> None:
+        """Let the workers go; of what is not ``done`` at once, with what they are at.
 
-        The pool's own thread takes them away meanwhile: one that is gone already is no error.
+        The pool's own thread is waited for: where Python ended beside it, one closed what the other wrote to.
         """
+        if not done:
+            self._terminate()
+        if executor is not None:
+            executor.shutdown()
+
+    def _terminate(self) -> None:
+        """The pool's own thread takes them away meanwhile: one that is gone already is no error."""
         with contextlib.suppress(OSError, ValueError):
             for each in set(multiprocessing.active_children()) - self._before:
                 with contextlib.suppress(OSError, ValueError):
@@ -120,9 +127,7 @@ class Proving(Generic[Unit, Made]):
         finally:
             for future in self._running:
                 future.cancel()
-            if executor is not None:
-                executor.shutdown(wait=done)
-            self._workers.stop()
+            self._workers.stop(executor, done=done)
 
     def _give(self, executor: Executor, unit: Unit) -> None:
         try:

@@ -47,6 +47,8 @@ class Scheduler:
         executor: Executor = self._client.get_executor(pure=False)
         return executor
 
-    def stop(self) -> None:
+    def stop(self, executor: Executor | None, *, done: bool) -> None:
         """Take back what is not proved yet, and leave the scheduler."""
+        if executor is not None:
+            executor.shutdown(wait=done)
         self._client.close()

@@ -12,8 +12,8 @@ from core.store.store import Store
 from core.store.tool_lives import LifeRow
 from tests.cli.conftest import Turndesk
 
-# .05 in at 60 in/min is .05 s at feed with T1.
-TEXT = "G90G94F300\nG73\nT1\nG00X1Z.1\nG01G94F60Z.05\nM30\n"
+# .05 in at 6 in/min is .5 s at feed with T1: longer than a busy computer looks away.
+TEXT = "G90G94F300\nG73\nT1\nG00X1Z.1\nG01G94F6Z.05\nM30\n"
 
 
 @pytest.fixture
@@ -41,7 +41,7 @@ def test_a_run_at_the_machines_pace_counts_part_and_time_at_feed(
         told = turndesk("run", part, "--headless", "--realtime", "--offsets", offsets)
         assert told.status == 0, told.err
         assert life(home).parts == made
-        assert life(home).seconds == pytest.approx(0.05 * made, abs=0.03 * made)
+        assert life(home).seconds == pytest.approx(0.5 * made, abs=0.2 * made)
     with Store.open(home, read_only=True) as store:
         assert store.parts("part.nc") == 2
         with store.read() as connection:
