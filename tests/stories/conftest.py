@@ -18,7 +18,7 @@ from tests.stories.x11 import Server, missing, server
 
 FAILURES = Path(__file__).resolve().parents[2] / "story-failures"
 INCH = 25.4
-_TRIES = 2
+_TRIES, _LATE_TRIES = 2, 4
 Tools = Mapping[int, tuple[float, float]]
 _REPORTS = pytest.StashKey[list[pytest.TestReport]]()
 
@@ -120,6 +120,6 @@ def pytest_runtest_protocol(item: pytest.Item, nextitem: pytest.Item | None) -> 
 
     def again(tries: int, _reports: list[pytest.TestReport]) -> bool:
         item.stash[_REPORTS] = []
-        return tries < _TRIES
+        return tries < (_LATE_TRIES if late_computer.told_late() else _TRIES)
 
     return late_computer.run_again(item, nextitem, again)
