@@ -47,7 +47,7 @@ def control_limits(machine: Machine) -> ControlLimits:
         c_step=c_axis.count,
         c_modulo=machine.c_modulo,
         spindle_is_c=machine.spindle_is_c,
-        live_output=min((name for name in machine.outputs if name.startswith("live")), default=""),
+        live_output=machine.live_output,
         control=machine.control,
         third_axis=machine.third_axis,
         spindle_controlled=machine.spindle.controlled,

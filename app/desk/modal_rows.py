@@ -45,8 +45,8 @@ _GROUPS = {
         *("coolant", "outputs"),
     ),
     "sinumerik": (
-        *("motion", "settable", "trans", "units", "x words", "distance", "tool", "speed", "spindle", "feed"),
-        *("coolant", "outputs"),
+        *("motion", "settable", "trans", "transformation", "units", "x words", "distance", "tool", "speed"),
+        *("spindle", "feed", "coolant", "outputs"),
     ),
 }
 
@@ -55,9 +55,20 @@ def _rows_in(point: Checkpoint, language: str) -> tuple[ModalRow, ...]:
     """The groups of Klartext or SINUMERIK, as the pass that was kept tells them; without one what a program
     that has ended leaves."""
     told = dict(point.kept.lines) if point.kept is not None else {}
-    values = _left_by_program(point.modal) | told
+    begun = _AT_RESET | {"speed": f"G97 S{point.modal.rpm:g}"} if language == "sinumerik" else {}
+    values = _left_by_program(point.modal) | begun | told
     labels = _labels()
     return tuple(ModalRow(key, labels[key], values.get(key) or NONE) for key in _GROUPS[language])
+
+
+_AT_RESET = {
+    "motion": "G1",
+    "units": "G71 MM",
+    "x words": "DIAMON Ø",
+    "distance": "G90",
+    "feed": "G94",
+}
+"""What SINUMERIK has in force before the first block, and behind the end of a program."""
 
 
 def _left_by_program(modal: Modal) -> dict[str, str]:
@@ -87,6 +98,7 @@ def _labels() -> dict[str, str]:
         "motion": tr("MOTION"),
         "settable": tr("ZERO OFFSET"),
         "trans": tr("TRANS"),
+        "transformation": tr("TRANSFORMATION"),
         "units": tr("UNITS"),
         "x words": tr("X WORDS"),
         "distance": tr("DISTANCE"),

@@ -220,6 +220,8 @@ class SearchtoModel:
 
     def confirm(self) -> None:
         """Yes to what will start and to the way, or to the way out: it is proved and ready for the palms."""
+        if self.stage in {SearchtoStage.PROVING, SearchtoStage.READY}:
+            return  # it is confirmed
         self.clear()
         snapshot, plan, whole = self.snapshot(), self.plan, self.session.now.job
         if self.stage is SearchtoStage.SHOWN and self._cut is not None and whole is not None:

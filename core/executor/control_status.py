@@ -99,7 +99,7 @@ def modal_as_machine(modal: Modal, context: MachineContext) -> Modal:
     A stopped spindle releases C; nose compensation and plane switching never outlive their program.
     """
     on = {name for name, lit in context.ports.io.outputs().items() if lit}
-    assigned = {name for name, _ in context.machine.m_codes.values()}
+    assigned = {name for name, _ in context.machine.m_codes.values()} | {context.machine.live_output}
     asked = context.spindle.asked
     return modal._replace(
         spindle=modal.spindle if asked else 0,

@@ -158,6 +158,11 @@ class Machine:
     text: str = field(default="", compare=False, repr=False)  # the file as it was read
 
     @property
+    def live_output(self) -> str:
+        """The output that turns the live tool; empty without one."""
+        return min((name for name in self.outputs if name.startswith("live")), default="")
+
+    @property
     def spindle_is_c(self) -> bool:
         """Whether C is a second use of the spindle, so that it cannot be positioned while that turns."""
         return self.kind == "lathe" and not self.c_own_drive

@@ -16,7 +16,7 @@ from core.interpreter.job_setup import Setup, ToolOffset
 from core.interpreter.restart.restart_approach import Choices, begin_at
 from core.interpreter.restart.restart_lines import RestartPoint
 from core.interpreter.restart.state_rebuild import StateRebuild
-from core.language.source import Source
+from core.language.source import Dialect, Source
 from core.proving.prove_program import prove
 from tests.executor.rig import Rig
 
@@ -33,7 +33,7 @@ def line_job(rig: Rig, text: str, tools: Mapping[int, ToolOffset] = TOOLS) -> Jo
         start=shot.demand,
         begin=Begin(point, single=True),
     )
-    return make_job(Source("MDI", text), setup)
+    return make_job(Source("MDI", text, Dialect(rig.machine.language)), setup)
 
 
 def errors(rig: Rig, text: str) -> list[str]:

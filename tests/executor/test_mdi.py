@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from app.compose.machine_files import shipped_machine
 from app.compose.workshop import proof_of
 from core.executor.commands import CycleStart, FeedHold, Prepare, Reset, SetSwitch
 from core.executor.snapshot import Starts, State
@@ -215,3 +216,12 @@ def test_nothing_moves_before_g90_or_g91_has_been_said(line: str) -> None:
     mdi(rig, "G91" + line if not line.startswith("G92") else "G90" + line)
     mdi(rig, "M30")
     assert errors(rig, line)
+
+
+def test_the_live_tool_that_runs_is_known_to_the_next_line() -> None:
+    """It is switched by M2=3, and so stands beside no M code of the machine file."""
+    rig = Rig(shipped_machine("sinumerik-live"))
+    mdi(rig, "S2=900 M2=3", "G4 F0.1")
+    assert rig.shot.modal.outputs == {"live"}
+    mdi(rig, "M2=5", "G4 F0.1")
+    assert rig.shot.modal.outputs == frozenset()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from math import atan2, cos, degrees, radians
 
 import pytest
 
@@ -114,6 +115,26 @@ def test_a_lathe_of_sinumerik_keeps_modes_and_parameters(lathe: Mdi) -> None:
 def test_a_variable_of_def_outlives_its_line(lathe: Mdi) -> None:
     lathe.runs("DEF REAL DEPTH=3", "G0 Z=-DEPTH")
     assert lathe.at[1] == pytest.approx(-3.0)
+
+
+def test_a_lathe_stays_in_transmit_from_line_to_line() -> None:
+    """X20 Y15 is 25 mm from the axis; what was jogged meanwhile, X20 and C30, is X17.32 Y-10 of the face."""
+    live = Mdi("sinumerik-live", {1: ToolOffset()})
+    live.runs("T1 D1", "G0 DIAMOF G17 X30 Z5", "TRANSMIT", "G1 X20 Y15 F300")
+    assert live.at == pytest.approx((25.0, 5.0, -degrees(atan2(15.0, 20.0))))
+    live.at = (20.0, 5.0, 30.0)
+    live.runs("G91 G1 Y=IC(10)")
+    assert live.at == pytest.approx((20.0 * cos(radians(30.0)), 5.0, 0.0), abs=1e-9)
+    live.runs("TRAFOOF", "G90 G0 X40 C90")
+    assert live.at == pytest.approx((40.0, 5.0, 90.0))
+
+
+def test_what_transmit_refuses_is_refused_in_mdi_too() -> None:
+    live = Mdi("sinumerik-live", {1: ToolOffset()})
+    live.runs("T1 D1", "G0 DIAMOF G17 X30 Z5", "S300 M3")
+    assert live.enters("TRANSMIT") == "transformation"
+    live.runs("M5", "TRANSMIT")
+    assert live.enters("C90") == "transformation"
 
 
 def test_a_tool_call_is_a_block_of_its_own(mill: Mdi) -> None:

@@ -148,3 +148,10 @@ def test_the_picture_is_drawn_from_the_zero_of_the_program() -> None:
     assert ends[0][:3] == [(10.0, 5.0), (10.0, -10.0), (10.0, -30.0)]
     assert ends[1][:3] == ends[0][:3]
     assert ends[1][3] == pytest.approx((0.0, 280.0))  # the machine's own X100 Z80, seen from G54
+
+
+def test_the_end_of_a_program_leaves_diameters_and_mm() -> None:
+    """As a line of MDI behind it counts, and a program that is given up."""
+    modal = run("G70 DIAMOF\nG0 X1\nM30").blocks[-1].modal
+    assert (modal.metric, modal.diameter) == (True, True)
+    assert not run("DIAMOF\nG0 X1").blocks[-1].modal.diameter  # what has no end leaves nothing

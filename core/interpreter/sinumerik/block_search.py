@@ -65,6 +65,8 @@ def _lines(state: State) -> Iterator[StateLine]:
     yield StateLine("motion", motion_name(state.motion))
     yield StateLine("settable", f"G{modal.settable}" if modal.settable else "G500")
     yield StateLine("trans", _trans(modal))
+    plane = state.transformation
+    yield StateLine("transformation", "" if plane is None else plane.name)
     yield StateLine("units", "G71 MM" if modal.metric else "G70 INCH")
     yield StateLine("x words", "DIAMON Ø" if modal.diameter else "DIAMOF R")
     yield StateLine("distance", "G90" if modal.absolute else "G91")

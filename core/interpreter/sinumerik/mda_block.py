@@ -32,8 +32,6 @@ def _words(line: Line) -> Diagnostic | None:
     for word in line.words:
         if word.name in CORNERS:
             return _refuse(word.column, f"{word.text} stands between two blocks of a contour")
-        if word.name in {"TRANSMIT", "TRACYL"}:
-            return _refuse(word.column, f"{word.text} is for the blocks behind it")
     return None
 
 

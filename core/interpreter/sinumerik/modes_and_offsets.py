@@ -56,9 +56,12 @@ def programmed_frame(state: State, statement: Statement) -> None:
 
 
 def leave_offsets(state: State) -> None:
-    """The end of a program takes its offsets away: what comes next, in whatever language, counts without."""
+    """The end of a program takes its offsets away: what comes next, in whatever language, counts without.
+
+    G71 and DIAMON are in force again, as the next line of MDI counts.
+    """
     state.settable, state.programmed = NO_OFFSET, NO_FRAME
-    state.adopt(state.modal._replace(settable=0))
+    state.adopt(state.modal._replace(settable=0, metric=True, diameter=True))
     state.derive_offsets()
 
 

@@ -131,7 +131,10 @@ class Interpreter(Interpretation):
     def waits_for(self) -> str:
         """Why no other pass can go on from here."""
         if self._transformed is not None:
-            return f"it stands in {self._transformed.name}; begin before it"
+            where = (
+                f"it stands on a corner or a contour in {self._transformed.name}; begin before its approach"
+            )
+            return where if self._transformed.holds else ""
         if self._compensation.holds:
             return "it stands on a contour of G41 or G42; begin before its approach"
         return "the block before it waits for its corner" if self._corners.holds else ""
@@ -146,6 +149,8 @@ class Interpreter(Interpretation):
             if not begin.single:
                 self._flow, self._taken = parts.flow, parts.taken
         take_up(self._state, begin)
+        if self._transformed is not None:
+            self._transformed.stand()
         self._count = 0 if begin.single else begin.checkpoint.blocks
         if begin.single:
             problem = needs_others(self._source, self._setup.limits.third_axis)
@@ -160,12 +165,15 @@ class Interpreter(Interpretation):
         taken, self._taken = self._taken, None
         line = taken if taken is not None else self._flow.next()
         asked = self.stop_before
-        if line is None or not line.executable or asked is None or self._flow.outside:
+        if line is None or not line.executable or asked is None or self._flow.outside or self._deleted(line):
             return line
         if not asked(line.number):
             return line
         self._taken, self.stopped_before = line, True
         return None
+
+    def _deleted(self, line: Line) -> bool:
+        return line.skip is not None and self._state.setup.block_delete
 
     def _pass(self) -> Iterator[Block]:
         left, idle, made = MOST_LINES, 0, 0
@@ -175,9 +183,7 @@ class Interpreter(Interpretation):
             if left < 0 or idle > MOST_LINES_WITHOUT_BLOCK or self._count >= MOST_BLOCKS:
                 self._never_ends(line)
                 return
-            if line.skip is not None and self._state.setup.block_delete:
-                continue
-            if line.executable:
+            if line.executable and not self._deleted(line):
                 yield from self._line(line)
         if not self.stopped_before:
             yield from self._ended()

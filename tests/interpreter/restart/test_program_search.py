@@ -320,3 +320,64 @@ def test_the_edge_and_its_nose_go_over_to_the_pass_behind(line: int) -> None:
     behind = [told(block) for block in restarted(of, begin, (50.0, 60.0, 0.0))]
     run = [told(block) for block in whole(of) if block.line >= line]
     assert [each[1:] for each in behind[-len(run) :]] == [each[1:] for each in run]
+
+
+FLATS = """\
+G18 G90 G54 DIAMOF G94
+T1 D1
+G0 X30 Z5
+SPOS=0
+S2=2000 M2=3
+G17
+TRANSMIT
+G0 X25 Y-12
+Z2
+G1 Z-3 F300
+Y12
+G0 Z2
+X-25
+G1 X-20 RND=3 F200
+Y-12
+G0 Z5
+TRAFOOF
+M2=5
+M30
+"""
+
+
+def milled(program: str = FLATS) -> tuple[ReadProgram, Setup]:
+    setup = setup_for(named_machine("sinumerik-live"), tools={1: ToolOffset(10.0, 20.0, 4.0)}, secondary={})
+    return ReadProgram(Source("flats.mpf", program)), setup
+
+
+@pytest.mark.parametrize("line", [9, 10, 12, 13, 14, 16])
+def test_in_transmit_the_part_is_turned_to_where_the_run_would_have_had_it(line: int) -> None:
+    """X, Z and C are where they would have been; C counts whole turns from where the part stands now."""
+    of = milled()
+    found = good(of, line)
+    now = MachineNow((150.0, 100.0, 725.0), Modal())
+    begin = begin_at(found, now, Choices())
+    blocks = restarted(of, begin, now.at)[len(begin.approach) :]
+    run = [each for each in whole(of) if each.n > found.checkpoint.blocks]
+    assert [told(each)[:3] for each in blocks] == [told(each)[:3] for each in run]
+    for have, want in zip(blocks, run, strict=True):
+        (x, z, c), (run_x, run_z, run_c) = have.machine_end, want.machine_end
+        assert (x, z) == pytest.approx((run_x, run_z))
+        assert (c - run_c + 180.0) % 360.0 - 180.0 == pytest.approx(0.0, abs=1e-7)
+        assert abs(c - 725.0) < 360.0
+
+
+def test_the_live_tool_and_the_held_part_come_before_the_line() -> None:
+    begin = begin_at(good(milled(), 10), MachineNow((150.0, 100.0, 0.0), Modal()), Choices())
+    told_of = [step.text for step in begin.approach if isinstance(step, FunctionStep)]
+    assert told_of == ["M89", "LIVE ON"]
+
+
+def test_no_search_ends_on_a_corner_in_transmit() -> None:
+    assert "on a corner or a contour in TRANSMIT" in refused(milled(), 15).why
+
+
+def test_a_block_that_is_deleted_is_no_place_to_go_on() -> None:
+    reading, setup = milled(FLATS.replace("Z2\nG1", "/Z2\nG1"))
+    assert "the run never comes to it" in refused((reading, replace(setup, block_delete=True)), 9).why
+    assert good((reading, setup), 9).line == 9
