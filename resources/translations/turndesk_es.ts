@@ -4830,6 +4830,11 @@
     </message>
     <message>
       <location filename="app/desk/modal_rows.py" />
+      <source>TRANSFORMATION</source>
+      <translation>TRANSFORMACIÓN</translation>
+    </message>
+    <message>
+      <location filename="app/desk/modal_rows.py" />
       <source>UNITS</source>
       <translation>UNIDADES</translation>
     </message>
@@ -16895,6 +16900,11 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/cycle_moves.py" />
+      <source>Cycle %1 needs a speed.</source>
+      <translation>El ciclo %1 necesita una velocidad.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycle_moves.py" />
       <source>Cycle %1 needs the spindle to turn.</source>
       <translation>El ciclo %1 necesita que gire el husillo.</translation>
     </message>
@@ -16932,6 +16942,11 @@
       <location filename="core/interpreter/klartext/cycle_moves.py" />
       <source>Write Q214=0, or turn the edge by hand before the move.</source>
       <translation>Escriba Q214=0, o gire el filo a mano antes del movimiento.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycle_moves.py" />
+      <source>Write S behind TOOL CALL.</source>
+      <translation>Escriba S tras TOOL CALL.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/cycle_moves.py" />
@@ -17572,11 +17587,6 @@
       <location filename="core/interpreter/klartext/m_functions.py" />
       <source>This machine's file has no M%1.</source>
       <translation>El archivo de esta máquina no tiene M%1.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/m_functions.py" />
-      <source>Write S behind TOOL CALL.</source>
-      <translation>Escriba S tras TOOL CALL.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/mdi_block.py" />
@@ -20745,11 +20755,6 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/mda_block.py" />
-      <source>%1 is for the blocks behind it</source>
-      <translation>%1 es para los bloques que le siguen</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/mda_block.py" />
       <source>%1 leads to another block</source>
       <translation>%1 lleva a otro bloque</translation>
     </message>
@@ -21305,13 +21310,13 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/sinumerik_interpreter.py" />
-      <source>it stands in %1; begin before it</source>
-      <translation>está en %1; empiece antes</translation>
+      <source>it stands on a contour of G41 or G42; begin before its approach</source>
+      <translation>está en un contorno de G41 o G42; empiece antes de su entrada</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/sinumerik_interpreter.py" />
-      <source>it stands on a contour of G41 or G42; begin before its approach</source>
-      <translation>está en un contorno de G41 o G42; empiece antes de su entrada</translation>
+      <source>it stands on a corner or a contour in %1; begin before its approach</source>
+      <translation>está en una esquina o un contorno en %1; empiece antes de su aproximación</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/sinumerik_interpreter.py" />
@@ -28360,6 +28365,11 @@
     </message>
     <message>
       <location filename="core/store/database.py" />
+      <source>malformed database schema</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/store/database.py" />
       <source>the folder %1 cannot be made (%2); set TURNDESK_HOME to a folder of yours</source>
       <translation>no se puede crear la carpeta %1 (%2); ponga TURNDESK_HOME en una carpeta suya</translation>
     </message>
@@ -28500,6 +28510,11 @@
     </message>
     <message>
       <location filename="core/store/offset_tables.py" />
+      <source>entry %1 of the history of offsets is damaged; the offsets themselves are looked at by their own sums. Restore a backup for the history</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/store/offset_tables.py" />
       <source>the job</source>
       <translation>el trabajo</translation>
     </message>
@@ -28567,6 +28582,11 @@
       <location filename="core/store/program_records.py" />
       <source>the store has no program %1%2; see the list of programs and versions</source>
       <translation>el almacén no tiene el programa %1%2; vea la lista de programas y versiones</translation>
+    </message>
+    <message>
+      <location filename="core/store/shared_versions.py" />
+      <source>id, program, text, size, follows, desk, saved, why</source>
+      <translation type="unfinished" />
     </message>
     <message>
       <location filename="core/store/store.py" />
