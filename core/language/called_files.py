@@ -44,14 +44,20 @@ def _calls_of(dialect: Dialect) -> Callable[[Source], Iterator[str]] | None:
 
 
 def _read(name: str, folders: Sequence[Path], dialect: Dialect) -> Source | None:
-    for folder in folders:
-        for path in (folder / name.lower(), *_same_name(folder, name)):
-            try:
-                if path.is_file():
-                    return load_source(path, dialect)
-            except SourceError:
-                return None
+    for each in (name, *_also(name, dialect)):
+        for folder in folders:
+            for path in (folder / each.lower(), *_same_name(folder, each)):
+                try:
+                    if path.is_file():
+                        return load_source(path, dialect)
+                except SourceError:
+                    return None
     return None
+
+
+def _also(name: str, dialect: Dialect) -> tuple[str, ...]:
+    """A main program of SINUMERIK may be called by its name, too."""
+    return (str(Path(name).with_suffix(".MPF")),) if dialect is Dialect.SINUMERIK else ()
 
 
 def _same_name(folder: Path, name: str) -> list[Path]:

@@ -44,11 +44,10 @@ def test_nothing_runs_behind_the_end(code: str) -> None:
     assert [block.line for block in blocks] == [1, 2, 2]
 
 
-@pytest.mark.parametrize("code", ["M2", "M30"])
-def test_the_end_of_a_main_program_in_a_subprogram(code: str) -> None:
-    inner = Source("inner.spf", f"G0 Z1\nN5 {code}", Dialect.SINUMERIK)
-    error = refused(source("G0 Z0\nINNER", inner))
-    assert (error.code, error.line) == ("end-in-subprogram", 2)
+@pytest.mark.parametrize("code", ["M2", "M17", "M30"])
+def test_a_program_that_is_called_leads_back_at_its_end(code: str) -> None:
+    inner = Source("inner.mpf", f"G0 Z1\nN5 {code}\nZ400", Dialect.SINUMERIK)
+    assert [block.z for block in good(source("G0 Z0\nINNER\nZ7\nM30", inner))] == [0.0, 1.0, 7.0]
 
 
 def test_a_missing_subprogram() -> None:
@@ -93,6 +92,15 @@ def test_files_beside_the_program_are_found_in_any_case(tmp_path: Path) -> None:
     found = with_called_files(load_source(tmp_path / "part.mpf"), [tmp_path])
     assert [each.name.lower() for each in found.subprograms] == ["loch.spf", "nut.spf"]
     assert len(good(found)) == 2
+
+
+def test_a_main_program_beside_it_is_found_where_no_subprogram_has_its_name(tmp_path: Path) -> None:
+    (tmp_path / "NUT.MPF").write_text("G0 Z3\nM30\n")
+    (tmp_path / "loch.spf").write_text("G0 Z4\nM17\n")
+    (tmp_path / "LOCH.MPF").write_text("G0 Z99\nM30\n")
+    found = with_called_files(source("NUT\nLOCH\nNONE\nM30"), [tmp_path])
+    assert [each.name for each in found.subprograms] == ["loch.spf", "NUT.MPF"]
+    assert refused(found).code == "subprogram-missing"
 
 
 def test_a_file_that_is_no_text_is_missing(tmp_path: Path) -> None:

@@ -62,6 +62,7 @@ from core.language.source import Source
 
 # Codes of findings that follow from where the machine stands and what is in force: behind a bad block nobody
 # knows either.
+_ENDS = frozenset({2, 17, 30})
 _IDLE = frozenset(name for name, entry in WORDS.items() if entry.idle)
 _BY_STATE = frozenset(
     {
@@ -272,7 +273,7 @@ class Interpreter(Interpretation):
         """M2, M17 and M30, behind everything else of their block."""
         if ends:
             self._flow.end()
-        elif self._flow.called and any(word.name == "M" and word.value == 17 for word in line.words):
+        elif self._flow.called and any(word.name == "M" and word.value in _ENDS for word in line.words):
             self._flow.back()
 
     def _with_corners(self, statement: Statement) -> Iterator[Block]:

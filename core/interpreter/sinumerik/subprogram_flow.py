@@ -288,11 +288,7 @@ def _end_label(routine: Routine, start: int, here: int) -> int:
 
 
 def ends_main(statement: Statement, *, called: bool) -> bool:
-    """Whether the block ends the whole program; M17 ends a subprogram. Raises ProgramError."""
-    for code in (2, 30):
-        if called and code in statement.m:
-            text = f"M{code} ends a main program, and this is a subprogram."
-            raise statement.refuse(statement.m[code], "end-in-subprogram", text, "Write M17.")
+    """Whether the block ends the whole program; in a subprogram M2 and M30 lead back as M17 does."""
     return statement.ends and not called
 
 
