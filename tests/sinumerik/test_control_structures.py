@@ -136,3 +136,31 @@ def test_a_loop_reads_no_line_at_each_pass(loop: str, monkeypatch: pytest.Monkey
 def test_a_block_number_is_not_found_in_a_longer_one() -> None:
     assert [block.x for block in good("G0 X20\nGOTOF N3\nN33 G0 X30\nn3 G0 X40")] == [10.0, 20.0]
     assert refused("N20 GOTOF N3\nN33 G0 X30 ; N3").code == "14080"
+
+
+@pytest.mark.parametrize(
+    ("before", "axis", "value"),
+    [
+        ("G0 X40 Z2", "X", 40.0),
+        ("DIAMOF\nG0 X40 Z2", "X", 40.0),
+        ("TRANS X2 Z-10\nG0 X40 Z2", "Z", 2.0),
+        ("TRANS Z-10\nG0 X40 Z2\nTRANS", "Z", -8.0),
+        ("ROT RPL=90\nG0 X40 Z2\nROT", "Z", -20.0),  # +90 turns Z to X, and X to minus Z
+        ("G0 C=ACN(330)", "C", 330.0),
+    ],
+)
+def test_positions_in_the_system_of_the_program(before: str, axis: str, value: float) -> None:
+    for name in ("$AA_IW", "$P_EP"):
+        assert r(f"{before}\nR1={name}[{axis}]") == pytest.approx(value)
+
+
+@pytest.mark.parametrize("text", ["R1=$AA_IW[Y]", "R1=$AA_IM[X]", "G70\nR1=$AA_IW[X]"])
+def test_positions_that_nothing_answers(text: str) -> None:
+    assert refused(text).code == "system-variable"
+
+
+def test_a_loop_whose_condition_has_no_value_is_one_error() -> None:
+    """Its body is gone through for more mistakes, and no fault of the loop is told beside."""
+    assert refused("WHILE $AA_IM[X]<100\nG0 Z=IC(1)\nENDWHILE\nM30").code == "system-variable"
+    errors = run("WHILE R99<100\nG0 Z=IC(0.001)\nG1 X\nENDWHILE\nM30").errors
+    assert [each.line for each in errors] == [1, 3]

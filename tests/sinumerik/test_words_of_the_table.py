@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 
@@ -12,8 +10,6 @@ from app.compose.machine_files import shipped_machine
 from core.interpreter.elementary_blocks import Kind
 from core.interpreter.job_setup import Setup, ToolOffset, ZeroOffset
 from core.language.diagnostics import Severity
-from core.language.sinumerik.cycle_names import CYCLES_OUTSIDE
-from core.language.sinumerik.sinumerik_book import BOOK
 from core.language.sinumerik.word_table import FUNCTIONS, M_FUNCTIONS, OUTSIDE, WORDS
 from core.machine.machine_model import Machine
 from tests.sinumerik.lathe import MODULO, refused, run, setup
@@ -91,15 +87,6 @@ def test_to_the_first_block_and_on() -> None:
 def test_boring_with_a_dwell_feeds_out() -> None:
     passed = run("S1000 M3 G94 F120 G17\nG0 X0 Z5\nCYCLE89(4,0,1,-9,,1)", around())
     assert [(b.z, b.kind) for b in passed.moves[2:]] == [(-9, Kind.FEED), (1, Kind.FEED), (4, Kind.RAPID)]
-
-
-def test_every_construct_has_a_golden() -> None:
-    """Some test of this room names it beside the book: what it does is worked out by hand there."""
-    said = "".join(path.read_text(encoding="utf-8") for path in Path(__file__).parent.glob("*.py"))
-    words = {match.upper() for match in re.findall(r"\$?[A-Za-z_]+[0-9]*", said.replace("\\n", " "))}
-    words |= {*re.findall(r"\b[A-Z](?=-?[0-9])", said)}  # J0 is J
-    taken = {re.split("[=(]", name)[0] for name in SWITCHES_NOTHING} | ROWS.keys() | {"R"}
-    assert sorted({entry.head for entry in BOOK.entries} - CYCLES_OUTSIDE.keys() - words - taken) == []
 
 
 @pytest.mark.parametrize("name", OUTSIDE)

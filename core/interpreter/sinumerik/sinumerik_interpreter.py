@@ -63,6 +63,9 @@ from core.language.source import Source
 # Codes of findings that follow from where the machine stands and what is in force: behind a bad block nobody
 # knows either.
 _ENDS = frozenset({2, 17, 30})
+_BEHIND_ERROR = 20_000
+"""Lines that are gone through behind the first error, for others that it may hide."""
+
 _IDLE = frozenset(name for name, entry in WORDS.items() if entry.idle)
 _BY_STATE = frozenset(
     {
@@ -181,6 +184,8 @@ class Interpreter(Interpretation):
         while not self._log.full and (line := self._next_line()) is not None:
             left -= 1
             idle, made = (idle + 1, made) if self._count == made else (0, self._count)
+            if self._stopped and (left := min(left, _BEHIND_ERROR)) < 0:
+                return  # a loop whose condition has no value ends nowhere, which says nothing new
             if left < 0 or idle > MOST_LINES_WITHOUT_BLOCK or self._count >= MOST_BLOCKS:
                 self._never_ends(line)
                 return

@@ -13,7 +13,8 @@ from core.interpreter.modal_state import Modal
 from core.interpreter.sinumerik.plane_in_force import PlaneInForce
 from core.interpreter.sinumerik.programmed_frame import ProgrammedFrame
 from core.interpreter.sinumerik.sinumerik_statement import Statement
-from core.interpreter.sinumerik.system_variables import system_value
+from core.interpreter.sinumerik.system_variables import position_asked, system_value
+from core.interpreter.sinumerik.third_axis import wrapped
 from core.interpreter.sinumerik.variables import Refuse, Variables
 from core.interpreter.units import MM_PER_INCH
 from core.language.formulas import Formula, Parameter
@@ -126,7 +127,8 @@ class State:
 
         def parameter(asked: Parameter) -> float:
             if asked.letters.startswith("$"):
-                read = system_value(asked.letters, self.modal, self.edge)
+                axis = position_asked(asked.letters)
+                read = self.position(axis) if axis else system_value(asked.letters, self.modal, self.edge)
                 if read is not None:
                     return read
             return self.variables.value(asked, lambda index: worth(index, parameter), refuse)
@@ -146,6 +148,20 @@ class State:
             return modal.surface_rpm_at(x, highest)
         most = highest if modal.css_max is None else min(highest, modal.css_max)
         return modal.spindle * max(min(modal.rpm, most), self.lowest if modal.rpm else 0.0)
+
+    def position(self, axis: str) -> float | None:
+        """Where an axis stands as the program counts it, X as DIAMON says, C 0 to 360 on a modulo axis.
+
+        None where no number would be right: in TRANSMIT and TRACYL, under G70, and for no axis of this lathe.
+        """
+        modal = self.modal
+        if self.transformation is not None or not modal.metric:
+            return None
+        if axis == self.setup.limits.third_axis and self.setup.limits.c_enabled:
+            c = self.c - modal.offset_c
+            return wrapped(c) if self.setup.limits.c_modulo else c
+        x, z = self.programmed.unturned(self.x - modal.offset_x, self.z - modal.offset_z)
+        return {"X": x * (2.0 if modal.diameter else 1.0), "Z": z}.get(axis)
 
     @property
     def rpm(self) -> float:

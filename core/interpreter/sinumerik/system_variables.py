@@ -1,6 +1,8 @@
-"""System variables that a program may read: $P_TOOLNO and the like, of the tool and the edge in force."""
+"""System variables that a program may read: the tool and the edge in force, and where the axes stand."""
 
 from __future__ import annotations
+
+import re
 
 from core.interpreter.job_setup import ToolOffset
 from core.interpreter.modal_state import Modal
@@ -20,3 +22,12 @@ def system_value(name: str, modal: Modal, edge: ToolOffset) -> float | None:
     if name == "$P_TOOLR" and modal.metric:
         return edge.nose_radius if modal.edge else 0.0
     return None
+
+
+_POSITION = re.compile(r"\$(?:AA_IW|P_EP)\[([A-Z][0-9]?)\]")
+
+
+def position_asked(name: str) -> str:
+    """The axis whose position in the program's system a name asks for; empty for any other name."""
+    match = _POSITION.fullmatch(name)
+    return match[1] if match else ""

@@ -242,6 +242,14 @@ def _flow() -> tuple[Entry, ...]:
             "system variable",
         ),
         Entry(
+            "$AA_IW",
+            "[X]",
+            "Position of X, Z or C in the program's system, X as DIAMON says; $P_EP[X] is the same here.",
+            "G0 X40\nR1=$AA_IW[X]",
+            "R1=$AA_IW[Q]",
+            "system variable",
+        ),
+        Entry(
             "MSG",
             '("text")',
             "Shows a text to the operator; an empty one takes it away.",
