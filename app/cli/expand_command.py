@@ -6,7 +6,9 @@ import argparse
 import importlib
 import json
 import sys
+from collections.abc import Iterator
 from pathlib import Path
+from types import ModuleType
 from typing import TYPE_CHECKING
 
 from app.cli.program_options import add_ideal_option, add_program_options, circumstances, read_source
@@ -15,6 +17,7 @@ from app.desk.command_errors import EXIT_ERRORS, EXIT_OK
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
+    from core.language.source import Source
     from core.proving.program_timeline import Timeline
 
 
@@ -28,7 +31,7 @@ def add_parser(subparsers: SubParsers) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Write the blocks in the order of execution; diagnostics go to stderr, 1 when there are errors."""
-    from core.proving.program_timeline import Timeline, timed_blocks
+    from core.proving.program_timeline import Timeline
 
     path = Path(args.file)
     around = circumstances(args)
@@ -38,14 +41,27 @@ def run(args: argparse.Namespace) -> int:
     if not args.json:
         sys.stdout.write(figures.HEAD)
     with Progress(f"expanding {path.name}", len(source.lines)) as progress:
-        for block, t0, t1 in timed_blocks(timeline):
-            if args.json:
-                text = json.dumps(figures.block_json(block, source.lines[block.line - 1], t0, t1)) + "\n"
-            else:
-                text = figures.row(block, t0)
+        for last, text in _texts(timeline, source, figures, json_wanted=args.json):
             sys.stdout.write(text)
-            progress.reach(block.n)
+            progress.reach(last)
     return report_diagnostics(path, timeline)
+
+
+def _texts(
+    timeline: Timeline, source: Source, figures: ModuleType, *, json_wanted: bool
+) -> Iterator[tuple[int, str]]:
+    """What is written, and the number of its last block; many moves at once where the program has such."""
+    from core.interpreter.elementary_blocks import TimedSeries
+    from core.proving.program_timeline import timed_series
+
+    for each in timed_series(timeline):
+        if isinstance(each, TimedSeries):
+            text = figures.series_json(each) if json_wanted else figures.series_rows(each)
+            yield int(each.series.n[-1]), text
+            continue
+        block, t0, t1 = each
+        told = figures.block_json(block, source.lines[block.line - 1], t0, t1) if json_wanted else None
+        yield block.n, figures.row(block, t0) if told is None else json.dumps(told) + "\n"
 
 
 def report_diagnostics(path: Path, timeline: Timeline) -> int:

@@ -1,0 +1,74 @@
+"""Many moves are written at once, to the letter as each by itself."""
+
+from __future__ import annotations
+
+import json
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from app.cli.omniturn_figures import block_json, rounded, row, series_json, series_rows
+from app.compose.machine_files import load_machine
+from app.compose.machine_setup import setup_for
+from core.interpreter.elementary_blocks import Series, TimedSeries
+from core.interpreter.job_setup import SecondaryOffset, ToolOffset
+from core.language.source import Source
+from core.proving.program_timeline import TimedBlock, Timeline, timed_blocks
+
+MACHINE = load_machine(None)
+HEADS = (
+    "G90G94F300G72\nM03S2000\nT1\nX1Z.1\nG95F.003\n",
+    "G90G94F12.7G71\nT1D1\nX20Z2\n",
+    "G90G94F300G73\nT1\nX1Z.1\n",
+)
+MOVES = "".join(f"X{0.5 + k % 7 * 0.01:.4f}Z{-0.0001 * k:.5f}\n" for k in range(300))
+
+
+def moves_of(head: str) -> tuple[TimedSeries, list[TimedBlock]]:
+    """The program's plain moves as a series, and the same one by one."""
+    setup = setup_for(
+        MACHINE, tools={1: ToolOffset(x=-3.1, z=2.7)}, secondary={1: SecondaryOffset(x=0.0133, z=-0.02)}
+    )
+    source = Source("A", f"{head}{MOVES}M30\n")
+    alone = [each for each in timed_blocks(Timeline.of(source, setup, MACHINE)) if each[0].line > 6]
+    alone = [each for each in alone if each[0].moves]
+    blocks = [block for block, _, _ in alone]
+    n, line = (np.array([getattr(block, name) for block in blocks]) for name in ("n", "line"))
+    ways = {name: np.array([getattr(each, name) for each in blocks]) for name in ("x0", "z0", "x", "z")}
+    series = Series(blocks[0], source.lines, n, line, **ways)
+    assert list(map(repr, series)) == list(map(repr, blocks))
+    t0, t1 = (np.array(column) for column in list(zip(*alone, strict=True))[1:])
+    return TimedSeries(series, t0, t1), alone
+
+
+@pytest.mark.parametrize("head", HEADS)
+def test_the_table_is_the_same(head: str) -> None:
+    together, alone = moves_of(head)
+    assert series_rows(together) == "".join(row(block, t0) for block, t0, _ in alone)
+
+
+@pytest.mark.parametrize("head", HEADS)
+def test_the_objects_are_the_same(head: str) -> None:
+    together, alone = moves_of(head)
+    told = [json.dumps(block_json(block, block.text, t0, t1)) + "\n" for block, t0, t1 in alone]
+    assert series_json(together) == "".join(told)
+
+
+FIGURES = st.floats(-1e7, 1e7) | st.integers(-(10**10), 10**10).map(lambda n: n / 2e9)
+
+
+@given(st.lists(FIGURES, min_size=1, max_size=20), st.sampled_from([6, 9]))
+def test_figures_are_rounded_as_python_rounds_them(values: list[float], places: int) -> None:
+    assert list(map(repr, rounded(np.array(values), places))) == [
+        repr(round(v, places) + 0.0) for v in values
+    ]
+
+
+@pytest.mark.parametrize("value", [0.5e-9, 1.5e-9, 2.5e-9, -0.5e-9, -1e-12, 0.1234567885, 1e5 + 2.5e-9, 1e15])
+def test_halves_and_what_is_near_them(value: float) -> None:
+    """A half of a step is no binary number: its decimals say where it goes, and no product with 1e9."""
+    near = [value, math.nextafter(value, math.inf), math.nextafter(value, -math.inf)]
+    assert list(map(repr, rounded(np.array(near), 9))) == [repr(round(each, 9) + 0.0) for each in near]
