@@ -1,52 +1,48 @@
-"""B4: from the start of a process to a usable window, to the program drawn, and to the first setpoint.
+"""B2 and B4: a short proof from a cold process, the first setpoint, a usable window, the program drawn.
 
-Run with ``python -m tests.benchmarks.bench_start``; it needs no display.
+Run with ``python -m tests.benchmarks.bench_start``; it needs no display. Figures are processor time: what a
+process has used when that is reached and it ends at once. Others on the machine stretch it little, and its
+ratio to a bare interpreter, run by turns with it, hardly at all.
 """
 
 from __future__ import annotations
 
-import statistics
-import subprocess
 import sys
 import tempfile
-import time
 from pathlib import Path
 
+from tests.benchmarks.bench_prove import program as turned_part
 from tests.benchmarks.installed import installed
+from tests.benchmarks.processor_time import BARE, QT, ROUNDS, Cost, compared
 
-RUNS = 7
+TURNDESK = (sys.executable, "-m", "app.cli.main")
 SAMPLES = Path(__file__).parents[2] / "resources" / "programs"
 
 WINDOW = """
-import os, sys, time
-begun = float(sys.argv[1])
+import os, sys
 from PySide6.QtCore import QTimer
 from PySide6.QtWidgets import QApplication
 from app.screen import run_screen as screen
 from app.compose.stored_offsets import chosen_offsets
 from app.compose.screen_desk import build_desk
-desks, usable = [], []
+program, offsets, until = sys.argv[1:]
+desks = []
 def build():
-    desks.append(build_desk(None, chosen_offsets(sys.argv[3])))
+    desks.append(build_desk(None, chosen_offsets(offsets)))
     return desks[0]
 def look():
     window = next(iter(QApplication.topLevelWidgets()), None)
     if desks and window is not None and window.isVisible():
-        if not usable:
-            usable.append(time.time() - begun)
-        if desks[0].session.now.picture is not None:
-            sys.stdout.write(f"{usable[0]} {time.time() - begun}")
-            QApplication.exit(0)
-            return
+        if until == "usable" or desks[0].session.now.picture is not None:
+            os._exit(0)
     QTimer.singleShot(2, look)
 QTimer.singleShot(0, look)
 app = screen._application("dark")
-screen.run_screen(program=sys.argv[2], build=build)
+screen.run_screen(program=program, build=build)
 """
 
 HEADLESS = """
-import sys, time
-begun = float(sys.argv[1])
+import sys
 from pathlib import Path
 from app.compose.machine_setup import read_machine, setup_for
 from app.compose.stored_offsets import chosen_offsets
@@ -58,11 +54,11 @@ from core.executor.job import Proof, make_job
 from core.language.source import load_source
 from drivers.clocks import StepClock
 machine = read_machine(None)
-tools, secondary, *_ = chosen_offsets(sys.argv[3])()
+tools, secondary, *_ = chosen_offsets(sys.argv[2])()
 clock = StepClock()
 ports = simulated(machine, clock).ports
 executor = Executor(machine, ports, lambda event: None)
-job = make_job(load_source(Path(sys.argv[2])), setup_for(machine, tools=tools, secondary=secondary))
+job = make_job(load_source(Path(sys.argv[1])), setup_for(machine, tools=tools, secondary=secondary))
 executor.tick()
 executor.post(EnableDrives())
 executor.tick()
@@ -71,35 +67,42 @@ executor.post(CycleStart())
 while ports.axes.horizon() <= clock.now():
     executor.tick()
     clock.advance(0.01)
-sys.stdout.write(str(time.time() - begun))
 """
 
 
-def timed(script: str) -> list[list[float]]:
-    """The numbers that each run of a script prints: seconds since its process was started."""
-    with tempfile.TemporaryDirectory() as home:
-        around = installed(Path(home), QT_QPA_PLATFORM="offscreen")
-        rows = []
-        for _ in range(RUNS + 1):
-            command = [sys.executable, "-c", script, str(time.time())]
-            command += [str(SAMPLES / "bushing.nc"), str(SAMPLES / "offsets.toml")]
-            done = subprocess.run(command, env=around, check=True, capture_output=True, text=True)
-            rows.append([float(number) for number in done.stdout.split()])
-        return rows[1:]
+def compared_starts(home: Path, rounds: int = ROUNDS) -> dict[str, Cost]:
+    """What each start costs, beside a bare interpreter and one that has loaded Qt; ``home`` has the store."""
+    program, offsets = str(SAMPLES / "bushing.nc"), str(SAMPLES / "offsets.toml")
+    short = home / "short.nc"
+    short.write_text(turned_part(200))
+    commands = {
+        "bare interpreter": BARE,
+        "import PySide6.QtWidgets": QT,
+        "prove 200 blocks": [*TURNDESK, "prove", str(short), "--offsets", offsets],
+        "headless, to the first setpoint": [sys.executable, "-c", HEADLESS, program, offsets],
+        "window usable": [sys.executable, "-c", WINDOW, program, offsets, "usable"],
+        "window, program proved and drawn": [sys.executable, "-c", WINDOW, program, offsets, "drawn"],
+    }
+    around = installed(home, QT_QPA_PLATFORM="offscreen", OPENBLAS_NUM_THREADS="1")
+    return compared(commands, around, rounds)
+
+
+def table(costs: dict[str, Cost]) -> list[tuple[str, str, str, str]]:
+    """Name, seconds, and how many times a bare interpreter and the import of Qt that is."""
+    bare, qt = costs["bare interpreter"].seconds, costs["import PySide6.QtWidgets"].seconds
+    return [
+        (name, f"{cost.seconds:.3f}", f"{cost.seconds / bare:.1f}", f"{cost.seconds / qt:.1f}")
+        for name, cost in costs.items()
+    ]
 
 
 def main() -> None:
     """Print the table."""
-    window = timed(WINDOW)
-    rows = [
-        ("usable window", [row[0] for row in window]),
-        ("program proved and drawn", [row[1] for row in window]),
-        ("headless, to the first setpoint", [row[0] for row in timed(HEADLESS)]),
-    ]
-    sys.stdout.write(f"{'from the start of the process':34s} {'median':>9s} {'least':>9s} {'most':>9s}\n")
-    for name, values in rows:
-        figures = (statistics.median(values), min(values), max(values))
-        sys.stdout.write(f"{name:34s}" + "".join(f" {value:7.2f} s" for value in figures) + "\n")
+    with tempfile.TemporaryDirectory() as home:
+        rows = table(compared_starts(Path(home)))
+    head = ("processor time of a process", "s", "x bare", "x Qt")
+    for name, *figures in (head, *rows):
+        sys.stdout.write(f"{name:34s}" + "".join(f"{each:>9s}" for each in figures) + "\n")
 
 
 if __name__ == "__main__":
