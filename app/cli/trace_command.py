@@ -6,6 +6,7 @@ import argparse
 import json
 import sys
 from collections.abc import Callable
+from operator import truediv
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -89,15 +90,12 @@ class _Table:
         names = ",".join(axis.name.lower() for axis in machine.axes)
         self.header = f"t,{names},spindle_deg,line\n"
         self._scales = [1.0 if axis.rotary or not inch else MM_PER_INCH for axis in machine.axes]
-        self._places = [5 if axis.rotary else 7 if inch else 6 for axis in machine.axes]
+        places = (5 if axis.rotary else 7 if inch else 6 for axis in machine.axes)
+        self._row = ",".join(("%.6f", *(f"%.{count}f" for count in places), "%.4f", "%d")) + "\n"
 
     def row(self, t: float, at: tuple[float, ...], turned: float, line: int) -> str:
         """One setpoint."""
-        axes = ",".join(
-            f"{value / scale:.{places}f}"
-            for value, scale, places in zip(at, self._scales, self._places, strict=True)
-        )
-        return f"{t:.6f},{axes},{turned:.4f},{line}\n"
+        return self._row % (t, *map(truediv, at, self._scales), turned, line)
 
 
 def _write_file(timeline: Timeline, table: _Table, args: argparse.Namespace, source: Source) -> None:

@@ -48,10 +48,11 @@ class _Sampler:
         _, positions, numbers = sample_positions(
             span.chunk.profile, self._dt, max(0.0, self._row * self._dt - span.t0)
         )
-        owners = _Owners(span.blocks)
+        blocks = span.blocks
+        owners = np.searchsorted([block.n for block in blocks], numbers).tolist()
         rows = []
-        for at, number in zip(positions.tolist(), numbers.tolist(), strict=True):
-            block = owners.find(number)
+        for at, owner in zip(positions.tolist(), owners, strict=True):
+            block = blocks[owner]
             self._line = block.line
             rows.append(self._emit(tuple(at), block))
         profile = span.chunk.profile
@@ -91,15 +92,3 @@ class _Sampler:
         if self._row:
             self._angle += (self._rpm + speed) / 2 * self._dt * 6  # 1 rpm is 6 degrees a second
         self._rpm = speed
-
-
-class _Owners:
-    """Blocks of a span by number."""
-
-    def __init__(self, blocks: list[Block]) -> None:
-        self._numbers = np.array([block.n for block in blocks])
-        self._blocks = blocks
-
-    def find(self, number: int) -> Block:
-        """The block with this number."""
-        return self._blocks[int(np.searchsorted(self._numbers, number))]
