@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
-import os
+import json
 import statistics
 import subprocess
 import sys
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 from typing import NamedTuple
 
 ROUNDS = 7
 BARE = (sys.executable, "-c", "")
+# A process is told to have had the memory of whoever started it: a small one does.
+_STARTER = """
+import json, os, subprocess, sys
+child = subprocess.Popen(sys.argv[1:], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+_, status, used = os.wait4(child.pid, 0)
+print(json.dumps([os.waitstatus_to_exitcode(status), used.ru_utime + used.ru_stime, used.ru_maxrss]))
+"""
 QT = (sys.executable, "-c", "import PySide6.QtWidgets")
 
 
@@ -24,13 +30,12 @@ class Cost(NamedTuple):
 
 def spent(command: Sequence[str], around: Mapping[str, str]) -> Cost:
     """One run. Raises CalledProcessError for a status that is neither 0 nor that of a refused program, 1."""
-    with Path(os.devnull).open("wb") as nowhere:
-        child = subprocess.Popen(command, stdout=nowhere, stderr=nowhere, env=dict(around))
-        _, status, used = os.wait4(child.pid, 0)
-    child.returncode = os.waitstatus_to_exitcode(status)
-    if child.returncode not in (0, 1):
-        raise subprocess.CalledProcessError(child.returncode, list(command))
-    return Cost(used.ru_utime + used.ru_stime, used.ru_maxrss / 1024)
+    starter = [sys.executable, "-I", "-S", "-c", _STARTER, *command]
+    told = subprocess.run(starter, env=dict(around), check=True, capture_output=True, text=True)
+    status, seconds, kilobytes = json.loads(told.stdout)
+    if status not in (0, 1):
+        raise subprocess.CalledProcessError(status, list(command))
+    return Cost(seconds, kilobytes / 1024)
 
 
 def compared(
