@@ -8,7 +8,9 @@ import sys
 from typing import TYPE_CHECKING
 
 from app.cli.store_command import opened_store
+from app.cli.who_changes import COMMAND_LINE, add_as_option, who_changes
 from app.desk.command_errors import EXIT_OK, CommandError
+from core.access.access_table import Act
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
@@ -32,13 +34,19 @@ def add_parser(subparsers: SubParsers) -> None:
     gone = actions.add_parser("remove", help="take a job out; the part count of its program stays")
     gone.add_argument("place", type=int, metavar="PLACE")
     clear = actions.add_parser("clear", help="take out what is done")
+    for each in (more, move, gone, clear):
+        add_as_option(each)
     clear.add_argument("--all", action="store_true", help="everything, done or not")
 
 
 def run(args: argparse.Namespace) -> int:
     """Does what ``args`` asks; raises CommandError with one sentence."""
     with opened_store(read_only=args.action == "list") as store:
-        sys.stdout.write(_ACTIONS[args.action](store, args))
+        who = who_changes(store, args, Act.JOBS) if args.action != "list" else COMMAND_LINE
+        told = _ACTIONS[args.action](store, args)
+        if who != COMMAND_LINE:
+            store.log_event("change", f"jobs: {told.strip()}", who=who).result()
+    sys.stdout.write(told)
     return EXIT_OK
 
 

@@ -13,7 +13,9 @@ from types import FrameType
 from typing import TYPE_CHECKING
 
 from app.cli.machine_hal import add_hal_parser, write_hal
+from app.cli.who_changes import COMMAND_LINE, add_as_option, who_changes
 from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, EXIT_USAGE, CommandError
+from core.access.access_table import Act
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
@@ -38,6 +40,7 @@ def add_parser(subparsers: SubParsers) -> None:
     peer.add_argument("file", metavar="FILE", help="such as gt75-bench.toml")
     accept = actions.add_parser("accept", help="show what has changed in a machine file, and accept it")
     accept.add_argument("file", metavar="FILE")
+    add_as_option(accept)
     add_hal_parser(actions)
     model = actions.add_parser(
         "mtconnect", help="print the device model (Devices.xml) for an MTConnect agent"
@@ -51,7 +54,9 @@ def run(args: argparse.Namespace) -> int:
         return check(args.file, json_wanted=args.json)
     if args.action == "hal":
         return write_hal(args)
-    acts = {"peer": play, "mtconnect": write_model, "accept": accept}
+    if args.action == "accept":
+        return accept(args.file, args)
+    acts = {"peer": play, "mtconnect": write_model}
     return acts[args.action](args.file)
 
 
@@ -158,7 +163,7 @@ def demand_accepted(machine: Machine) -> None:
     sys.stderr.write("".join(f"{machine.source} has changed: {line}\n" for line in lines))
 
 
-def accept(file: str) -> int:
+def accept(file: str, args: argparse.Namespace) -> int:
     """Shows what has changed, and takes the file as it is now. Raises CommandError."""
     from app.cli.store_command import opened_store
     from app.compose.accepted_machine import differences, key_of, record_of
@@ -166,10 +171,11 @@ def accept(file: str) -> int:
 
     machine = read_machine(file)
     with opened_store() as store:
-        told = differences(machine, store)
+        told, who = differences(machine, store), who_changes(store, args, Act.MACHINE_FILE)
         store.set_setting(key_of(machine), record_of(machine)).result()
         said = "; ".join(str(change) for change in told or ())
-        store.log_event("machine", f"machine file {machine.source} accepted{': ' if said else ''}{said}")
+        by = "" if who == COMMAND_LINE else f" by {who}"
+        store.log_event("machine", f"machine file {machine.source} accepted{by}{': ' if said else ''}{said}")
     sys.stdout.write("".join(f"  {change}\n" for change in told or ()))
     how = (
         "it was not known here" if told is None else f"{len(told)} changes" if told else "it had not changed"

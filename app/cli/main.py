@@ -23,6 +23,7 @@ COMMANDS = (
     "run",
     "offsets",
     "store",
+    "access",
     "machine",
     "serial",
     "alarms",

@@ -10,11 +10,14 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from app.cli.store_command import opened_store
+from app.cli.who_changes import who_changes
 from app.desk.arithmetic import EntryError, value_of
 from app.desk.command_errors import EXIT_OK, CommandError
 from app.desk.toml_file import unknown
+from app.offsets.offset_acts import act_of
 from app.offsets.offset_values import stated_fields
 from app.offsets.offsets_file import ALIASES, TOOL_KEYS, out_of_range, shown
+from core.access.access_table import Act
 from core.store.offset_fields import MM_PER_INCH, Field, Sort
 from core.store.store_rows import (
     FIELDS,
@@ -128,8 +131,10 @@ def _set(args: argparse.Namespace) -> int:
         name: value for name, value in values.items() if kind is Kind.TOOL and name in FIELDS[Kind.SHAPE]
     }
     offset = {name: value for name, value in values.items() if name not in shape}
-    reason, rows = {"why": args.why, "who": "command line"}, list[Row]()
+    rows, acts = list[Row](), [act_of(kind, offset)] if offset else []
+    acts += [Act.SHAPES] if shape else []
     with opened_store() as store:
+        reason = {"why": args.why, "who": who_changes(store, args, *acts)}
         gone = shape.get("kind") == NO_SHAPE
         if shape and not gone:
             _check_shape(store, number, shape, offset)
@@ -251,12 +256,13 @@ def _clear(args: argparse.Namespace) -> int:
     letter = args.offset.upper()
     with opened_store() as store:
         if letter in {**_KIND, **_MILL_KIND}:
-            count = store.clear_offsets(
-                {**_KIND, **_MILL_KIND}[letter], args.why, who="command line"
-            ).result()
+            table = {**_KIND, **_MILL_KIND}[letter]
+            who = who_changes(store, args, act_of(table))
+            count = store.clear_offsets(table, args.why, who=who).result()
         else:
             kind, number = _named(args.offset)
-            count = store.remove_offset(kind, number, args.why, who="command line").result()
+            who = who_changes(store, args, act_of(kind))
+            count = store.remove_offset(kind, number, args.why, who=who).result()
             letter = _name(kind, number)
     if not count:
         sys.stdout.write(f"{letter} was not set: nothing to clear\n")
@@ -301,7 +307,8 @@ def _told(change: Change) -> str:
 
 def _undo(args: argparse.Namespace) -> int:
     with opened_store() as store:
-        who = "command line"
+        kinds = [Kind(args.table)] if args.table else list(Kind)
+        who = who_changes(store, args, *map(act_of, kinds))
         undone = (
             store.undo_offset(args.why, kind=Kind(args.table), who=who)
             if args.table

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
+from app.cli.who_changes import add_as_option
 from core.store.store_rows import Kind
 
 if TYPE_CHECKING:
@@ -45,6 +46,7 @@ def add_parser(subparsers: SubParsers) -> None:
     undo = actions.add_parser("undo", help="take the last change back; again: the one before")
     _add_table(undo)
     for action, why in ((change, "entered"), (clear, "cleared"), (undo, "undo")):
+        add_as_option(action)
         action.add_argument("--why", default=why, help=f"reason, kept in the history (default: {why})")
 
 

@@ -36,6 +36,7 @@ def add_part_options(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--stock", metavar="SPEC", help=f"what the part is made of: {FORMS}")
     parser.add_argument("--keep-stock", action="store_true", help="the store remembers it with the program")
+    parser.add_argument("--as", dest="as_name", metavar="NAME", help="who keeps it, with --keep-stock")
 
 
 def part_setting(args: argparse.Namespace, around: Circumstances) -> PartSetting:
@@ -56,7 +57,13 @@ def with_kept_stock(setting: PartSetting, program: str, args: argparse.Namespace
     from app.compose.kept_stock import keep_stock, kept_with
 
     if args.keep_stock:
+        from app.cli.store_command import opened_store
+        from app.cli.who_changes import who_changes
+        from core.access.access_table import Act
+
         around = circumstances(args)
+        with opened_store() as store:
+            who_changes(store, args, Act.STOCK)
         keep_stock(program, lasting(args.stock), _stick_out(args, around.machine))
     return with_kept(setting, program, kept_with(program), args)
 

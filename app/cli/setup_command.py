@@ -8,6 +8,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from app.cli.store_command import opened_store
+from app.cli.who_changes import add_as_option, note_replaced, who_replaces
 from app.desk.command_errors import EXIT_OK, CommandError
 
 if TYPE_CHECKING:
@@ -25,6 +27,7 @@ def add_parser(subparsers: SubParsers) -> None:
     save.add_argument("--machine", metavar="FILE", help="machine file that goes with it")
     load = actions.add_parser("load", help="take the setup of a FILE; what is here is kept beside it")
     load.add_argument("file", metavar="FILE")
+    add_as_option(load)
     load.add_argument("--check", action="store_true", help="only look at the file, change nothing")
     desktop = actions.add_parser("desktop", help="an entry for the desktop's menu, with icon")
     desktop.add_argument(
@@ -55,7 +58,9 @@ def _load(args: argparse.Namespace) -> int:
         told = check_setup(Path(args.file))
         sys.stdout.write(f"{args.file} is whole: the store, programs: {told.programs}, {told.machine}\n")
         return EXIT_OK
+    who = who_replaces(opened_store, args)
     told, kept = load_setup(Path(args.file))
+    note_replaced(opened_store, who, f"setup taken from {args.file}; the store before is kept as {kept}")
     beside = f"; the store that was here is kept as {kept}" if kept else ""
     sys.stdout.write(
         f"taken from {args.file}: the store, programs: {told.programs}, {told.machine}{beside}\n"

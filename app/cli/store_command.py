@@ -10,8 +10,10 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from app.cli.who_changes import COMMAND_LINE, add_as_option, note_replaced, who_changes, who_replaces
 from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError
 from app.desk.data_folder import data_folder
+from core.access.access_table import Act
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
@@ -28,7 +30,10 @@ def add_parser(subparsers: SubParsers) -> None:
         ("export", "DIR", "write programs, offsets.toml, and events, runs and measured parts as CSV"),
         ("import", "DIR", "take programs, offsets, tools and presets of an exported folder"),
     ):
-        actions.add_parser(name, help=text).add_argument("path", metavar=what)
+        action = actions.add_parser(name, help=text)
+        action.add_argument("path", metavar=what)
+        if name in {"restore", "import"}:
+            add_as_option(action)
     verify = actions.add_parser("verify", help="look at every page, reference and program text")
     verify.add_argument("--json", action="store_true", help="machine-readable output alone on stdout")
 
@@ -76,8 +81,10 @@ def _backup(args: argparse.Namespace) -> int:
 def _restore(args: argparse.Namespace) -> int:
     from core.store import backup
 
+    who = who_replaces(opened_store, args)
     with store_refusals():
         kept = backup.restore(data_folder(), Path(args.path))
+    note_replaced(opened_store, who, f"restored from {args.path}; the store before is kept as {kept}")
     beside = f"; the replaced store is kept as {kept}" if kept else ""
     sys.stdout.write(f"{data_folder()} is as {args.path} has it{beside}\n")
     return EXIT_OK
@@ -104,7 +111,9 @@ def _import(args: argparse.Namespace) -> int:
     with opened_store() as store:
         programs = store_export.program_files(folder)
         mill, why = store_export.mill_rows(folder), f"import of {folder.name}"
-        store.import_all(programs, tools, secondary, why, zero, shapes, mill).result()
+        named = who_changes(store, args, Act.RESTORE)
+        who = "import" if named == COMMAND_LINE else named
+        store.import_all(programs, tools, secondary, why, zero, shapes, mill, who=who).result()
     counts = f"{len(programs)}, tool offsets: {len(tools)}, secondary offsets: {len(secondary)}"
     if any(mill.values()):
         counts += f", tools of a mill: {len(mill[Kind.MILL_TOOL])}, presets: {len(mill[Kind.PRESET])}"

@@ -57,7 +57,8 @@ def file_changes(machine: Machine, kept: Persistence, tell: Callable[[str], None
     def keep() -> None:
         kept.save_setting(key_of(machine), record_of(machine))
         said = "; ".join(str(change) for change in told or ())
-        tell(f"machine file {machine.source} accepted{': ' if said else ''}{said}")
+        by = f" by {kept.who()}" if kept.who() else ""
+        tell(f"machine file {machine.source} accepted{by}{': ' if said else ''}{said}")
 
     if told is None:
         keep()

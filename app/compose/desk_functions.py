@@ -6,6 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from app.compose.program_transfer import PLAIN, SerialLines, proving
+from app.desk.access import Access
 from app.desk.data_folder import BACKUPS, data_folder
 from app.desk.desk import Desk
 from app.desk.latest import Latest
@@ -21,6 +22,7 @@ from app.programs.run_history import RunHistory
 from app.quality.parts_function import MeasuredPartsFunction
 from app.quality.shift_function import ShiftReport
 from app.scope.scope_function import ScopeFunction
+from app.special.access_levels import AccessLevels
 from app.special.backup_and_restore import BackupAndRestore
 from app.special.drive_status import DriveStatus
 from app.special.inputs_outputs import InputsOutputs
@@ -50,6 +52,7 @@ def _backup(desk: Desk, machine: Machine, persistence: Persistence, worker: Late
     def restored() -> None:
         desk.settings.reload()
         desk.counter.reload()
+        desk.access.reload()
 
     backup.restored = restored
     return backup
@@ -93,6 +96,7 @@ def furnish(
     ``workshop`` keeps nothing of what it proves; ``own`` is the operator's folder; ``thumbnail`` draws the
     part of a program.
     """
+    desk.access = desk.book.access = Access(persistence, desk.say, desk.clock)
     desk.settings = SettingsBook(persistence)
     desk.counter = PartCounter(persistence)
     desk.record = RunHistory(persistence)
@@ -109,6 +113,7 @@ def furnish(
     desk.attach(sounds)
     desk.hears = sounds.see
     functions.append(LampsAndSound(desk, machine, sounds))
+    functions.append(AccessLevels(desk, persistence))
     desk.attach(SpecialFunctions(functions, worker))
     desk.attach(_files(desk, persistence, Preview(workshop, thumbnail), own))
 

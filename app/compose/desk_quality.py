@@ -20,6 +20,7 @@ def give_quality(desk: Desk, machine: Machine, journal: Journal | None) -> None:
     """Give the desk what it measures, counts and remembers of parts and inserts."""
     tools = tools_of(machine.kind)
     book = journal.parts_book(tools) if journal is not None else PartsBook(locked=NONE_KEPT, tools=tools)
+    book.access = desk.access
     watch = PartsWatch(desk, book, ToolLifeWatch(book))
     desk.attach(watch)
     desk.watches.append(watch)

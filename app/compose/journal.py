@@ -16,7 +16,8 @@ from app.quality.parts_book import PartsBook
 from core.executor.interrupted_job import InterruptedJob, of_plain, plain
 from core.executor.snapshot import Event
 from core.language.source import Source
-from core.store import backup
+from core.store import backup, people
+from core.store.people import People, PersonRow
 from core.store.store import Store
 from core.store.store_errors import StoreError
 from core.store.store_rows import EventRow, Kind, RunRow, ToolRow, VersionRow
@@ -36,6 +37,7 @@ class Journal(Persistence):
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
+        self.who: Callable[[], str] = str  # has signed in, as the desk knows
         self._lock = threading.Lock()  # held for the blink in which stores or events change hands
         self._held: deque[Event] | None = None  # while a restore is under way
         self._books: list[OffsetBook | PartsBook] = []
@@ -133,7 +135,7 @@ class Journal(Persistence):
 
     def save_version(self, name: str, text: bytes, why: str) -> int:
         """Another version; its number once it is kept. Raises StoreError; not for the screen's thread."""
-        return self.opened().save_program(name, text, why).result()
+        return self.opened().save_program(name, text, why, who=self.who()).result()
 
     def setting(self, key: str) -> object:
         """A setting; None: not set, or nothing is kept."""
@@ -149,6 +151,33 @@ class Journal(Persistence):
         store = self.opened()
         for written in [store.set_setting(key, value) for key, value in values.items()]:
             written.result()
+
+    def note_change(self, text: str) -> None:
+        """Post a line of the log, where people say who they are."""
+        who = self.who()
+        if who:
+            self._post(lambda store: store.log_event("change", text, who=who))
+
+    def note_access(self, text: str, who: str) -> None:
+        """Post a line of the log."""
+        self._post(lambda store: store.log_event("access", text, who=who))
+
+    def people(self) -> People:
+        """Who works at the machine."""
+        store = self._store
+        return store.people() if store else People()
+
+    def keep_person(self, row: PersonRow) -> None:
+        """Back when it is on the disk. Raises StoreError."""
+        self.opened().write(lambda c: people.keep_person(c, row)).result()
+
+    def remove_person(self, name: str) -> None:
+        """Back when it is on the disk. Raises StoreError."""
+        self.opened().write(lambda c: people.remove_person(c, name)).result()
+
+    def remove_people(self) -> None:
+        """Back when it is on the disk. Raises StoreError."""
+        self.opened().write(people.remove_all).result()
 
     def parts(self, program: str) -> int:
         """Parts counted of this program."""

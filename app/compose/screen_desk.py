@@ -49,6 +49,7 @@ from app.editor.editor import Editor
 from app.editor.versions import NoArchive
 from app.offsets.mill_touch import MillTouch
 from app.offsets.offset_effect import Effect
+from core.access.access_table import Act
 from core.executor.executor import Executor
 from core.executor.interrupted_job import InterruptedJob
 from core.executor.recorder import Recorder, recorded_of
@@ -273,7 +274,9 @@ def _desk(
     )
     desk.attach(Effect(drawer(machine), part_comparer(machine, shapes_at_hand, kept)))
     beside = workshop(machine, offsets, left=left, shapes=shapes_at_hand, kept=kept)
-    desk.attach(_editor(beside, journal, machine))
+    editor = _editor(beside, journal, machine)
+    editor.may_save = lambda: desk.access.refusal(Act.PROGRAMS)
+    desk.attach(editor)
     small = thumbnails(machine, shapes_at_hand, kept)
     furnish(desk, machine, keep, workshop(machine, offsets, left=left), thumbnail=small)
     give_mdi(desk, machine, offsets, keep)

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Protocol, TypeVar
 
 from app.desk import interrupted_notice, prompt_line
+from app.desk.access import Access
 from app.desk.alarm_log import AlarmLog
 from app.desk.first_job import FirstJob
 from app.desk.interrupted_notice import NoticeRow
@@ -32,6 +33,7 @@ from app.desk.waiting import how_it_ends
 from app.offsets.offset_book import NONE_KEPT, OffsetBook
 from app.programs.run_history import RunHistory
 from app.special.part_count import PartCounter
+from core.access.access_table import Act
 from core.executor.commands import (
     Command,
     ConfirmStart,
@@ -108,6 +110,7 @@ class Desk:
     clock: Callable[[], float] = time.monotonic
     time_of_day: Callable[[], str] = field(default=partial(time.strftime, "%H:%M:%S"))
     settings: SettingsBook = field(default_factory=SettingsBook)
+    access: Access = field(default_factory=Access)  # who works here, and what he may change
     counter: PartCounter = field(default_factory=PartCounter)
     record: RunHistory = field(default_factory=RunHistory)
     open_record: Callable[[str], None] = field(default=lambda _name: None)  # of an alarm, in the scope
@@ -208,9 +211,17 @@ class Desk:
         """What the large figures show."""
         return Readout(self.settings.now.readout)
 
+    def refused(self, act: Act) -> bool:
+        """Whether the level in force is too low to change this; it is said then, with how to get it."""
+        why = self.access.refusal(act)
+        if why:
+            self.say(why)
+        return bool(why)
+
     def choose_setting(self, name: str, value: object) -> None:
         """Take a choice of the screen; where it cannot be kept it counts until the end, and that is said."""
-        self.keep(partial(self.settings.choose, name, value))
+        if not self.refused(Act.SCREEN):
+            self.keep(partial(self.settings.choose, name, value))
 
     def keep(self, change: Callable[[], None]) -> None:
         """Do what is to be kept; that it is not is said."""
@@ -226,6 +237,7 @@ class Desk:
     def close(self) -> None:
         """End the loading and whatever drives the machine."""
         self.session.close()
+        self.access.close()
         for part in self._attached.values():
             part.close()
         self.shut()
@@ -267,6 +279,7 @@ class Desk:
         """One snapshot, and what the page shows of it; called once a frame."""
         self.hands.turn_knobs()
         snapshot = self.snapshot()
+        self.access.look(snapshot)
         self.answers.look(snapshot)
         self.rebuilding.look(snapshot, self.book, self.post)
         loaded = self.session.now

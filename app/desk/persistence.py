@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from core.store.people import People, PersonRow
 from core.store.store_errors import StoreError
 from core.store.store_rows import EventRow, RunRow
 
@@ -18,10 +19,12 @@ class Persistence:
 
     This one is for scripts and a store that cannot be opened: settings live until the program ends, nothing
     else is kept. Reading may raise StoreError; writing is posted and never waits. ``backup``, ``restore``,
-    ``keep_settings``, ``events``, ``runs`` and ``save_version`` take their time: they are called on a worker.
+    ``keep_settings``, those of people, ``events``, ``runs`` and ``save_version`` take their time: they are
+    called on a worker.
     """
 
     settings: dict[str, object] = field(default_factory=dict)
+    who: Callable[[], str] = str  # has signed in; empty: there are no levels
 
     def setting(self, key: str) -> object:
         """What was kept under this name; None: nothing."""
@@ -35,6 +38,31 @@ class Persistence:
         """The same of several, back when they are on the disk; on a worker. Raises StoreError."""
         for key, value in values.items():
             self.save_setting(key, value)
+
+    def note_change(self, text: str) -> None:
+        """A line of the log, with the name, for a change whose table has no history of its own.
+
+        Nothing where there are no levels.
+        """
+
+    def note_access(self, text: str, who: str) -> None:
+        """A line of the log about levels: who has signed in, which PIN was wrong."""
+
+    def people(self) -> People:
+        """Who works at the machine. Raises StoreError."""
+        return People()
+
+    def keep_person(self, _row: PersonRow) -> None:
+        """Somebody new, or another PIN; on a worker. Raises StoreError."""
+        raise StoreError(NOTHING_KEPT)
+
+    def remove_person(self, _name: str) -> None:
+        """He works here no more; on a worker. Raises StoreError."""
+        raise StoreError(NOTHING_KEPT)
+
+    def remove_people(self) -> None:
+        """Nobody is entered any more: there are no levels; on a worker. Raises StoreError."""
+        raise StoreError(NOTHING_KEPT)
 
     def parts(self, _program: str) -> int:
         """Parts counted of this program."""

@@ -67,6 +67,7 @@ class Editor:
     programs: Path
     samples: Path
     left: Callable[[LeftProgram], None] = field(default=lambda _: None)
+    may_save: Callable[[], str] = str  # why the level in force does not; empty when it may
     stage: Stage = Stage.CLOSED
     document: Document | None = None
     notice: str = ""
@@ -195,7 +196,9 @@ class Editor:
             return
         self.clear()
         self._leaving = leave
-        if not text.strip():
+        if why := self.may_save():
+            self.notice = why
+        elif not text.strip():
             self.notice = messages.EMPTY
         elif document.protected:
             self.stage, self.notice, self._unnamed = Stage.NAMING, messages.SAMPLE, text

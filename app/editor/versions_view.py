@@ -76,7 +76,12 @@ class VersionList(Panel):
         painter.write(upper, f"{version.number}", 2.0, ink)
         painter.write(upper.adjusted(5 * u, 0, 0, 0), at, 1.8, ink, bold=False)
         painter.write(upper, f"{version.size} bytes", 1.6, soft, at=RIGHT, bold=False)
-        put(painter, upper.translated(5 * u, upper.height()), LEFT, version.why)
+        put(
+            painter,
+            upper.translated(5 * u, upper.height()),
+            LEFT,
+            f"{version.why} ({version.who})" if version.who else version.why,
+        )
 
     def _comparison(self, painter: Painter) -> None:
         u, history = self.look.u, self._history

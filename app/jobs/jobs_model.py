@@ -18,6 +18,7 @@ from app.desk.translation import tr
 from app.jobs.job_setup import ProvedJob, Station, findings, missing, stations, tool_name
 from app.jobs.jobs_watch import JobsWatch
 from app.special.parts_counter import whole_number
+from core.access.access_table import Act
 from core.executor.snapshot import Snapshot
 from core.language.diagnostics import Severity
 from core.store import job_queue
@@ -233,7 +234,11 @@ class JobsModel:
             self.desk.say(MARK_ONE)
         elif 1 <= to <= len(self.jobs):
             self.desk.clear()
-            self._write(lambda c: job_queue.move(c, job.id, to), partial(self._mark, to - 1))
+            self._write(
+                lambda c: job_queue.move(c, job.id, to),
+                partial(self._mark, to - 1),
+                f"job {job.program}: now {to}",
+            )
 
     def _mark(self, row: int) -> None:
         self.marked = row
@@ -246,7 +251,12 @@ class JobsModel:
             return
         words = tr("PRESS Y TO TAKE {program} OUT OF THE QUEUE, {made} OF {wanted} MADE; ESC KEEPS IT")
         words = words.format(program=job.program, made=job.made, wanted=job.wanted)
-        self.desk.ask(words, partial(self._write, lambda c: job_queue.remove(c, job.id)))
+        self.desk.ask(
+            words,
+            partial(
+                self._write, lambda c: job_queue.remove(c, job.id), change=f"job {job.program} taken out"
+            ),
+        )
 
     def clear(self) -> None:
         """Jobs that are done go, after asking."""
@@ -258,10 +268,13 @@ class JobsModel:
         self.desk.ask(words.format(count=done), partial(self._write, _clear_done))
 
     def _write(
-        self, operation: Callable[[sqlite3.Connection], object], done: Callable[[], None] = lambda: None
+        self,
+        operation: Callable[[sqlite3.Connection], object],
+        done: Callable[[], None] = lambda: None,
+        change: str = "jobs: those that are done are cleared",
     ) -> None:
         self.desk.clear()
-        self.watch.parts.book.write(operation, done, self.watch.parts.refuse)
+        self.watch.parts.book.write(Act.JOBS, operation, done, self.watch.parts.refuse, change)
 
     def typed(self, key: str) -> bool:
         """Arrows mark; what is asked takes the rest."""
@@ -284,7 +297,10 @@ class JobsModel:
         text, job = self.entry.text.strip(), self.job
         if self.asking == "note":
             if job is not None:
-                self._write(lambda c: job_queue.change(c, job.id, job.wanted, text))
+                self._write(
+                    lambda c: job_queue.change(c, job.id, job.wanted, text),
+                    change=f"job {job.program}: {text}",
+                )
             self.asking = ""
             return
         try:
@@ -294,9 +310,16 @@ class JobsModel:
             return
         program, last = self.program, len(self.jobs)
         if program:
-            self._write(lambda c: job_queue.add(c, program, wanted), partial(self._mark, last))
+            self._write(
+                lambda c: job_queue.add(c, program, wanted),
+                partial(self._mark, last),
+                f"job {program}: {wanted} parts",
+            )
         elif job is not None:
-            self._write(lambda c: job_queue.change(c, job.id, wanted, job.note))
+            self._write(
+                lambda c: job_queue.change(c, job.id, wanted, job.note),
+                change=f"job {job.program}: {job.wanted} → {wanted} parts",
+            )
         self.asking = ""
 
     def takes(self, key: str) -> bool:

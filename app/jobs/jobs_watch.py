@@ -14,6 +14,7 @@ from app.desk.translation import tr
 from app.jobs.job_setup import ProvedJob, missing
 from app.jobs.next_job import JobProofs
 from app.quality.parts_watch import PartsWatch
+from core.access.access_table import Act
 from core.executor.snapshot import Snapshot
 from core.quality.tool_life import ToolLife
 from core.store import job_queue
@@ -100,7 +101,11 @@ class JobsWatch:
             self._loading = None
             if loaded.path == path:
                 self.parts.book.write(
-                    lambda connection: job_queue.begin(connection, job.id), _nothing, self.parts.refuse
+                    Act.JOBS,
+                    lambda connection: job_queue.begin(connection, job.id),
+                    _nothing,
+                    self.parts.refuse,
+                    f"job {job.program} begun",
                 )
         elif not self.desk.asked:
             self._loading = None

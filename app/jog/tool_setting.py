@@ -10,8 +10,9 @@ from app.desk.sheet import edited
 from app.desk.translation import tr
 from app.jog import jog_touch_off
 from app.jog.jog_touch_off import TOUCH_X, TOUCH_Z, TOUCHES, TouchOff
+from app.offsets.offset_acts import CORRECTIONS
 from app.offsets.offset_book import OffsetBook
-from app.offsets.offset_history import CORRECTIONS, OffsetHistory, refusal
+from app.offsets.offset_history import OffsetHistory, refusal
 from app.offsets.offset_values import (
     TOOL_FIELDS,
     Mode,
@@ -197,7 +198,7 @@ class ToolSetting:
 
     def barred(self, what: str, snapshot: Snapshot) -> str:
         """Why this is not asked of the tool now; empty when it may be."""
-        why = self.book.locked or refusal(snapshot, correction=what in CORRECTIONS)
+        why = self.book.locked or refusal(snapshot, correction=what in CORRECTIONS[Kind.TOOL])
         if why or not self.number:
             return why or tr("WHICH TOOL? PRESS T AND TYPE ITS NUMBER FIRST")
         if what in TOUCHES:

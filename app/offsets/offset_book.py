@@ -7,7 +7,10 @@ from concurrent.futures import Future
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from app.desk.access import Access
+from app.offsets.offset_acts import act_of
 from app.offsets.offsets_in_force import PRESET, preset_of
+from core.access.access_table import Act
 from core.store.store_errors import StoreError
 from core.store.store_rows import (
     Change,
@@ -34,8 +37,8 @@ SAVING = "STILL SAVING THE CHANGE BEFORE: PRESS RETURN AGAIN"
 class OffsetBook:
     """Tool, secondary and zero offsets and tool shapes by number, mm and degrees, X a radius.
 
-    A change is posted to the store's writer and shown when it is on the disk; ``poll`` is called once a
-    frame. Without ``store`` nothing can be changed, and ``locked`` says why.
+    A change that the level in force allows is posted to the store's writer and shown when it is on the disk;
+    ``poll`` is called once a frame. Without ``store`` nothing can be changed, and ``locked`` says why.
     """
 
     store: Store | None = None
@@ -47,6 +50,7 @@ class OffsetBook:
     mill_tools: dict[int, MillRow] = field(default_factory=dict)
     presets: dict[int, PresetRow] = field(default_factory=dict)
     preset: int = 0  # the one in force on a mill; 0: that of the machine file
+    access: Access = field(default_factory=Access)  # who changes, and whether he may
     at: int = 1  # the tool that the pages of tools stand at
     changes: int = 0  # how many were saved
     _saving: Future[Any] | None = None
@@ -91,37 +95,47 @@ class OffsetBook:
 
     def change(self, kind: Kind, number: int, values: Mapping[str, Value], why: str) -> str:
         """Save some fields of an offset and keep the rest."""
-        return self._post(lambda store: store.set_offset(kind, number, why, values))
+        return self._post(
+            act_of(kind, values), lambda store, who: store.set_offset(kind, number, why, values, who=who)
+        )
 
     def touch_off(self, number: int, touch: Touch, why: str) -> str:
         """Set a tool by what it touched; with the master all others follow."""
-        return self._post(lambda store: store.touch_off(number, touch, why))
+        return self._post(Act.TOOLS, lambda store, who: store.touch_off(number, touch, why, who=who))
 
     def choose_master(self, number: int, why: str) -> str:
         """Make this tool the master; 0: no tool is."""
-        return self._post(lambda store: store.choose_master(number, why))
+        return self._post(Act.TOOLS, lambda store, who: store.choose_master(number, why, who=who))
 
     def choose_preset(self, number: int) -> str:
         """Another preset is in force; 0: that of the machine file."""
-        return self._post(lambda store: store.set_setting(PRESET, number))
+        before = self.preset
+
+        def choose(store: Store, _who: str) -> Future[None]:
+            self.access.persistence.note_change(f"preset in force: {before} → {number}")
+            return store.set_setting(PRESET, number)
+
+        return self._post(Act.PRESETS, choose)
 
     def remove_shape(self, number: int, why: str) -> str:
         """A tool without a shape again."""
-        return self._post(lambda store: store.remove_shape(number, why))
+        return self._post(Act.SHAPES, lambda store, who: store.remove_shape(number, why, who=who))
 
     def clear(self, kind: Kind, why: str) -> str:
         """All offsets of this kind at once."""
-        return self._post(lambda store: store.clear_offsets(kind, why))
+        return self._post(act_of(kind), lambda store, who: store.clear_offsets(kind, why, who=who))
 
     def undo(self, kind: Kind) -> str:
         """Take the last change of this kind back."""
-        return self._post(lambda store: store.undo_offset(kind=kind))
+        return self._post(act_of(kind), lambda store, who: store.undo_offset(kind=kind, who=who))
 
-    def _post(self, write: Callable[[Store], Future[Any]]) -> str:
+    def _post(self, act: Act, write: Callable[[Store, str], Future[Any]]) -> str:
         if self.store is None or self.busy:
             return self.locked or SAVING
+        if why := self.access.refusal(act):
+            return why
         try:
-            self._saving = write(self.store)
+            self._saving = write(self.store, self.access.who)
         except StoreError as error:
             return str(error)
         return ""

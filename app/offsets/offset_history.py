@@ -26,7 +26,6 @@ LETTERS = {
     Kind.MILL_TOOL: "T",
     Kind.PRESET: "PRESET ",
 }
-CORRECTIONS = frozenset({"wear_x", "wear_z", "remark"})  # of a tool; all of a secondary offset
 
 
 def refusal(snapshot: Snapshot, *, correction: bool) -> str:

@@ -5,7 +5,8 @@ from __future__ import annotations
 from app.desk.arithmetic import EntryError
 from app.desk.desk import Desk
 from app.desk.translation import tr
-from app.offsets.offset_history import CORRECTIONS, counts_from
+from app.offsets.offset_acts import CORRECTIONS
+from app.offsets.offset_history import counts_from
 from app.offsets.offset_table import Proposed
 from app.offsets.offset_values import (
     not_set,
@@ -110,7 +111,7 @@ class ToolOffsets(ToolEntry):
     @property
     def corrects(self) -> bool:
         """Wear and remark may change while parts run."""
-        return self.name in CORRECTIONS
+        return self.name in CORRECTIONS[Kind.TOOL]
 
     def cell_barred(self) -> str:
         """Why the cell under the cursor may not be changed now; empty when it may."""

@@ -21,6 +21,7 @@ from app.desk.prompt_line import UNDER_WAY
 from app.desk.sheet import STEPS, Key, edited, following
 from app.desk.translation import tr
 from app.part.stock_entry import StockEntry, StockField, StockKind
+from core.access.access_table import Act
 from core.language.diagnostics import Diagnostic, Severity
 from core.part.stock_spec import StockError
 from core.store.store_errors import StoreError
@@ -366,9 +367,19 @@ class PartSheet:
     def _keep(self, kept: KeptPart, said: str) -> None:
         """On the worker, to the disk; then the program is proved anew."""
         name = self.name
+        if self.desk.refused(Act.STOCK):
+            return
+        told = (
+            f"{name}: stock {kept.stock or 'not said'}, silenced checks {', '.join(kept.silenced) or 'none'}"
+        )
+
+        def done(_none: None) -> None:
+            self.keep.note_change(told)
+            self._is_kept(name, said)
+
         self.worker.queue(
             partial(self.keep.keep_settings, kept.settings(name)),
-            lambda _none: self._is_kept(name, said),
+            done,
             lambda why: self.desk.say(tr("NOT KEPT: {why}").format(why=why)),
         )
 

@@ -18,6 +18,7 @@ from app.desk.sheet import Entry
 from app.desk.translation import tr
 from app.programs.program_rows import Program
 from app.programs.whole_file import FileError, present, write_whole
+from core.access.access_table import Act
 from core.drawings.drawing_file import is_drawing
 from core.store.program_records import check_name
 from core.store.store_errors import StoreError
@@ -120,6 +121,8 @@ class CopyRenameDelete:
         here = self.marked_program()
         if here is None:
             self.desk.say(NONE)
+        elif self.desk.refused(Act.PROGRAMS):
+            return
         elif question == RENAME and self._fixed(here):
             self.desk.say(self._fixed(here))
         else:
@@ -155,6 +158,8 @@ class CopyRenameDelete:
         if here is None or self._fixed(here):
             self.desk.say(self._fixed(here) if here else NONE)
             return
+        if self.desk.refused(Act.PROGRAMS):
+            return
         asked = tr("PRESS Y TO DELETE {name} (ITS VERSIONS ARE KEPT), ESC TO LEAVE IT")
         self.desk.ask(asked.format(name=here.name), lambda: self._delete(here))
 
@@ -174,6 +179,7 @@ class CopyRenameDelete:
         def done(name: str) -> None:
             self.question = ""
             self.desk.done(tr(words).format(name=name))
+            self.persistence.note_change(f"program {words.format(name=name).lower()}")
             self.changed(name)
 
         self.worker.queue(work, done, self.desk.refuse)

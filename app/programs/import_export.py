@@ -21,6 +21,7 @@ from app.programs.copy_rename_delete import BUSY, checked_name, same_name_in
 from app.programs.folder_chooser import FolderChooser, chooser_sheet
 from app.programs.removable_media import Medium, why_not
 from app.programs.whole_file import FileError, present, settle, write_out, write_whole
+from core.access.access_table import Act
 from core.drawings.drawing_file import is_drawing
 from core.language.source import SourceError, load_source
 from core.store.store_errors import StoreError
@@ -177,6 +178,8 @@ class ImportExport:
 
     def begin(self, shown: tuple[Path, ...], marked: Path | None, out: bool) -> None:
         """Open the chooser at the list of places."""
+        if not out and self.desk.refused(Act.PROGRAMS):
+            return
         self.open, self.out, self.all, self.one = True, out, shown, marked
         self._asked = ()
         self.chooser.at = self.chooser.top = None
@@ -310,6 +313,8 @@ class ImportExport:
             return
         self._asked = ()
         count = len(carried.done)
+        if not self.out:
+            self.persistence.note_change(f"programs imported: {', '.join(carried.done)}")
         if self.out:
             words = tr("{count} COPIED, READ BACK AND ON THE DISK: A STICK IS SAFE TO REMOVE").format(
                 count=count

@@ -14,6 +14,7 @@ from app.offsets.offset_values import Mode
 from app.quality.parts_book import feature_of, row_of
 from app.quality.parts_watch import PartsWatch
 from app.quality.section import NO_PROGRAM, QualitySection, mark_of, signed_size, size, typed_length
+from core.access.access_table import Act
 from core.executor.snapshot import Snapshot
 from core.quality.measured_feature import (
     NAME_LONGEST,
@@ -254,7 +255,11 @@ class FeaturesSection(QualitySection):
             self.desk.refuse(str(error))
             return
         row = row_of(draft.feature, self.program, draft.id)
-        self._write(lambda c: measured_parts.save_feature(c, row), partial(self._kept, row.name))
+        self._write(
+            lambda c: measured_parts.save_feature(c, row),
+            partial(self._kept, row.name),
+            f"{row.name} entered",
+        )
 
     def _kept(self, name: str) -> None:
         self.draft = None
@@ -270,18 +275,22 @@ class FeaturesSection(QualitySection):
         done = partial(self.desk.say, tr("{name} REMOVED").format(name=row.name))
         self.desk.ask(
             asked.format(name=row.name),
-            lambda: self._write(lambda c: measured_parts.retire_feature(c, row.id), done),
+            lambda: self._write(
+                lambda c: measured_parts.retire_feature(c, row.id), done, f"{row.name} removed"
+            ),
         )
 
-    def _write(self, operation: Callable[..., object], done: Callable[[], None]) -> None:
-        self.watch.book.write(operation, done, self.watch.refuse)
+    def _write(self, operation: Callable[..., object], done: Callable[[], None], change: str) -> None:
+        told = f"measured on {self.program}: {change}"
+        self.watch.book.write(Act.FEATURES, operation, done, self.watch.refuse, told)
 
     def _turn_waits(self) -> None:
         if not self.program:
             self.desk.say(NO_PROGRAM)
             return
         self.desk.clear()
-        self.desk.keep(self.watch.turn_waits)
+        if not self.desk.refused(Act.FEATURES):
+            self.desk.keep(self.watch.turn_waits)
 
     def prompt(self) -> str:
         """What can be done here."""

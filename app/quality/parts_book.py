@@ -8,7 +8,9 @@ from dataclasses import dataclass, field
 from datetime import UTC, datetime, timedelta
 from typing import Any
 
+from app.desk.access import Access
 from app.desk.latest import Latest
+from core.access.access_table import Act
 from core.quality.measured_feature import CorrectedBy, Feature, FeatureKind
 from core.store import measured_parts, part_cycles, tool_lives
 from core.store.job_queue import JobRow
@@ -124,6 +126,7 @@ class PartsBook:
     locked: str = ""
     tools: Kind = Kind.TOOL  # the table of this machine's tools
     now: PartsData = field(default_factory=PartsData)
+    access: Access = field(default_factory=Access)  # who changes, and whether he may
     trouble: str = ""  # why the last reading or writing failed
     loads: int = 0  # how often ``now`` was read
     worker: Latest = field(default_factory=lambda: Latest("measured-parts"))
@@ -205,14 +208,29 @@ class PartsBook:
         return not (self.busy or self._stale or self._behind is not None or self._reading)
 
     def write(
-        self, operation: Operation[Any], done: Callable[[], None], failed: Callable[[str], None]
+        self,
+        act: Act,
+        operation: Operation[Any],
+        done: Callable[[], None],
+        failed: Callable[[str], None],
+        change: str = "",
     ) -> None:
-        """Have something kept; ``done`` is called by ``look`` when it is on the disk, else ``failed``."""
-        if self.store is None:
-            failed(self.locked or NONE_KEPT)
+        """Have something kept; ``done`` is called by ``look`` when it is on the disk, else ``failed``.
+
+        ``change`` is what the log says of it, where people say who they are.
+        """
+        why = (self.locked or NONE_KEPT) if self.store is None else self.access.refusal(act)
+        if self.store is None or why:
+            failed(why)
             return
+
+        def kept() -> None:
+            if change:
+                self.access.persistence.note_change(change)
+            done()
+
         try:
-            self._saving.append((self.store.write(operation), done, failed))
+            self._saving.append((self.store.write(operation), kept, failed))
         except StoreError as error:
             failed(str(error))
 

@@ -85,7 +85,10 @@ class PartsWatch:
         """Parts wait for the plan, or go on. Raises StoreError when it is not kept."""
         on = not self.waits
         self._waits = self.program, on
-        self.desk.counter.persistence.save_setting(_key(self.program), on or None)
+        persistence = self.desk.counter.persistence
+        persistence.save_setting(_key(self.program), on or None)
+        told = "wait to be measured" if on else "do not wait any more"
+        persistence.note_change(f"parts of {self.program} {told}")
 
     def due(self) -> str:
         """What the prompt line tells besides: what to measure, which insert to change; empty: nothing."""

@@ -21,6 +21,7 @@ from app.quality.plots import ChartDrawing
 from app.quality.readings_file import write_readings
 from app.quality.section import QualitySection, mark_of, signed_size, size, typed_length
 from app.quality.wear_correction import correction, proposal
+from core.access.access_table import Act
 from core.executor.snapshot import Snapshot
 from core.quality.quality_errors import QualityError
 from core.store import measured_parts
@@ -166,7 +167,11 @@ class ReadingsSection(QualitySection):
             0, taken.feature.id, taken.part, taken.value, taken.unit, "", taken.source, taken.gauge
         )
         self.watch.book.write(
-            lambda c: measured_parts.add_reading(c, row), partial(self._kept, taken), self.watch.refuse
+            Act.READINGS,
+            lambda c: measured_parts.add_reading(c, row),
+            partial(self._kept, taken),
+            self.watch.refuse,
+            f"{taken.feature.name} of part {taken.part} of {self.data.program} measured: {taken.value:g} mm",
         )
 
     def _kept(self, taken: NewReading) -> None:
@@ -191,7 +196,11 @@ class ReadingsSection(QualitySection):
         self.desk.ask(
             asked.format(size=size(last.value, self.mode), part=last.part),
             lambda: self.watch.book.write(
-                lambda c: measured_parts.void_reading(c, last.id), done, self.watch.refuse
+                Act.READINGS,
+                lambda c: measured_parts.void_reading(c, last.id),
+                done,
+                self.watch.refuse,
+                f"{feature.name} of part {last.part} of {self.data.program} taken out: {last.value:g} mm",
             ),
         )
 

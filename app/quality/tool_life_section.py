@@ -14,6 +14,7 @@ from app.desk.sheet import Key, Row, Sheet, following
 from app.desk.translation import tr
 from app.quality.parts_watch import PartsWatch
 from app.quality.section import QualitySection
+from core.access.access_table import Act
 from core.executor.snapshot import Snapshot
 from core.quality.quality_errors import QualityError
 from core.quality.tool_life import LifeState, ToolLife, check_life
@@ -117,7 +118,15 @@ class ToolLifeSection(QualitySection):
             raise EntryError(str(error)) from error
         row = LifeRow(wanted.number, wanted.limit_parts, wanted.limit_seconds, wanted.warn, wanted.stops)
         done = partial(self.desk.say, tr("T{number} SAVED").format(number=wanted.number))
-        self.watch.book.write(lambda c: tool_lives.set_limits(c, row), done, self.watch.refuse)
+        minutes = f"{row.limit_seconds / 60.0:g} min"
+        told = f"life of T{row.number}: {row.limit_parts} parts, {minutes}, warn at {row.warn:.0%}"
+        self.watch.book.write(
+            Act.LIVES,
+            lambda c: tool_lives.set_limits(c, row),
+            done,
+            self.watch.refuse,
+            f"{told}, {'stops' if row.stops else 'does not stop'}",
+        )
         return True
 
     def turn_stop(self) -> None:

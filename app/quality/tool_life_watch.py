@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 
 from app.desk.translation import tr
 from app.quality.parts_book import PartsBook
+from core.access.access_table import Act
 from core.executor.snapshot import CYCLE, Snapshot
 from core.quality.tool_life import LifeState, ToolLife
 from core.store import tool_lives
@@ -118,12 +119,12 @@ class ToolLifeWatch:
     def change_insert(self, number: int, why: str, said: Callable[[str], None]) -> None:
         """A fresh insert is in the holder: counting begins at nought. ``said`` is told what became of it."""
         parts, seconds = self.counted.get(number, (0, 0.0))
-        known = number in self.counted
+        known, who = number in self.counted, self.book.access.persistence.who()
 
         def operation(connection: sqlite3.Connection) -> None:
             if known:
                 tool_lives.set_use(connection, number, parts, seconds, self.book.tools)
-            tool_lives.change_insert(connection, number, why, self.book.tools)
+            tool_lives.change_insert(connection, number, why, self.book.tools, who)
 
         def done() -> None:
             more_parts, more_seconds = self.counted.get(number, (parts, seconds))
@@ -135,7 +136,7 @@ class ToolLifeWatch:
                 words = tr("T{number}: A FRESH TOOL, ITS LIFE BEGINS AT NOUGHT")
             said(words.format(number=number))
 
-        self.book.write(operation, done, said)
+        self.book.write(Act.INSERTS, operation, done, said)
 
     def set_used(self, number: int, seconds: float, said: Callable[[str], None]) -> None:
         """A tool that has cut so long already is in the spindle; 0: a fresh one."""
@@ -151,9 +152,11 @@ class ToolLifeWatch:
             said(tr("T{number} SAVED").format(number=number))
 
         self.book.write(
+            Act.INSERTS,
             lambda connection: tool_lives.set_use(connection, number, parts, seconds, self.book.tools),
             done,
             said,
+            f"T{number} has cut {seconds / 60.0:.1f} min",
         )
 
     def forget(self) -> None:

@@ -19,6 +19,7 @@ from app.quality.plots import ChartDrawing, Curve, Level, Plot
 from app.quality.section import QualitySection
 from app.quality.shift_figures import spans_of, stops_of
 from app.quality.shift_times import SETTING, hours_of, shift_of
+from core.access.access_table import Act
 from core.executor.snapshot import Snapshot
 from core.quality.availability import Availability, Span, availability
 from core.quality.stops import pareto, times_between
@@ -261,8 +262,11 @@ class TrendsSection(QualitySection):
         first, _, last = text.partition("-")
         if not (first.isdigit() and last.isdigit() and int(first) < 24 and int(last) <= 24):
             raise EntryError(tr("a shift is two hours of the day, such as 6-14"))
+        if self.desk.refused(Act.FEATURES):
+            return False
         self._shift = int(first), int(last)
         hours = list(self._shift)
+        self.desk.counter.persistence.note_change(f"hours of a shift: {first} to {last}")
         self.desk.keep(lambda: self.desk.counter.persistence.save_setting(SETTING, hours))
         return True
 

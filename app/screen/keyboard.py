@@ -115,6 +115,8 @@ class Behind(Protocol):
 
     def is_text(self, key: str) -> bool: ...
 
+    def used(self) -> None: ...
+
     def forgotten(self, seconds: float) -> None: ...
 
     def stops_at(self, event: QInputEvent) -> bool: ...
@@ -213,6 +215,8 @@ class Keyboard(QObject):
     def eventFilter(self, _watched: QObject, event: QEvent) -> bool:
         """Whether an event goes no further."""
         kind = event.type()
+        if kind in _PRESSES or kind in _KEYS:
+            self._behind.used()
         if kind in _KEYS and isinstance(event, QKeyEvent):
             return not self._sending and self._key(event)
         if kind in _PRESSES and isinstance(event, QInputEvent):

@@ -262,6 +262,11 @@ class MainWindow(QWidget):
         """Whether an axis or a program is moving."""
         return self.frame is not None and self.frame.desk.snapshot().state in MOVING
 
+    def used(self) -> None:
+        """A key or a finger: who has signed in is there."""
+        if self.frame is not None:
+            self.frame.desk.access.used()
+
     def is_text(self, key: str) -> bool:
         """Whether a character goes to an entry now."""
         return self.frame is not None and self.frame.is_text(key)

@@ -27,11 +27,12 @@ SIGN = 5.0  # units: width of the sign
 
 
 class TitleLine(Panel):
-    """Program of the desk, page, program name, machine state in words, clock."""
+    """Program of the desk, page, program name, machine state in words, who is in force, clock."""
 
     ground = "panel"
 
     page = Shown("")
+    access = Shown("")  # who has signed in, and the level in force; empty: there are no levels
     _shown = Shown(("", "STARTING", Tone.OFF, "", ""))
 
     @property
@@ -56,6 +57,11 @@ class TitleLine(Panel):
         painter.write(QRectF(27 * u, 0, 31 * u, high), program or tr("NO PROGRAM"), 2.4, "text", raw=True)
         self._draw_state(painter, state, tone)
         right = QRectF(self.width() - 47 * u, 0, 30 * u, high)
+        if self.access:
+            half = 0.5 * high
+            below = QRectF(right.x(), half, right.width(), half - 0.2 * u)
+            painter.write(below, self.access, 1.7, "accent", at=RIGHT)
+            right.setHeight(half)
         painter.write(right, machine, 1.8, "soft", at=RIGHT, bold=False)
         right = QRectF(self.width() - 16 * u, 0, 14.6 * u, high)
         painter.write(right, clock, 2.2, "text", at=RIGHT, bold=False)

@@ -304,6 +304,7 @@ class Frame(QWidget):
         desk = self.desk
         name = view.program or loaded.name
         self.title.page = self.page.NAME
+        self.title.access = desk.access.words
         self.title.show_state(name, view.state, view.tone, desk.machine, desk.time_of_day())
         text = self.page.asks() or desk.prompt(snapshot, loaded, self.page.prompt())
         reason = prompt_line.reason(view) or prompt_line.remedy(loaded, text)

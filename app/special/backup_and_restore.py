@@ -19,6 +19,7 @@ from app.desk.translation import tr
 from app.programs.removable_media import Stick, sticks
 from app.programs.whole_file import FileError
 from app.special.special_functions import SpecialFunction
+from core.access.access_table import Act
 from core.executor.snapshot import Snapshot
 
 BARRED = "A PROGRAM IS UNDER WAY: NOTHING IS RESTORED BEFORE IT HAS ENDED"
@@ -114,6 +115,8 @@ class BackupAndRestore(SpecialFunction):
         return True
 
     def _backup(self, place: Place) -> None:
+        if self.desk.refused(Act.BACKUPS):
+            return
         name = f"{datetime.now().strftime('%Y-%m-%d-%H%M%S')}{ENDING}"
         target = place.path / name
         self.busy = "Backing up …"
@@ -136,6 +139,8 @@ class BackupAndRestore(SpecialFunction):
         self.look()
 
     def _restore(self, place: Place) -> None:
+        if self.desk.refused(Act.RESTORE):
+            return
         if self.desk.snapshot().state in UNDER_WAY:
             self.desk.say(BARRED)
             return
@@ -155,6 +160,7 @@ class BackupAndRestore(SpecialFunction):
         self.desk.restoring = False
         self.restored()
         where = kept.name if kept else "—"
+        self.persistence.note_change(f"restored; what was there before is {where}")
         self.desk.done(tr("RESTORED; WHAT WAS THERE BEFORE IS KEPT AS {name}").format(name=where))
         self.look()
 

@@ -11,6 +11,7 @@ from app.desk.sheet import Key, Row, Sheet
 from app.desk.sounds import Sounds
 from app.desk.translation import tr
 from app.special.special_functions import SpecialFunction
+from core.access.access_table import Act
 from core.executor.commands import ForceOutput
 from core.executor.signal_kinds import SignalKinds
 from core.executor.snapshot import Snapshot
@@ -141,15 +142,18 @@ class LampsAndSound(SpecialFunction):
         kind = KINDS[self.marked]
         if SIGNALS[kind].tones:
             silent = self.sounds.silent ^ {kind}
-            self.desk.clear()
-            self.desk.keep(lambda: self.sounds.choose(self.sounds.volume, silent))
+            self._choose(self.sounds.volume, silent)
         else:
             self.desk.say("A CYCLE THAT RUNS IS HEARD ANYWAY: IT HAS A LAMP ALONE")
         return True
 
     def _louder(self, by: int) -> None:
+        self._choose(self.sounds.volume + by, self.sounds.silent)
+
+    def _choose(self, volume: int, silent: frozenset[str]) -> None:
         self.desk.clear()
-        self.desk.keep(lambda: self.sounds.choose(self.sounds.volume + by, self.sounds.silent))
+        if not self.desk.refused(Act.SCREEN):
+            self.desk.keep(lambda: self.sounds.choose(volume, silent))
 
     def try_out(self) -> None:
         """The sound of a part that is done, as loud as they are."""

@@ -20,7 +20,7 @@ FILTERS: Mapping[str, frozenset[str]] = {
     "ALL": frozenset(),
     "ALARMS": frozenset({"alarm", "estop", "starved"}),
     "RUNS": frozenset({"load", "start", "end", "part", "uncounted", "stop"}),
-    "OPERATOR": frozenset({"switch", "override", "refused", "force", "offsets"}),
+    "OPERATOR": frozenset({"switch", "override", "refused", "force", "offsets", "change", "access"}),
 }
 
 
@@ -143,4 +143,5 @@ def _row(event: EventRow) -> Row:
     at = local_time(event.at)
     line = str(event.line) if event.line else ""
     alarm = event.kind == "alarm"
-    return Row((at, event.kind, event.text, line), True if alarm else None, Tone.ALARM)
+    text = f"{event.text} ({event.who})" if event.who else event.text
+    return Row((at, event.kind, text, line), True if alarm else None, Tone.ALARM)

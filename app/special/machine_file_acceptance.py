@@ -10,6 +10,7 @@ from app.desk.machine_status import Tone
 from app.desk.sheet import Key, Row, Sheet
 from app.desk.translation import tr
 from app.special.special_functions import SpecialFunction
+from core.access.access_table import Act
 from core.executor.snapshot import Snapshot, State
 
 _OFF = frozenset({State.DISABLED, State.ESTOP, State.FAULT})
@@ -49,6 +50,8 @@ class MachineFileAcceptance(SpecialFunction):
         return {"F2": Key("ACCEPT", self._accept)} if self.changes.changes else {}
 
     def _accept(self) -> None:
+        if self.desk.refused(Act.MACHINE_FILE):
+            return
         if self.desk.snapshot().state not in _OFF:
             self.desk.say(tr("A CHANGED MACHINE FILE IS ACCEPTED WITH THE DRIVES OFF"))
         else:

@@ -94,18 +94,21 @@ class PartCounter:
 
     def set_target(self, target: int) -> None:
         """So many parts, 0: no target. Raises StoreError when it is not kept."""
-        self.target, self._announced = target, -1
+        before, self.target, self._announced = self.target, target, -1
         self.persistence.save_setting(_key(self.program), target or None)
+        self.persistence.note_change(f"parts of {self.program} stop at: {before} → {target}")
 
     def correct(self, by: int) -> None:
         """Parts that were made otherwise, or are scrap. Raises StoreError when it is not kept."""
         self.count, self._announced = self.count + by, -1
         self.persistence.correct_parts(self.program, by)
+        self.persistence.note_change(f"parts of {self.program}: {self.count - by} → {self.count}")
 
     def reset(self) -> None:
         """The count to nought. Raises StoreError when it is not kept."""
-        self.count, self._announced = 0, -1
+        before, self.count, self._announced = self.count, 0, -1
         self.persistence.reset_parts(self.program)
+        self.persistence.note_change(f"parts of {self.program}: {before} → 0")
 
 
 def _key(program: str) -> str:

@@ -11,6 +11,7 @@ from app.desk.sheet import Key, Row, Sheet
 from app.desk.translation import tr
 from app.special.part_count import MOST, PartCounter
 from app.special.special_functions import FigureFunction
+from core.access.access_table import Act
 from core.executor.snapshot import Snapshot
 
 RESET = "PRESS Y TO PUT THE COUNT TO NOUGHT, ESC TO KEEP IT"
@@ -69,6 +70,8 @@ class PartsCounterFunction(FigureFunction):
         """One part that was not counted, or one that is scrap."""
         if not self.counter.program:
             self.desk.say(NO_PROGRAM)
+        elif self.desk.refused(Act.COUNTS):
+            return
         elif self.counter.count + by < 0:
             self.desk.done("THE COUNT IS AT NOUGHT")
         else:
@@ -79,6 +82,8 @@ class PartsCounterFunction(FigureFunction):
         """Count to nought, after asking."""
         if not self.counter.program:
             self.desk.say(NO_PROGRAM)
+        elif self.desk.refused(Act.COUNTS):
+            return
         elif self.counter.count == 0:
             self.desk.done("THE COUNT IS AT NOUGHT")
         else:
@@ -91,6 +96,8 @@ class PartsCounterFunction(FigureFunction):
             return False
         if self.counter.of_job:
             self.desk.say("REFUSED: A JOB IS UNDER WAY AND HAS ITS OWN COUNT; CHANGE THAT IN JOBS (SHIFT+F6)")
+            return False
+        if self.desk.refused(Act.COUNTS):
             return False
         target = whole_number(text)
         if 0 < target <= self.counter.count:

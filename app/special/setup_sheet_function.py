@@ -16,6 +16,7 @@ from app.programs.removable_media import Stick, sticks
 from app.report.pdf_file import Paper
 from app.special.backup_and_restore import Place
 from app.special.special_functions import SpecialFunction
+from core.access.access_table import Act
 from core.executor.job import Job
 from core.executor.snapshot import Snapshot
 from core.machine.machine_model import Machine
@@ -247,7 +248,8 @@ class SetupSheetFunction(SpecialFunction):
             self._notes_of = program, notes
 
         self.desk.clear()
-        self.desk.keep(save)
+        if not self.desk.refused(Act.SCREEN):
+            self.desk.keep(save)
 
     def next_paper(self) -> None:
         """A4 or Letter."""

@@ -17,6 +17,7 @@ from app.programs.whole_file import FileError
 from app.special.special_functions import SpecialFunction
 from app.transfer.line_transfer import Received, SerialPorts, Transfer, TransferProgress, free_name, store_new
 from app.transfer.serial_settings import ROWS, settings_of, stored_form
+from core.access.access_table import Act
 from core.executor.snapshot import Snapshot
 from core.machine.serial_table import DncModel
 from core.store.store_errors import StoreError
@@ -205,6 +206,8 @@ class SerialTransfer(SpecialFunction):
 
     def receive(self) -> None:
         """F5: receive a program."""
+        if self.desk.refused(Act.PROGRAMS):
+            return
         if self._ready():
             self.sends = ""
             carrying = self.lines.receive(self.settings)
@@ -262,6 +265,7 @@ class SerialTransfer(SpecialFunction):
             self.desk.refuse(str(error))
             return
         self.received = None
+        self.persistence.note_change(f"program {path.name} received")
         self._say(tr("STORED AS A NEW PROGRAM: {name}. NOTHING WAS STARTED").format(name=path.name))
 
     def discard(self) -> None:
@@ -273,11 +277,14 @@ class SerialTransfer(SpecialFunction):
         self._say("THE RECEIVED PROGRAM IS THROWN AWAY")
 
     def _step(self) -> None:
+        if self.desk.refused(Act.TRANSFER):
+            return
         ports = list(dict.fromkeys((*self.ports, self.settings.port))) if self.settings.port else self.ports
         self.settings = replace(ROWS[self.marked][2](self.settings, ports))
         self.desk.clear()
         try:
             self.persistence.save_setting(SETTING, stored_form(self.settings))
+            self.persistence.note_change(f"serial line: {stored_form(self.settings)}")
         except StoreError as error:
             self.desk.refuse(str(error))
 

@@ -48,6 +48,7 @@ _ANEW = "enter it anew, or restore a backup"
 _REMEDY = {
     "part_counts": "count the parts and enter them, or restore a backup",
     "jobs": "clear the queue of it ('turndesk jobs clear'), and enter it anew",
+    "people": "enter it anew, or reset the levels ('turndesk access reset')",
 }
 
 

@@ -13,7 +13,9 @@ from core.store.store_rows import EventRow
 
 def log(connection: sqlite3.Connection, events: Iterable[EventRow]) -> None:
     """Adds to the log."""
-    connection.executemany("INSERT INTO events (at, kind, text, line, record) VALUES (?, ?, ?, ?, ?)", events)
+    connection.executemany(
+        "INSERT INTO events (at, kind, text, line, record, who) VALUES (?, ?, ?, ?, ?, ?)", events
+    )
 
 
 def events(
@@ -21,7 +23,7 @@ def events(
 ) -> tuple[EventRow, ...]:
     """The last events whose kind or text holds ``search``, newest first; no ``kinds``: of every kind."""
     rows = connection.execute(
-        "SELECT at, kind, text, line, record FROM events"
+        "SELECT at, kind, text, line, record, who FROM events"
         " WHERE (?1 = '' OR instr(lower(text), lower(?1)) OR instr(lower(kind), lower(?1)))"
         " AND (?2 = '[]' OR kind IN (SELECT value FROM json_each(?2)))"
         " ORDER BY id DESC LIMIT ?3",
@@ -63,7 +65,7 @@ def events_between(
 ) -> tuple[EventRow, ...]:
     """Events of these kinds within this time (UTC), in their order."""
     rows = connection.execute(
-        "SELECT at, kind, text, line, record FROM events WHERE at >= ?1 AND at < ?2"
+        "SELECT at, kind, text, line, record, who FROM events WHERE at >= ?1 AND at < ?2"
         " AND kind IN (SELECT value FROM json_each(?3)) ORDER BY id",
         (since, until, json.dumps(sorted(kinds))),
     )

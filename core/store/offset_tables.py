@@ -364,6 +364,7 @@ _OTHERS = {
     "tool_lives": "the life of tool",
     "mill_tool_lives": "the life of tool",
     "jobs": "the job",
+    "people": "the PIN of",
 }
 
 

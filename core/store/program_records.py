@@ -21,7 +21,7 @@ def check_name(name: str) -> None:
         raise StoreError(f"{name!r} cannot name a program; take letters, digits, dot, dash and blank")
 
 
-def save(connection: sqlite3.Connection, name: str, text: bytes, why: str) -> int:
+def save(connection: sqlite3.Connection, name: str, text: bytes, why: str, who: str = "") -> int:
     """Keeps ``text`` as the newest version; answers its number. The same text again makes no new version."""
     check_name(name)
     now, digest = utc_now(), sha256(text).hexdigest()
@@ -37,8 +37,9 @@ def save(connection: sqlite3.Connection, name: str, text: bytes, why: str) -> in
         return int(last[0])
     number = int(last[0]) + 1 if last else 1
     connection.execute(
-        "INSERT INTO program_versions (program, number, text, sha256, saved, why) VALUES (?, ?, ?, ?, ?, ?)",
-        (program, number, text, digest, now, why),
+        "INSERT INTO program_versions (program, number, text, sha256, saved, why, who)"
+        " VALUES (?, ?, ?, ?, ?, ?, ?)",
+        (program, number, text, digest, now, why, who),
     )
     return number
 
@@ -56,7 +57,7 @@ def listing(connection: sqlite3.Connection) -> tuple[ProgramRow, ...]:
 def versions(connection: sqlite3.Connection, name: str) -> tuple[VersionRow, ...]:
     """Every version of a program, newest first; none of a program that is not there."""
     rows = connection.execute(
-        "SELECT number, sha256, saved, why, length(text) FROM program_versions"
+        "SELECT number, sha256, saved, why, length(text), who FROM program_versions"
         " JOIN programs ON program = programs.id WHERE name = ? ORDER BY number DESC",
         (name,),
     )

@@ -25,6 +25,7 @@ KEYS = {
     "part_counts": "program",
     "settings": "key",
     "jobs": "id",
+    "people": "name",
 }
 """What has sums: tables, and the column that tells their rows apart."""
 

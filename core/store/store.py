@@ -10,10 +10,11 @@ from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Concatenate, ParamSpec, TypeVar
 
-from core.store import damaged_rows, event_log, job_queue, offset_tables, program_records, touch_off
+from core.store import damaged_rows, event_log, job_queue, offset_tables, people, program_records, touch_off
 from core.store.database import Opened, open_to_read, open_to_write
 from core.store.job_queue import JobRow
 from core.store.offset_tables import Reason
+from core.store.people import People
 from core.store.program_settings import stock_key
 from core.store.row_sums import KEYS
 from core.store.store_errors import StoreError, why
@@ -185,6 +186,10 @@ class Store:
         """What each program has done."""
         return self._asked(program_records.all_of)
 
+    def people(self) -> People:
+        """Who works at the machine, where that is kept; else there are no levels."""
+        return self._asked(people.people)
+
     def setting(self, key: str) -> object:
         """A setting, None: not set."""
         return self._asked(event_log.setting, key)
@@ -276,9 +281,9 @@ class Store:
         """Takes the youngest change of all tables back; again: the one before. StoreError without one."""
         return self.write(lambda c: offset_tables.undo_any(c, Reason(why, who)))
 
-    def save_program(self, name: str, text: bytes, why: str) -> Future[int]:
+    def save_program(self, name: str, text: bytes, why: str, *, who: str = "") -> Future[int]:
         """Keeps a version; answers its number, that of the newest when the text is the same."""
-        return self.write(lambda c: program_records.save(c, name, text, why))
+        return self.write(lambda c: program_records.save(c, name, text, why, who))
 
     def rename_program(self, old: str, new: str) -> Future[None]:
         """Versions, part count and record go with a program that gets another name."""
@@ -290,9 +295,9 @@ class Store:
         """A version that nobody waits for."""
         return self._keep_latest("text", name, lambda c: program_records.save(c, name, text, why))
 
-    def log_event(self, kind: str, text: str, line: int = 0, record: str = "") -> Future[None]:
+    def log_event(self, kind: str, text: str, line: int = 0, record: str = "", who: str = "") -> Future[None]:
         """One line of the log, at this moment."""
-        return self.log_events([EventRow(utc_now(), kind, text, line, record)])
+        return self.log_events([EventRow(utc_now(), kind, text, line, record, who)])
 
     def log_events(self, events: Iterable[EventRow]) -> Future[None]:
         """Several lines of the log."""
@@ -364,11 +369,13 @@ class Store:
         zero_rows: Mapping[int, ZeroRow] | None = None,
         shapes: Mapping[int, ShapeRow] | None = None,
         mill: Mapping[Kind, Mapping[int, Mapping[str, Value]]] | None = None,
+        *,
+        who: str = "import",
     ) -> Future[None]:
         """Programs and offsets of an export in one transaction: all of them or none. ``mill``: its tables."""
 
         def operation(connection: sqlite3.Connection) -> None:
-            reason = Reason(why, "import")
+            reason = Reason(why, who)
             for name, text in texts.items():
                 program_records.save(connection, name, text, why)
             for number, tool in tools.items():

@@ -202,16 +202,21 @@ class VersionRow(NamedTuple):
     saved: str
     why: str
     size: int
+    who: str = ""
 
 
 class EventRow(NamedTuple):
-    """One line of the log; ``line`` is the program's, 0 none; ``record`` is a file of the folder records."""
+    """One line of the log; ``line`` is the program's, 0 none; ``record`` is a file of the folder records.
+
+    ``who`` has changed something, where people say who they are.
+    """
 
     at: str
     kind: str
     text: str
     line: int = 0
     record: str = ""
+    who: str = ""
 
 
 class RunRow(NamedTuple):

@@ -32,6 +32,7 @@ class InsertChange(NamedTuple):
     seconds: float
     why: str
     kind: str = Kind.TOOL.value
+    who: str = ""
 
 
 _USE = {Kind.TOOL: "tool_lives", Kind.MILL_TOOL: "mill_tool_lives"}
@@ -73,14 +74,16 @@ def set_use(
     )
 
 
-def change_insert(connection: sqlite3.Connection, number: int, why: str, kind: Kind = Kind.TOOL) -> None:
+def change_insert(
+    connection: sqlite3.Connection, number: int, why: str, kind: Kind = Kind.TOOL, who: str = ""
+) -> None:
     """A fresh insert: the count begins at nought, and what the old one has made is kept."""
     _demand_tool(number, kind)
     connection.execute(
-        "INSERT INTO insert_changes (at, number, parts, seconds, why, kind)"
-        " SELECT ?2, ?1, coalesce(max(parts), 0), coalesce(max(seconds), 0), ?3, ?4"
+        "INSERT INTO insert_changes (at, number, parts, seconds, why, kind, who)"
+        " SELECT ?2, ?1, coalesce(max(parts), 0), coalesce(max(seconds), 0), ?3, ?4, ?5"
         f" FROM {_USE[kind]} WHERE number = ?1",
-        (number, utc_now(), why, kind.value),
+        (number, utc_now(), why, kind.value, who),
     )
     connection.execute(f"UPDATE {_USE[kind]} SET parts = 0, seconds = 0 WHERE number = ?", (number,))
 

@@ -14,6 +14,7 @@ import xml.etree.ElementTree as ET
 from itertools import count
 from pathlib import Path
 
+from core.access.access_table import Act, Level
 from core.alarms import CATALOGUE
 from core.interpreter.dialects import code_book
 from core.interpreter.omniturn.code_table import CHAPTERS
@@ -57,12 +58,21 @@ ROOMS = (
     "app/working_plane",
     *("core/alarms", "core/executor", "core/store", "core/interpreter"),
     *("core/language", "core/proving", "core/geometry", "core/motion", "core/part", COMPOSING),
-    *("core/drawings", "core/quality", "core/records", "core/shapes"),
+    *("core/drawings", "core/quality", "core/records", "core/shapes", "core/access"),
 )
 # Scripts and tables that no screen shows, and what the console is told where there is no screen.
 APART = frozenset(
     {
-        *("code_entry.py", "code_table.py", "language_page.py", "keys.py", "run_without_screen.py"),
+        *(
+            "access_page.py",
+            "access_page.py",
+            "access_table.py",
+            "code_entry.py",
+            "code_table.py",
+            "language_page.py",
+            "keys.py",
+            "run_without_screen.py",
+        ),
         *("desk/command_errors.py", "desk/toml_file.py", "offsets/offsets_file.py", "screen/display.py"),
         "screen/pdf_pages.py",
         *(
@@ -197,7 +207,12 @@ def texts() -> dict[str, str]:
                 read = {text for text in texts_of(tree) if _is_read(text, loud)}
                 for text in sorted(read | set(marked(tree))):
                     found.setdefault(text, str(path.relative_to(HOUSE)))
-    return {**dict.fromkeys([*ALSO, *_loud_alarms(), *_of_codes(), *_of_books()], ""), **found}
+    return {**dict.fromkeys([*ALSO, *_of_levels(), *_loud_alarms(), *_of_codes(), *_of_books()], ""), **found}
+
+
+def _of_levels() -> list[str]:
+    """The levels, and what each may change."""
+    return [*(level.name for level in Level), *(act.value for act in Act)]
 
 
 def _of_codes() -> list[str]:

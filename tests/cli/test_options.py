@@ -113,6 +113,12 @@ COVERED = {
     ("setup load", "--check"): "tests/cli/test_setup.py",
     ("setup desktop", "--autostart"): "tests/cli/test_setup.py",
     ("setup desktop", "--remove"): "tests/cli/test_setup.py",
+    **{(command, "--as"): "tests/cli/test_access.py"
+       for command in ("prove", "run", "offsets set", "offsets clear", "offsets undo", "store restore",
+                       "store import", "setup load", "machine accept", "jobs add", "jobs move", "jobs remove",
+                       "jobs clear", "access add", "access pin", "access remove")},
+    **{("access " + action, "--json"): "tests/cli/test_access.py" for action in ("list", "table")},
+    ("access add", "--level"): "tests/cli/test_access.py",
     ("serial receive", "--out"): "tests/drivers/transfer",
     ("serial send", "--eol"): "tests/drivers/transfer",
     ("serial send", "--wait"): "tests/drivers/transfer",
@@ -152,6 +158,8 @@ def test_an_option_before_a_command_acts_or_is_refused(
         "list",
         "clear",
         "shift",
+        "table",
+        "reset",
     }
     words = rest.get(name, [] if name.rpartition(" ")[2] in bare else [str(tmp_path / "part.nc")])
     (tmp_path / "part.nc").write_text(PART)

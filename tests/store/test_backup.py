@@ -153,8 +153,8 @@ def test_export_is_plain_files(store: Store, tmp_path: Path) -> None:
     assert offsets["secondary"]["4"] == {"x": -0.0005, "z": 0.0, "r": 0.0}
     with (tmp_path / "out/events.csv").open(newline="") as file:
         rows = list(csv.reader(file))
-    assert rows[0] == ["at", "kind", "text", "line", "record"]
-    assert rows[1][1:] == ["start", 'PIN.nc, "first" part', "0", ""]
+    assert rows[0] == ["at", "kind", "text", "line", "record", "who"]
+    assert rows[1][1:] == ["start", 'PIN.nc, "first" part', "0", "", ""]
 
 
 def test_exported_programs_come_back(store: Store, tmp_path: Path) -> None:
@@ -185,7 +185,7 @@ def test_verify_finds_spoilt_text_and_loose_rows(folder: Path) -> None:
     assert backup.problems(path) == ()
     with sqlite3.connect(path) as connection:
         connection.execute("UPDATE program_versions SET text = X'58'")
-        connection.execute("INSERT INTO program_versions VALUES (9, 77, 1, X'', '', '', '')")
+        connection.execute("INSERT INTO program_versions VALUES (9, 77, 1, X'', '', '', '', '')")
     connection.close()
     told = " ".join(backup.problems(path))
     assert "'PIN.nc' version 1 is not what was saved" in told

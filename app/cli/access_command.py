@@ -1,0 +1,151 @@
+"""``turndesk access``: people, their levels and PINs, and the service reset at the machine's own keyboard."""
+
+from __future__ import annotations
+
+import argparse
+import getpass
+import json
+import os
+import sys
+from typing import TYPE_CHECKING
+
+from app.cli.store_command import opened_store
+from app.cli.who_changes import add_as_option, asked_pin, who_changes
+from app.desk.command_errors import EXIT_OK, CommandError
+from core.access.access_table import RULES, Act, Level
+
+if TYPE_CHECKING:
+    from app.cli.program_options import SubParsers
+    from core.store.store import Store
+
+_WORD = "RESET"
+_LEVELS = {level.name.lower(): level for level in Level}
+
+
+def add_parser(subparsers: SubParsers) -> None:
+    """The subcommand with its actions."""
+    parser = subparsers.add_parser("access", help="who may change what: people, levels, PINs")
+    actions = parser.add_subparsers(dest="action", metavar="ACTION", required=True)
+    for name, text in (
+        ("list", "the people and their levels"),
+        ("table", "what may be changed from which level on"),
+    ):
+        actions.add_parser(name, help=text).add_argument(
+            "--json", action="store_true", help="machine-readable output alone on stdout"
+        )
+    add = actions.add_parser("add", help="enter somebody; the first one switches levels on")
+    add.add_argument("name", metavar="NAME")
+    add.add_argument(
+        "--level", choices=list(_LEVELS), default="service", help="default, and of the first one: service"
+    )
+    pin = actions.add_parser("pin", help="another PIN of somebody")
+    pin.add_argument("name", metavar="NAME")
+    gone = actions.add_parser("remove", help="take somebody away; with the last one levels go off")
+    gone.add_argument("name", metavar="NAME")
+    for each in (add, pin, gone):
+        add_as_option(each)
+    actions.add_parser(
+        "reset",
+        help="take all PINs away: levels are off; at the machine's own keyboard, without a PIN, in the log",
+    )
+
+
+def run(args: argparse.Namespace) -> int:
+    """Does what ``args`` asks; raises CommandError with one sentence."""
+    if args.action == "table":
+        sys.stdout.write(_table(json_wanted=args.json))
+        return EXIT_OK
+    if args.action == "reset":
+        _demand_own_keyboard()
+    with opened_store(read_only=args.action == "list") as store:
+        sys.stdout.write(_ACTIONS[args.action](store, args))
+    return EXIT_OK
+
+
+def _table(*, json_wanted: bool) -> str:
+    if json_wanted:
+        rules = {act.value: {"level": rule.level.name, "what": rule.what} for act, rule in RULES.items()}
+        return json.dumps(rules) + "\n"
+    return "".join(f"{rule.level.name:<9} {rule.what}\n" for rule in RULES.values())
+
+
+def _list(store: Store, args: argparse.Namespace) -> str:
+    people = store.people()
+    if args.json:
+        rows = [{"name": row.name, "level": Level(row.level).name} for row in people.rows]
+        return json.dumps({"on": people.on, "people": rows}) + "\n"
+    lines = "".join(f"{Level(row.level).name:<9} {row.name}\n" for row in people.rows)
+    return lines or "levels are off: everybody may change everything\n"
+
+
+def _add(store: Store, args: argparse.Namespace) -> str:
+    from core.store.people import check_person
+
+    level, name = _LEVELS[args.level], check_person(args.name)
+    if store.people().named(name) is not None:
+        raise CommandError(f"{name} is entered already; 'turndesk access pin' is for another PIN")
+    return _kept(store, args, name, level, "entered")
+
+
+def _pin(store: Store, args: argparse.Namespace) -> str:
+    row = store.people().named(args.name)
+    if row is None:
+        raise CommandError(f"{args.name} is not among the people; 'turndesk access list' names them")
+    return _kept(store, args, row.name, Level(row.level), "has another PIN")
+
+
+def _kept(store: Store, args: argparse.Namespace, name: str, level: Level, done: str) -> str:
+    """Ask for the PIN twice and keep it."""
+    from core.access.pins import PinError, check_pin, hashed
+    from core.store import people
+
+    who = who_changes(store, args, Act.PEOPLE)
+    pin = asked_pin(f"new PIN of {name}: ")
+    try:
+        check_pin(pin)
+    except PinError as error:
+        raise CommandError(str(error)) from error
+    if asked_pin("the same again: ") != pin:
+        raise CommandError("those were two different PINs; nothing was kept")
+    row = people.PersonRow(name, level, *hashed(pin))
+    store.write(lambda c: people.keep_person(c, row)).result()
+    store.log_event("access", f"{name} {done}: {level.name}", who=who).result()
+    return f"{name} {done}: {level.name}\n"
+
+
+def _remove(store: Store, args: argparse.Namespace) -> str:
+    from core.store import people
+
+    row = store.people().named(args.name)
+    if row is None:
+        raise CommandError(f"{args.name} is not among the people; 'turndesk access list' names them")
+    who = who_changes(store, args, Act.PEOPLE)
+    store.write(lambda c: people.remove_person(c, row.name)).result()
+    store.log_event("access", f"{row.name} taken away", who=who).result()
+    return f"{row.name} is taken away\n"
+
+
+# --- service reset ---------------------------------------------------------------------------------------
+
+
+def _demand_own_keyboard() -> None:
+    """Raises CommandError where nobody sits at a terminal of this machine, and means it."""
+    if not sys.stdin.isatty() or os.environ.get("SSH_CONNECTION"):
+        raise CommandError("the service reset is typed at the machine's own keyboard, in a terminal there")
+    sys.stdout.write(f"All people and PINs are taken away, which is logged. Type {_WORD} to do it: ")
+    sys.stdout.flush()
+    if sys.stdin.readline().strip() != _WORD:
+        raise CommandError("nothing was changed")
+
+
+def _reset(store: Store, _args: argparse.Namespace) -> str:
+    from core.store import people
+
+    count = store.write(people.remove_all).result()
+    store.set_setting("wrong PINs", None)
+    told = f"service reset at the keyboard: {count} people and their PINs are taken away, levels are off"
+    store.log_event("access", told, who=getpass.getuser()).result()
+    return f"{told}\n"
+
+
+_ACTIONS = {"list": _list, "add": _add, "pin": _pin, "remove": _remove, "reset": _reset}

@@ -1,0 +1,301 @@
+"""Access levels: who works here, signing in by PIN, people, and what each level may change."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import partial
+
+from app.desk.access import MINUTES, Access
+from app.desk.access_reset import AccessReset
+from app.desk.desk import Desk
+from app.desk.machine_status import Tone
+from app.desk.persistence import Persistence
+from app.desk.sheet import Entry, Key, Row, Sheet, following
+from app.desk.translation import data, tr
+from app.special.special_functions import SpecialFunction
+from core.access.access_table import RULES, Act, Level
+from core.access.pins import LONGEST, PinError, check_pin, hashed
+from core.executor.snapshot import Snapshot
+from core.store.people import NAME_LONGEST, PersonRow, check_person
+from core.store.store_errors import StoreError
+
+_DOT = "●"
+
+
+@dataclass(slots=True)
+class _Draft:
+    """What is being entered: the PIN of somebody who signs in, or a person and his PIN, step by step."""
+
+    step: str  # sign in, name, level, pin, again
+    name: str = ""
+    level: Level = Level.SERVICE
+    pin: str = ""
+
+
+class AccessLevels(SpecialFunction):
+    """Return on a name asks its PIN; whoever is of SERVICE level enters the people."""
+
+    name = "ACCESS LEVELS"
+    use = "sign in, people, PINs"
+
+    def __init__(self, desk: Desk, persistence: Persistence) -> None:
+        super().__init__(desk)
+        self.persistence = persistence
+        self.entry = Entry()
+        self.draft: _Draft | None = None
+        self.table = False
+        self.service_reset = AccessReset(self.access, desk.say, self._reset_now)
+
+    @property
+    def access(self) -> Access:
+        """Who is in force."""
+        return self.desk.access
+
+    @property
+    def count(self) -> int:
+        """How many rows can be marked."""
+        return len(RULES) if self.table else len(self.access.people.rows)
+
+    @property
+    def person(self) -> PersonRow | None:
+        """The one that is marked."""
+        rows = self.access.people.rows
+        return rows[min(self.marked, len(rows) - 1)] if rows and not self.table else None
+
+    def sheet(self, _snapshot: Snapshot) -> Sheet:
+        """The people, or what each level may change."""
+        if self.table:
+            rows = tuple(Row((act.value, rule.level.name)) for act, rule in RULES.items())
+            heads, shares, raw = ("WHAT IS CHANGED", "LEVEL"), (0.65, 0.35), frozenset[int]()
+        else:
+            rows = tuple(self._row(each) for each in self.access.people.rows)
+            heads, shares, raw = ("WHO", "LEVEL"), (0.65, 0.35), frozenset({0})
+        question = self._question()
+        text = (
+            self.entry.text
+            if self.draft and self.draft.step in {"name", "level"}
+            else _DOT * len(self.entry.text)
+        )
+        return Sheet("ACCESS LEVELS", heads, shares, rows, self.marked, question, text, self._notes(), raw)
+
+    def _row(self, row: PersonRow) -> Row:
+        here = row.name == self.access.name
+        return Row((row.name, Level(row.level).name), here, Tone.RUN)
+
+    def _notes(self) -> tuple[str, ...]:
+        if not self.access.people.on:
+            return (
+                "Levels are off: everybody may change everything, and nobody is asked.",
+                "F3 enters the first one, of SERVICE level, and switches them on.",
+            )
+        minutes = tr("After {minutes} minutes without a key OPERATOR level is in force again.")
+        return (
+            minutes.format(minutes=self.access.minutes),
+            "E-stop, feed hold, Reset and drives off are behind no level.",
+        )
+
+    def _question(self) -> str:
+        draft = self.draft
+        if draft is None:
+            return ""
+        return {
+            "sign in": tr("PIN OF {name}?").format(name=data(draft.name)),
+            "name": tr("WHOSE NAME?"),
+            "level": tr("1 OPERATOR, 2 SETUP, 3 SERVICE?"),
+            "pin": tr("NEW PIN OF {name}?").format(name=data(draft.name)),
+            "again": tr("THE SAME PIN AGAIN?"),
+        }[draft.step]
+
+    def prompt(self) -> str:
+        """What the keys do."""
+        if self.service_reset.under_way:
+            return tr("ALL PINS ARE TAKEN AWAY WHEN THE TIME IS OVER; RELEASING THE E-STOP OR A PIN ENDS IT")
+        if self.draft is not None:
+            return tr("TYPE IT AND PRESS RETURN; ESC LEAVES IT")
+        if not self.access.people.on:
+            return tr("F3 ENTERS SOMEBODY AND SWITCHES LEVELS ON; ESC GOES BACK TO THE LIST")
+        return tr("MARK YOUR NAME AND PRESS RETURN TO SIGN IN; F2 SIGNS OUT; ESC GOES BACK TO THE LIST")
+
+    # --- keys ----------------------------------------------------------------------------------------
+
+    def keys(self) -> Mapping[str, Key]:
+        """Those of the people, as far as there are levels."""
+        keys = {"F3": Key("ADD", self.add), "F5": Key("PEOPLE" if self.table else "TABLE", self._turn)}
+        if self.access.people.on:
+            keys |= {
+                "F2": Key("SIGN OUT", self.sign_out),
+                "F4": Key("PIN", self.new_pin),
+                "F6": Key("REMOVE", self.remove),
+                "F8": Key("TIME", self.next_minutes),
+                "F9": Key("RESET", self.ask_reset),
+            }
+        return keys
+
+    def _turn(self) -> None:
+        self.desk.clear()
+        self.draft, self.table, self.marked = None, not self.table, 0
+
+    def takes(self, key: str) -> bool:
+        """Letters of a name; figures of a PIN."""
+        if self.draft is None or len(key) != 1:
+            return False
+        return self.entry.takes(key) if self.draft.step == "name" else key.isascii() and key.isdigit()
+
+    def typed(self, key: str) -> bool:
+        """What is asked takes every key; else arrows mark and Return signs in."""
+        if self.draft is None:
+            return super().typed(key)
+        if key == "Enter":
+            self._enter(self.draft)
+            return True
+        if not (self.takes(key) or key in {"Back", "Delete"}):
+            return False
+        self.desk.clear()
+        longest = NAME_LONGEST if self.draft.step == "name" else LONGEST
+        if key in {"Back", "Delete"} or len(self.entry.text) < longest:
+            self.entry.type(key)
+        return True
+
+    def act(self) -> bool:
+        """Return on a name: its PIN is asked."""
+        row = self.person
+        if row is not None:
+            self._ask(_Draft("sign in", row.name))
+        return row is not None
+
+    def escape(self) -> bool:
+        """Leave what is being entered; False when nothing was."""
+        open_before, self.draft, self.entry = self.draft is not None, None, Entry()
+        return open_before
+
+    def left(self) -> None:
+        """Nothing stays half typed."""
+        self.draft, self.entry, self.table = None, Entry(), False
+
+    # --- what is entered, step by step ---------------------------------------------------------------
+
+    def _ask(self, draft: _Draft) -> None:
+        self.desk.clear()
+        self.draft, self.entry, self.table = draft, Entry(words=draft.step == "name"), False
+
+    def _enter(self, draft: _Draft) -> None:
+        text = self.entry.text
+        steps: dict[str, Callable[[_Draft, str], None]] = {
+            "sign in": self._sign_in,
+            "name": self._named,
+            "level": self._levelled,
+            "pin": self._first,
+            "again": self._again,
+        }
+        try:
+            steps[draft.step](draft, text)
+        except (StoreError, PinError) as error:
+            self.entry.text = ""
+            self.desk.refuse(str(error))
+
+    def _sign_in(self, draft: _Draft, pin: str) -> None:
+        row = self.access.people.named(draft.name)
+        self.escape()
+        if row is not None and pin:
+            self.access.sign_in(row, pin)
+
+    def _named(self, draft: _Draft, text: str) -> None:
+        draft.name = check_person(text)
+        if self.access.people.named(draft.name) is not None:
+            raise StoreError(f"{draft.name} is entered already; F4 is for another PIN")
+        draft.step = "level" if self.access.people.on else "pin"
+        self._ask(draft)
+
+    def _levelled(self, draft: _Draft, text: str) -> None:
+        if text not in {str(level.value) for level in Level}:
+            raise StoreError("a level is 1, 2 or 3")
+        draft.level, draft.step = Level(int(text)), "pin"
+        self._ask(draft)
+
+    def _first(self, draft: _Draft, pin: str) -> None:
+        check_pin(pin)
+        draft.pin, draft.step = pin, "again"
+        self._ask(draft)
+
+    def _again(self, draft: _Draft, pin: str) -> None:
+        if pin != draft.pin:
+            self.draft = None
+            raise PinError("those were two different PINs; nothing was kept, enter it anew")
+        self.escape()
+        row = PersonRow(draft.name, draft.level, b"", b"")
+        said = tr("{name}: {level}, AND THE PIN IS KEPT").format(
+            name=data(draft.name), level=tr(draft.level.name)
+        )
+        self._change(
+            lambda: self._keep(row, pin), said, f"{draft.name} entered: {draft.level.name}, a new PIN"
+        )
+
+    def _keep(self, row: PersonRow, pin: str) -> None:
+        """On the worker. Raises StoreError."""
+        self.persistence.keep_person(PersonRow(row.name, row.level, *hashed(pin)))
+
+    def _change(self, work: Callable[[], None], said: str, noted: str) -> None:
+        """Have the people changed, read them again and say so; the log has by whom."""
+
+        def done(_none: None) -> None:
+            self.access.note(noted)
+            self.access.reload()
+            self.desk.done(said)
+
+        self.access.worker.queue(work, done, self.desk.refuse)
+
+    # --- people --------------------------------------------------------------------------------------
+
+    def sign_out(self) -> None:
+        """F2: nobody is signed in any more."""
+        self.access.sign_out()
+        self.desk.done(tr("SIGNED OUT: OPERATOR LEVEL IS IN FORCE"))
+
+    def add(self) -> None:
+        """F3: somebody new; the first one is of SERVICE level."""
+        if not self.desk.refused(Act.PEOPLE):
+            self._ask(_Draft("name"))
+
+    def new_pin(self) -> None:
+        """F4: another PIN of the marked person; everybody may change his own."""
+        row = self.person
+        if row is None or (row.name != self.access.name and self.desk.refused(Act.PEOPLE)):
+            return
+        self._ask(_Draft("pin", row.name, Level(row.level)))
+
+    def remove(self) -> None:
+        """F6: the marked person works here no more; with the last one levels go off."""
+        row = self.person
+        if row is None or self.desk.refused(Act.PEOPLE):
+            return
+        said = tr("{name} IS TAKEN AWAY").format(name=data(row.name))
+        work = partial(self.persistence.remove_person, row.name)
+        asked = tr("PRESS Y TO TAKE {name} AWAY, ESC TO KEEP THE PIN").format(name=data(row.name))
+        self.desk.ask(asked, partial(self._change, work, said, f"{row.name} taken away"))
+
+    def next_minutes(self) -> None:
+        """F8: another time after which the level falls back."""
+        if not self.desk.refused(Act.PEOPLE):
+            self.desk.clear()
+            self.access.choose_minutes(following(MINUTES, self.access.minutes))
+
+    # --- service reset -------------------------------------------------------------------------------
+
+    def ask_reset(self) -> None:
+        """F9: where every PIN is forgotten; the E-stop stays pressed meanwhile."""
+        why = self.service_reset.why_not(self.desk.snapshot())
+        if why:
+            self.desk.say(why)
+            return
+        question = tr("PRESS Y TO TAKE ALL PINS AWAY IN 10 MINUTES; IT IS LOGGED; ESC TO KEEP THEM")
+        self.desk.ask(question, self.service_reset.begin)
+
+    def _reset_now(self) -> None:
+        said = tr("ALL PINS ARE TAKEN AWAY: LEVELS ARE OFF")
+
+        def done(_none: None) -> None:
+            self.access.reload()
+            self.desk.done(said)
+
+        self.access.worker.queue(self.persistence.remove_people, done, self.desk.refuse)

@@ -1,0 +1,1 @@
+"""Who may change what: levels, what each may change, PINs."""

@@ -1,0 +1,78 @@
+"""Who works at the machine: names, levels, and what is kept of their PINs."""
+
+from __future__ import annotations
+
+import sqlite3
+from typing import NamedTuple
+
+from core.store import row_sums
+from core.store.store_errors import StoreError
+
+NAME_LONGEST = 20
+
+
+class PersonRow(NamedTuple):
+    """One person; ``level`` as ``core.access.access_table.Level`` counts them."""
+
+    name: str
+    level: int
+    salt: bytes
+    hash: bytes
+
+
+class People(NamedTuple):
+    """All that are entered; ``damaged``: rows that are not as they were saved, and let nobody in."""
+
+    rows: tuple[PersonRow, ...] = ()
+    damaged: bool = False
+
+    @property
+    def on(self) -> bool:
+        """Whether there are levels: somebody is entered. A damaged row does not switch them off."""
+        return bool(self.rows) or self.damaged
+
+    def named(self, name: str) -> PersonRow | None:
+        """The person of this name, in any case of letters."""
+        return next((row for row in self.rows if row.name.casefold() == name.strip().casefold()), None)
+
+
+def people(connection: sqlite3.Connection) -> People:
+    """All of them, the highest level first."""
+    broken = row_sums.broken(connection, "people")
+    rows = connection.execute("SELECT name, level, salt, hash FROM people ORDER BY level DESC, name")
+    return People(tuple(PersonRow(*row) for row in rows if row[0] not in broken), bool(broken))
+
+
+def check_person(name: str) -> str:
+    """The name as it is kept, in capitals. Raises StoreError for what names nobody."""
+    name = " ".join(name.split()).upper()
+    if not name or len(name) > NAME_LONGEST or not name.isprintable():
+        raise StoreError(f"a name has 1 to {NAME_LONGEST} letters")
+    return name
+
+
+def keep_person(connection: sqlite3.Connection, row: PersonRow) -> None:
+    """Somebody new, or another PIN. Raises StoreError where nobody of the highest level stays."""
+    row = row._replace(name=check_person(row.name))
+    connection.execute("DELETE FROM people WHERE name = ?", (row.name,))
+    connection.execute("INSERT INTO people VALUES (?, ?, ?, ?)", row)
+    _demand_service(connection)
+
+
+def remove_person(connection: sqlite3.Connection, name: str) -> None:
+    """He works here no more. Raises StoreError where nobody of the highest level would stay among others."""
+    if not connection.execute("DELETE FROM people WHERE name = ?", (name,)).rowcount:
+        raise StoreError(f"{name} is not among the people")
+    _demand_service(connection)
+
+
+def remove_all(connection: sqlite3.Connection) -> int:
+    """Nobody is entered any more, and there are no levels; answers how many there were."""
+    return connection.execute("DELETE FROM people").rowcount
+
+
+def _demand_service(connection: sqlite3.Connection) -> None:
+    """Somebody has to be able to enter the next one."""
+    levels = {level for (level,) in connection.execute("SELECT level FROM people")}
+    if levels and max(levels) < 3:
+        raise StoreError("one of SERVICE level has to stay, who enters the others; enter one first")

@@ -1,0 +1,188 @@
+"""``turndesk access``, and the commands that change something while there are levels."""
+
+from __future__ import annotations
+
+import io
+import json
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+import resources
+from app.cli.main import main
+from core.store.store import Store
+
+Captured = pytest.CaptureFixture[str]
+Say = Callable[..., tuple[int, str]]
+
+
+class Terminal(io.StringIO):
+    def isatty(self) -> bool:
+        return True
+
+
+@pytest.fixture
+def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    folder = tmp_path / "home"
+    monkeypatch.setenv("TURNDESK_HOME", str(folder))
+    monkeypatch.delenv("SSH_CONNECTION", raising=False)
+    monkeypatch.setattr("getpass.getuser", lambda: "shop")
+    return folder
+
+
+@pytest.fixture
+def say(home: Path, monkeypatch: pytest.MonkeyPatch, capsys: Captured) -> Say:
+    """A command with what is typed into it; its status, and what it said."""
+
+    def run(*words: object, typed: str = "", terminal: bool = False) -> tuple[int, str]:
+        keyboard = (Terminal if terminal else io.StringIO)("".join(f"{line}\n" for line in typed.split()))
+        monkeypatch.setattr("sys.stdin", keyboard)
+        status = main([str(word) for word in words])
+        told = capsys.readouterr()
+        assert "Traceback" not in told.err
+        return status, told.out + told.err
+
+    return run
+
+
+@pytest.fixture
+def people(say: Say) -> None:
+    """ANNA of SERVICE, BEN of SETUP."""
+    assert say("access", "add", "anna", typed="4711 4711") == (0, "ANNA entered: SERVICE\n")
+    entered = say("access", "add", "ben", "--level", "setup", "--as", "anna", typed="4711 2580 2580")
+    assert entered == (0, "BEN entered: SETUP\n")
+
+
+def test_without_levels_commands_are_as_they_were(say: Say, home: Path) -> None:
+    assert say("access", "list") == (0, "levels are off: everybody may change everything\n")
+    assert say("offsets", "set", "T3", "x=1", "z=-1")[0] == 0
+    assert say("offsets", "set", "T3", "x=2", "--as", "dora")[0] == 0
+    with Store.open(home) as store:
+        assert [row.who for row in store.history()] == ["dora", "command line"]
+
+
+def test_a_change_needs_level_and_pin_and_keeps_the_name(say: Say, people: None, home: Path) -> None:
+    status, told = say("offsets", "set", "T3", "x=1", "z=-1")
+    assert status == 2
+    assert "TOOL OFFSETS may be changed from SETUP level on; shop is not among the people" in told
+    assert "give --as one of ANNA, BEN" in told
+    assert say("offsets", "set", "T3", "x=1", "z=-1", "--as", "ben", typed="2580")[0] == 0
+    assert say("offsets", "set", "D4", "x=-.0005")[0] == 0  # a correction is the operator's
+    with Store.open(home) as store:
+        assert [(row.number, row.who) for row in store.history()] == [(4, "shop"), (3, "BEN")]
+
+
+def test_a_wrong_pin_changes_nothing_is_logged_and_lets_wait(
+    say: Say, people: None, home: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    waited: list[float] = []
+    monkeypatch.setattr(time, "sleep", waited.append)
+    for _ in range(4):
+        status, told = say("offsets", "clear", "T", "--as", "ben", typed="0815")
+        assert (status, "that is not the PIN of BEN" in told) == (2, True)
+    assert say("offsets", "set", "G54", "z=-1", "--as", "ben", typed="2580")[0] == 0
+    assert waited == [0.0, 0.0, 0.0, 5.0, 10.0]
+    with Store.open(home) as store:
+        assert store.events("wrong PIN")[0].text == "wrong PIN for BEN, 4 in a row, on the command line"
+
+
+@pytest.mark.parametrize("words", [
+    ["store", "restore", "{backup}"], ["store", "import", "{home}"], ["setup", "load", "{backup}"],
+    ["machine", "accept", "{machine}"], ["access", "remove", "anna"], ["access", "pin", "anna"],
+    ["access", "add", "carl"],
+])  # fmt: skip
+def test_what_is_of_service_is_refused_below(
+    words: list[str], say: Say, people: None, home: Path, tmp_path: Path
+) -> None:
+    (tmp_path / "own.toml").write_text(resources.machine_file("gt75.toml"))
+    (home / "programs").mkdir()
+    assert say("store", "backup", tmp_path / "b.db")[0] == 0
+    given = {"backup": tmp_path / "b.db", "home": home, "machine": tmp_path / "own.toml"}
+    status, told = say(*(word.format(**given) for word in words), "--as", "ben", typed="2580")
+    assert status == 2
+    assert "may be changed from SERVICE level on; BEN is of SETUP: give --as one of ANNA" in told
+
+
+def test_a_restore_has_the_name_in_the_log(say: Say, people: None, home: Path, tmp_path: Path) -> None:
+    assert say("store", "backup", tmp_path / "b.db")[0] == 0
+    assert say("store", "restore", tmp_path / "b.db", "--as", "anna", typed="4711")[0] == 0
+    (tmp_path / "own.toml").write_text(resources.machine_file("gt75.toml"))
+    assert say("machine", "accept", tmp_path / "own.toml", "--as", "anna", typed="4711")[0] == 0
+    with Store.open(home) as store:
+        assert store.events("restored from")[0].who == "ANNA"
+        assert "accepted by ANNA" in store.events("machine file")[0].text
+
+
+def test_a_store_that_cannot_be_read_can_be_replaced(
+    say: Say, people: None, home: Path, tmp_path: Path
+) -> None:
+    assert say("store", "backup", tmp_path / "b.db")[0] == 0
+    (home / "turndesk.db").write_bytes(b"no store any more")
+    assert say("store", "restore", tmp_path / "b.db")[0] == 0
+    assert json.loads(say("access", "list", "--json")[1])["on"]
+
+
+def test_jobs_are_the_operators_and_have_the_name(say: Say, people: None, home: Path) -> None:
+    (home / "programs").mkdir()
+    (home / "programs" / "pin.nc").write_text("M30\n")
+    assert say("jobs", "add", "pin.nc", "20")[0] == 0
+    with Store.open(home) as store:
+        assert [(row.text, row.who) for row in store.events("jobs")] == [
+            ("jobs: pin.nc, 20 parts, is job 1", "shop")
+        ]
+
+
+def test_stock_is_kept_from_setup_on(say: Say, people: None, tmp_path: Path) -> None:
+    (tmp_path / "part.nc").write_text("G90G94F200\nT1\nX.5Z0\nM30\n")
+    words = ("prove", tmp_path / "part.nc", "--stock", "bar:1.0", "--keep-stock")
+    status, told = say(*words)
+    assert (status, "STOCK AND CHECKS may be changed from SETUP level on" in told) == (2, True)
+    assert say(*words, "--as", "ben", typed="2580")[0] in {0, 1}
+    assert "STOCK" not in say("prove", tmp_path / "part.nc")[1]
+
+
+def test_the_first_one_is_of_service(say: Say) -> None:
+    status, told = say("access", "add", "ben", "--level", "setup", typed="2580 2580")
+    assert (status, "one of SERVICE level has to stay" in told) == (2, True)
+
+
+@pytest.mark.parametrize(("typed", "why"), [
+    ("123 123", "4 to 12 figures"), ("1111 1111", "guessed at once"), ("4711 4712", "two different PINs"),
+    ("", "4 to 12 figures"),
+])  # fmt: skip
+def test_what_is_no_pin_is_refused(typed: str, why: str, say: Say) -> None:
+    status, told = say("access", "add", "anna", typed=typed)
+    assert (status, why in told) == (2, True)
+    assert say("access", "list")[1].startswith("levels are off")
+
+
+def test_another_pin_and_a_removed_person(say: Say, people: None) -> None:
+    assert say("access", "pin", "ben", "--as", "anna", typed="4711 3698 3698")[0] == 0
+    assert say("offsets", "set", "G54", "z=-1", "--as", "ben", typed="3698")[0] == 0
+    assert say("access", "remove", "ben", "--as", "anna", typed="4711") == (0, "BEN is taken away\n")
+    assert say("access", "list") == (0, "SERVICE   ANNA\n")
+    assert say("access", "add", "anna", "--as", "anna", typed="4711")[1].count("entered already") == 1
+    assert say("access", "pin", "ben")[1].count("is not among the people") == 1
+
+
+def test_the_table_is_printed(say: Say) -> None:
+    assert "SERVICE   accepting a changed machine file\n" in say("access", "table")[1]
+    assert json.loads(say("access", "table", "--json")[1])["ZERO OFFSETS"]["level"] == "SETUP"
+
+
+def test_the_reset_is_typed_at_the_machine(
+    say: Say, people: None, home: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert "own keyboard" in say("access", "reset", typed="RESET")[1]
+    assert "nothing was changed" in say("access", "reset", typed="no", terminal=True)[1]
+    monkeypatch.setenv("SSH_CONNECTION", "10.0.0.7 50000 10.0.0.8 22")
+    assert "own keyboard" in say("access", "reset", typed="RESET", terminal=True)[1]
+    assert "ANNA" in say("access", "list")[1]
+    monkeypatch.delenv("SSH_CONNECTION")
+    assert say("access", "reset", typed="RESET", terminal=True)[0] == 0
+    assert say("access", "list")[1].startswith("levels are off")
+    with Store.open(home) as store:
+        row = store.events("service reset")[0]
+    assert (row.who, "2 people and their PINs" in row.text) == ("shop", True)

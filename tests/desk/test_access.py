@@ -1,0 +1,497 @@
+"""Levels: off they change nothing, on they refuse with the way out, and the history says who did it."""
+
+from __future__ import annotations
+
+import sqlite3
+from collections.abc import Callable, Iterator
+from contextlib import closing
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TypeVar
+
+import pytest
+
+import resources
+from app.compose.journal import Journal
+from app.compose.screen_desk import desk_and_executor
+from app.compose.stored_offsets import stored_offsets
+from app.desk.access import Access
+from app.desk.access_reset import WAIT
+from app.desk.desk import Desk
+from app.editor.editor import Editor
+from app.programs.program_list import ProgramList
+from app.quality.parts_watch import PartsWatch
+from app.special.access_levels import AccessLevels
+from app.special.logged_events import FILTERS
+from app.special.machine_file_acceptance import MachineFileAcceptance
+from app.special.parts_counter import PartsCounterFunction
+from app.special.special_functions import SpecialFunction, SpecialFunctions
+from core.access.access_page import page
+from core.access.access_table import RULES, Act, Level
+from core.access.pins import PinError, WrongPins, check_pin, hashed, is_pin, wait_after
+from core.executor.executor import Executor
+from core.executor.snapshot import State
+from core.store import database
+from core.store.people import PersonRow
+from core.store.store import Store
+from core.store.store_errors import StoreError
+from core.store.store_rows import Kind
+from core.store.tool_lives import insert_changes
+from drivers.clocks import StepClock
+
+T = TypeVar("T", bound=SpecialFunction)
+HOUSE = Path(__file__).parents[2]
+LIMIT = 60.0
+PINS = {"ANNA": "4711", "BEN": "2580", "CARLA": "9035"}
+LEVELS = {"ANNA": Level.SERVICE, "BEN": Level.SETUP, "CARLA": Level.OPERATOR}
+OPERATORS = {Act.WEAR, Act.COUNTS, Act.INSERTS, Act.READINGS, Act.JOBS, Act.SCREEN, Act.BACKUPS}
+SERVICES = {Act.MACHINE_FILE, Act.RESTORE, Act.PEOPLE}
+
+
+@dataclass
+class Room:
+    desk: Desk
+    executor: Executor
+    clock: StepClock
+    journal: Journal
+    at: float = 1000.0
+
+    @property
+    def access(self) -> Access:
+        return self.desk.access
+
+    @property
+    def store(self) -> Store:
+        store = self.journal._store
+        assert store is not None
+        return store
+
+    def run(self, ticks: int = 20) -> None:
+        for _ in range(ticks):
+            self.clock.advance(0.01)
+            self.executor.tick()
+        self.desk.look()
+
+    def settle(self) -> None:
+        """Until what was asked of workers and of the disk is there."""
+        self.access.worker.settle(LIMIT)
+        self.store.write(lambda _connection: None).result(LIMIT)
+        self.desk.look()
+        self.desk.book.poll()
+
+    def find(self, kind: type[T]) -> T:
+        special = self.desk.attached(SpecialFunctions)
+        assert special is not None
+        return next(each for each in special.functions if isinstance(each, kind))
+
+    def enter_people(self) -> None:
+        for name, pin in PINS.items():
+            self.journal.keep_person(PersonRow(name, LEVELS[name], *hashed(pin)))
+        self.access.reload()
+
+    def sign_in(self, name: str, pin: str = "") -> None:
+        row = self.access.people.named(name)
+        assert row is not None
+        self.access.sign_in(row, pin or PINS[name])
+        self.settle()
+
+    def log(self, kind: str) -> list[tuple[str, str]]:
+        self.settle()
+        return [(row.text, row.who) for row in self.store.events(kinds={kind})][::-1]
+
+
+@pytest.fixture
+def room(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Room]:
+    file = tmp_path / "own.toml"
+    file.write_text(resources.machine_file("gt75.toml"))
+    monkeypatch.setenv("TURNDESK_HOME", str(tmp_path / "home"))
+    clock, journal = StepClock(), Journal.at_home()
+    desk, executor = desk_and_executor(str(file), stored_offsets, clock, journal)
+    made = Room(desk, executor, clock, journal)
+    made.access.clock = lambda: made.at
+    made.run(2)
+    yield made
+    desk.close()
+    journal.close()
+
+
+# --- the table -------------------------------------------------------------------------------------------
+
+
+def test_each_level_may_what_stands_in_the_table(room: Room) -> None:
+    room.enter_people()
+    may = {
+        level: {act for act in Act if setattr(room.access, "level", level) or not room.access.refusal(act)}
+        for level in Level
+    }
+    assert may[Level.OPERATOR] == OPERATORS
+    assert set(Act) - may[Level.SETUP] == SERVICES
+    assert may[Level.SERVICE] == set(Act) == set(RULES)
+
+
+def test_the_page_is_the_table() -> None:
+    assert (HOUSE / "docs" / "access.md").read_text("utf-8") == page()
+
+
+@pytest.mark.parametrize("act", list(Act))
+def test_somebody_asks_for_every_act(act: Act) -> None:
+    """A rule that no page and no command asks for would be a promise that nobody keeps."""
+    sources = (path.read_text("utf-8") for path in (HOUSE / "app").rglob("*.py"))
+    assert any(f"Act.{act.name}" in text for text in sources)
+
+
+# --- off -------------------------------------------------------------------------------------------------
+
+
+def test_without_people_nothing_is_asked_and_nothing_more_is_logged(room: Room) -> None:
+    assert [room.access.refusal(act) for act in Act] == [""] * len(Act)
+    assert room.access.words == ""
+    room.desk.book.change(Kind.TOOL, 3, {"x": 1.0, "z": -1.0}, "typed")
+    room.desk.counter.program = "pin.nc"
+    room.find(PartsCounterFunction).correct(1)
+    room.settle()
+    assert room.store.history(Kind.TOOL)[0].who == "operator"
+    assert room.log("change") == []
+    assert room.desk.notice == ""
+
+
+# --- refusals --------------------------------------------------------------------------------------------
+
+
+def test_a_refusal_says_which_level_and_how_to_get_it(room: Room) -> None:
+    room.enter_people()
+    why = room.desk.book.change(Kind.TOOL, 3, {"x": 1.0, "z": -1.0}, "typed")
+    assert why == "TOOL OFFSETS: SETUP LEVEL IS NEEDED, OPERATOR IS IN FORCE; SIGN IN: F10, ACCESS LEVELS"
+    room.settle()
+    assert room.store.tools() == {}
+
+
+def test_wear_is_the_operators_and_position_is_not(room: Room) -> None:
+    room.store.set_tool(3, "touched off", x=1.0, z=-1.0).result(LIMIT)
+    room.enter_people()
+    book = room.desk.book
+    assert "SETUP LEVEL" in book.change(Kind.TOOL, 3, {"wear_x": 0.01, "x": 2.0}, "both")
+    assert "SETUP LEVEL" in book.undo(Kind.TOOL)
+    assert "SETUP LEVEL" in book.clear(Kind.ZERO, "all")
+    assert "SETUP LEVEL" in book.choose_master(3, "master")
+    assert book.change(Kind.TOOL, 3, {"wear_x": 0.01}, "too large") == ""
+    room.settle()
+    assert book.change(Kind.SECONDARY, 1, {"x": -0.01}, "too large") == ""
+    room.settle()
+    assert (room.store.tools()[3].wear_x, room.store.tools()[3].x) == (0.01, 1.0)
+    assert room.store.secondary()[1].x == -0.01
+
+
+def test_pages_without_a_book_refuse_too(room: Room) -> None:
+    room.enter_people()
+    programs, editor = room.desk.attached(ProgramList), room.desk.attached(Editor)
+    assert programs is not None
+    assert editor is not None
+    assert "PROGRAMS: SETUP LEVEL" in editor.may_save()
+    programs.transfer.begin((), None, out=False)
+    assert not programs.transfer.open
+    assert "PROGRAMS: SETUP LEVEL" in room.desk.notice
+    room.find(MachineFileAcceptance)._accept()
+    assert "THE MACHINE FILE: SERVICE LEVEL" in room.desk.notice
+    room.sign_in("BEN")
+    assert editor.may_save() == ""
+    programs.transfer.begin((), None, out=False)
+    assert programs.transfer.open
+
+
+def test_what_stops_the_machine_is_behind_no_level(room: Room) -> None:
+    room.enter_people()
+    desk = room.desk
+    desk.enable()
+    room.run()
+    assert desk.snapshot().state is State.IDLE
+    desk.feed_hold()
+    desk.estop()
+    room.run()
+    assert desk.snapshot().state is State.ESTOP
+    desk.hands.estop(pressed=False)
+    room.run()
+    desk.reset()
+    room.run()
+    assert desk.snapshot().state is State.DISABLED
+    assert "LEVEL" not in desk.notice
+
+
+# --- who did it ------------------------------------------------------------------------------------------
+
+
+def test_every_history_has_the_name(room: Room) -> None:
+    room.enter_people()
+    room.sign_in("BEN")
+    book, watch = room.desk.book, room.desk.attached(PartsWatch)
+    assert watch is not None
+    for kind, number, values in (
+        (Kind.TOOL, 3, {"x": 1.0, "z": -1.0}),
+        (Kind.SECONDARY, 1, {"x": -0.01}),
+        (Kind.ZERO, 54, {"z": -120.0}),
+        (Kind.SHAPE, 3, {"kind": "turning"}),
+        (Kind.MILL_TOOL, 20, {"length": 80.0}),
+        (Kind.PRESET, 3, {"x": 5.0}),
+    ):
+        assert book.change(kind, number, values, "set up") == ""
+        room.settle()
+        assert room.store.history(kind)[0].who == "BEN"
+    room.journal.save_version("pin.nc", b"M30\n", "saved in the editor")
+    assert room.store.versions("pin.nc")[0].who == "BEN"
+    watch.lives.change_insert(3, "worn", lambda _text: None)
+    room.settle()
+    with room.store.read() as connection:
+        assert [row.who for row in insert_changes(connection, 9)] == ["BEN"]
+    room.desk.counter.program = "pin.nc"
+    room.find(PartsCounterFunction).correct(1)
+    assert room.log("change")[-1] == ("parts of pin.nc: 0 → 1", "BEN")
+    assert "change" in FILTERS["OPERATOR"]
+
+
+def test_an_accepted_machine_file_has_the_name(room: Room) -> None:
+    room.enter_people()
+    room.sign_in("ANNA")
+    room.desk.changes.accept()
+    assert room.log("machine")[-1][0].endswith("own.toml accepted by ANNA")
+
+
+# --- signing in ------------------------------------------------------------------------------------------
+
+
+def test_the_header_says_who_is_in_force(room: Room) -> None:
+    room.enter_people()
+    assert room.access.words == "OPERATOR"
+    room.sign_in("BEN")
+    assert room.access.words.replace("\u2068", "").replace("\u2069", "") == "BEN · SETUP"
+    room.access.sign_out()
+    assert room.access.words == "OPERATOR"
+    assert room.log("access") == [("BEN has signed in: SETUP", "BEN"), ("BEN has signed out", "BEN")]
+
+
+def test_wrong_pins_wait_longer_and_longer_and_are_logged(room: Room) -> None:
+    room.enter_people()
+    for _ in range(3):
+        room.sign_in("BEN", "0815")
+    assert "NEXT IS TAKEN IN 5 S" in room.desk.notice
+    room.sign_in("BEN")  # the right one, but too early
+    assert room.access.name == ""
+    assert room.desk.notice == "TOO MANY WRONG PINS: THE NEXT IS TAKEN IN 5 S"
+    room.at += 5.0
+    room.sign_in("BEN")
+    assert room.access.name == "BEN"
+    assert room.log("access")[2] == ("wrong PIN for BEN, 3 in a row", "operator")
+
+
+def test_a_new_start_does_not_forget_how_many_were_wrong(room: Room) -> None:
+    room.enter_people()
+    for _ in range(3):
+        room.sign_in("BEN", "0815")
+    room.settle()
+    again = Access(room.journal, clock=lambda: 7.0)
+    assert again.wrong.left(7.0) == 5.0
+
+
+def test_the_waits_are_bounded() -> None:
+    assert [wait_after(count) for count in range(12)] == [0, 0, 0, 5, 10, 20, 40, 80, 160, 300, 300, 300]
+    wrong = WrongPins()
+    for moment in (0.0, 1.0, 2.0):
+        wrong.wrong(moment)
+    assert wrong.left(4.0) == 3.0
+    wrong.right()
+    assert wrong.left(4.0) == 0.0
+
+
+@pytest.mark.parametrize("pin", ["", "123", "1234567890123", "12a4", "1111", "12 34", "١٢٣٤"])
+def test_what_is_no_pin_is_refused(pin: str) -> None:
+    with pytest.raises(PinError):
+        check_pin(pin)
+
+
+def test_what_is_kept_of_a_pin_is_scrypt() -> None:
+    """RFC 7914, chapter 12: the third vector has our N, r and p; its first block is our length."""
+    kept = hashed("pleaseletmein", b"SodiumChloride")
+    assert kept.hash.hex() == "7023bdcb3afd7348461c06cd81fd38ebfda8fbba904f8e3ea9b543f6545da1f2"
+    assert is_pin("pleaseletmein", kept)
+    assert not is_pin("pleaseletmeIn", kept)
+    assert hashed("4711") != hashed("4711")  # each has a salt of its own
+
+
+def test_the_store_does_not_hold_the_pin(room: Room, tmp_path: Path) -> None:
+    room.journal.keep_person(PersonRow("DORA", Level.SERVICE, *hashed("660391827455")))
+    room.settle()
+    for path in (tmp_path / "home").glob("turndesk.db*"):
+        assert b"660391827455" not in path.read_bytes()
+
+
+# --- time ------------------------------------------------------------------------------------------------
+
+
+def test_a_level_falls_back_and_says_so_before(room: Room) -> None:
+    room.enter_people()
+    room.sign_in("ANNA")
+    room.at += 569.0
+    room.desk.clear()
+    room.run(1)
+    assert room.desk.notice == ""
+    room.at += 1.0
+    room.run(1)
+    assert room.desk.notice.endswith("ENDS IN 30 S: ANY KEY KEEPS IT")
+    room.access.used()
+    room.at += 599.0
+    room.run(1)
+    assert room.access.name == "ANNA"
+    room.at += 1.0
+    room.run(1)
+    assert (room.access.name, room.access.level) == ("", Level.OPERATOR)
+    assert "WHAT IS TYPED STAYS" in room.desk.notice
+    assert room.log("access")[-1] == ("ANNA has signed out, after 10 min without a key", "ANNA")
+
+
+def test_who_is_taken_away_is_not_in_force_any_more(room: Room) -> None:
+    room.enter_people()
+    room.sign_in("BEN")
+    room.journal.remove_person("BEN")
+    room.access.reload()
+    assert room.access.words == "OPERATOR"
+
+
+# --- people ----------------------------------------------------------------------------------------------
+
+
+def typed(levels: AccessLevels, *texts: str) -> None:
+    for text in texts:
+        for sign in text:
+            levels.typed(sign)
+        levels.typed("Enter")
+
+
+def test_the_first_one_is_of_service_and_switches_levels_on(room: Room) -> None:
+    levels = room.find(AccessLevels)
+    levels.keys()["F3"].action()
+    typed(levels, "anna", "4711")
+    assert levels.sheet(room.desk.snapshot()).question == "THE SAME PIN AGAIN?"
+    typed(levels, "4711")
+    room.settle()
+    assert [(row.name, row.level) for row in room.access.people.rows] == [("ANNA", 3)]
+    levels.keys()["F3"].action()
+    assert "PEOPLE AND THEIR PINS: SERVICE LEVEL" in room.desk.notice
+    typed(levels, "", "4711")  # Return on her name, and her PIN
+    room.settle()
+    levels.keys()["F3"].action()
+    typed(levels, "Ben", "2", "2580", "2580")
+    room.settle()
+    assert [(row.name, row.level) for row in room.access.people.rows] == [("ANNA", 3), ("BEN", 2)]
+    assert room.log("access")[-1] == ("BEN entered: SETUP, a new PIN", "ANNA")
+
+
+def test_two_different_pins_keep_nothing(room: Room) -> None:
+    levels = room.find(AccessLevels)
+    levels.keys()["F3"].action()
+    typed(levels, "anna", "4711", "4712")
+    room.settle()
+    assert not room.access.people.on
+    assert "TWO DIFFERENT PINS" in room.desk.notice.upper()
+
+
+def test_a_pin_is_not_shown(room: Room) -> None:
+    room.enter_people()
+    levels = room.find(AccessLevels)
+    levels.act()
+    for sign in "4711":
+        levels.typed(sign)
+    assert levels.sheet(room.desk.snapshot()).text == "●●●●"
+    assert not levels.takes("x")
+    levels.left()
+    assert levels.entry.text == ""
+
+
+def test_one_of_service_stays(room: Room) -> None:
+    room.enter_people()
+    with pytest.raises(StoreError, match="SERVICE level has to stay"):
+        room.journal.remove_person("ANNA")
+    for name in ("BEN", "CARLA", "ANNA"):
+        room.journal.remove_person(name)
+    room.access.reload()
+    assert not room.access.people.on
+
+
+def test_a_damaged_row_lets_nobody_in_and_switches_nothing_off(room: Room, tmp_path: Path) -> None:
+    room.enter_people()
+    with closing(sqlite3.connect(tmp_path / "home" / database.FILE_NAME)) as outside, outside:
+        outside.execute("UPDATE people SET level = 3 WHERE name = 'CARLA'")
+    room.access.reload()
+    assert room.access.people.on
+    assert room.access.people.named("CARLA") is None
+    assert any(text.startswith("the PIN of CARLA is not as it was saved") for text in room.store.damaged())
+
+
+def test_a_store_of_before_has_no_levels_and_keeps_its_log(tmp_path: Path) -> None:
+    folder = tmp_path / "older"
+    folder.mkdir()
+    before = next(n for n, text in enumerate(database.migrations()) if "CREATE TABLE people" in text)
+    with closing(sqlite3.connect(folder / database.FILE_NAME, isolation_level=None)) as connection:
+        connection.execute(f"PRAGMA application_id = {database.APPLICATION_ID}")
+        database.migrate(connection, database.migrations()[:before])
+        connection.execute("INSERT INTO events (at, kind, text) VALUES ('2026-01-02', 'start', 'pin.nc')")
+        connection.execute("INSERT INTO tool_offsets (number, x, z, r) VALUES (3, 1.0, -1.0, 0.0)")
+    with Store.open(folder) as store:
+        assert not store.people().on
+        assert [(row.text, row.who) for row in store.events()] == [("pin.nc", "")]
+        assert store.tools()[3].x == 1.0
+        assert store.damaged() == ()
+
+
+# --- service reset ---------------------------------------------------------------------------------------
+
+
+def pressed(room: Room) -> Callable[[], None]:
+    room.enter_people()
+    room.desk.estop()
+    room.run()
+    levels = room.find(AccessLevels)
+    levels.keys()["F9"].action()
+    assert room.desk.notice.startswith("PRESS Y TO TAKE ALL PINS AWAY")
+    levels.service_reset.begin()
+    return levels.service_reset.begin
+
+
+def test_ten_minutes_of_estop_take_all_pins_away(room: Room) -> None:
+    pressed(room)
+    room.at += WAIT - 1.0
+    room.run(1)
+    assert room.access.people.on
+    assert room.access.words == "PINS ARE RESET IN 0:01"
+    room.at += 1.0
+    room.run(1)
+    room.settle()
+    assert not room.access.people.on
+    assert room.access.words == ""
+    told = [text for text, _who in room.log("access")]
+    assert told[0].startswith("service reset begun")
+    assert told[-1] == "service reset done: all people and PINs are taken away, levels are off"
+
+
+def test_the_reset_needs_the_estop_and_ends_with_it(room: Room) -> None:
+    room.enter_people()
+    room.find(AccessLevels).ask_reset()
+    assert room.desk.notice.startswith("PRESS THE E-STOP FIRST")
+    pressed(room)
+    room.at += 300.0
+    room.run(1)
+    room.desk.hands.estop(pressed=False)
+    room.run()
+    room.at += WAIT
+    room.run(1)
+    room.settle()
+    assert room.access.people.on
+    assert room.log("access")[-1][0] == "service reset given up"
+
+
+def test_a_pin_ends_the_reset(room: Room) -> None:
+    pressed(room)
+    room.sign_in("ANNA")
+    room.run(1)
+    room.at += WAIT
+    room.run(1)
+    room.settle()
+    assert room.access.people.on
