@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 from collections import deque
 from collections.abc import Callable, Collection, Mapping
+from contextlib import closing
 from pathlib import Path
 
 from app.desk.data_folder import data_folder
@@ -16,10 +17,12 @@ from app.quality.parts_book import PartsBook
 from core.executor.interrupted_job import InterruptedJob, of_plain, plain
 from core.executor.snapshot import Event
 from core.language.source import Source
-from core.store import backup, people
+from core.store import backup, database, people
+from core.store.backup_verdict import Verdict, verdict
 from core.store.people import People, PersonRow
 from core.store.store import Store
 from core.store.store_errors import StoreError
+from core.store.store_file import FILE_NAME
 from core.store.store_rows import EventRow, Kind, RunRow, ToolRow, VersionRow
 from core.store.store_writer import Backlog
 
@@ -232,6 +235,12 @@ class Journal(Persistence):
         """A copy of the store, also while it is written. Raises StoreError."""
         self.opened()
         backup.backup(self._folder, target)
+
+    def judge(self, source: Path) -> Verdict:
+        """Look through a backup and hold it against the store. Raises StoreError."""
+        self.opened()
+        with closing(database.connect(self._folder / FILE_NAME, read_only=True)) as now:
+            return verdict(now, source)
 
     def restore(self, source: Path) -> Path | None:
         """Put a backup in the store's place; events of the meantime are written to it. Raises StoreError.

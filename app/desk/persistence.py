@@ -6,6 +6,7 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from core.store.backup_verdict import Verdict
 from core.store.people import People, PersonRow
 from core.store.store_errors import StoreError
 from core.store.store_rows import EventRow, RunRow
@@ -106,6 +107,10 @@ class Persistence:
 
     def backup(self, _target: Path) -> None:
         """A copy of everything that is kept. Raises StoreError."""
+        raise StoreError(NOTHING_KEPT)
+
+    def judge(self, _source: Path) -> Verdict:
+        """Whether a backup is whole, and how it differs from what is kept; on a worker. Raises StoreError."""
         raise StoreError(NOTHING_KEPT)
 
     def restore(self, _source: Path) -> Path | None:

@@ -6,6 +6,7 @@ import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime
+from functools import partial
 from pathlib import Path
 
 from app.desk.daily_backup import ENDING
@@ -21,6 +22,7 @@ from app.programs.whole_file import FileError
 from app.special.special_functions import SpecialFunction
 from core.access.access_table import Act
 from core.executor.snapshot import Snapshot
+from core.store.backup_verdict import Verdict
 
 BARRED = "A PROGRAM IS UNDER WAY: NOTHING IS RESTORED BEFORE IT HAS ENDED"
 
@@ -56,6 +58,7 @@ class BackupAndRestore(SpecialFunction):
         self.persistence, self.worker, self.folder, self.plugged = persistence, worker, folder, plugged
         self.daily = daily
         self.places: tuple[Place, ...] = ()
+        self.verdicts: dict[Place, Verdict] = {}
         self.busy = ""
         self.restored: Callable[[], None] = lambda: None
 
@@ -75,6 +78,19 @@ class BackupAndRestore(SpecialFunction):
     def _found(self, places: tuple[Place, ...]) -> None:
         self.places = places
         self.marked = min(self.marked, max(0, len(places) - 1))
+        self.verdicts = {}
+        for place in places:
+            if place.backup:
+                self.worker.queue(partial(self._judged, place), self._judge, self._failed)
+
+    def _judged(self, place: Place) -> tuple[Place, Verdict]:
+        """On the worker, one after the other. Raises StoreError."""
+        return place, self.persistence.judge(place.path)
+
+    def _judge(self, found: tuple[Place, Verdict]) -> None:
+        place, verdict = found
+        if place in self.places:
+            self.verdicts[place] = verdict
 
     def sheet(self, _snapshot: Snapshot) -> Sheet:
         """Places, each with its backups under it."""
@@ -82,7 +98,7 @@ class BackupAndRestore(SpecialFunction):
             Row(
                 (
                     place.label if not place.backup else f"     {place.label}",
-                    "RESTORE" if place.backup else "BACKUP TO HERE",
+                    self._does(place),
                     f"{place.size / 1024:.0f} KB" if place.backup else "",
                     place.at,
                 ),
@@ -94,12 +110,31 @@ class BackupAndRestore(SpecialFunction):
         return Sheet(
             "BACKUP AND RESTORE",
             ("WHERE", "RETURN DOES", "SIZE", "WHEN"),
-            (0.42, 0.23, 0.13, 0.22),
+            (0.36, 0.29, 0.13, 0.22),
             rows,
             self.marked,
-            notes=(self.busy,) if self.busy else ("What a restore replaces is kept beside it.",),
+            notes=(self.busy,) if self.busy else self._notes(),
             raw=frozenset({0, 2, 3}),
         )
+
+    def _does(self, place: Place) -> str:
+        if not place.backup:
+            return "BACKUP TO HERE"
+        verdict = self.verdicts.get(place)
+        if verdict is None:
+            return "LOOKED THROUGH …"
+        return "NOTHING: IT IS DAMAGED" if verdict.problem else "RESTORE: IT IS WHOLE"
+
+    def _notes(self) -> tuple[str, ...]:
+        """Of the marked backup: what is wrong with it, or what a restore would change."""
+        kept = "What a restore replaces is kept beside it."
+        place = self.places[self.marked] if self.places else None
+        verdict = self.verdicts.get(place) if place is not None else None
+        if verdict is None:
+            return (kept,)
+        if verdict.problem:
+            return (verdict.problem, kept)
+        return (tr("Other than now: {what}.").format(what=_other(verdict)), kept)
 
     def keys(self) -> Mapping[str, Key]:
         """F4 looks for media again."""
@@ -141,11 +176,16 @@ class BackupAndRestore(SpecialFunction):
     def _restore(self, place: Place) -> None:
         if self.desk.refused(Act.RESTORE):
             return
+        verdict = self.verdicts.get(place)
+        if verdict is None or verdict.problem:
+            why = verdict.problem if verdict is not None else tr("IT IS STILL LOOKED THROUGH: WAIT")
+            self.desk.refuse(why)
+            return
         if self.desk.snapshot().state in UNDER_WAY:
             self.desk.say(BARRED)
             return
-        asked = tr("PRESS Y TO RESTORE {name} OVER EVERYTHING KEPT NOW, ESC TO LEAVE IT")
-        self.desk.ask(asked.format(name=place.label), lambda: self._restore_now(place))
+        asked = tr("PRESS Y TO RESTORE {name} OVER EVERYTHING KEPT NOW ({what}), ESC TO LEAVE IT")
+        self.desk.ask(asked.format(name=place.label, what=_other(verdict)), lambda: self._restore_now(place))
 
     def _restore_now(self, place: Place) -> None:
         if self.desk.snapshot().state in UNDER_WAY:
@@ -172,6 +212,14 @@ class BackupAndRestore(SpecialFunction):
     def prompt(self) -> str:
         """What Return does, for the prompt line."""
         return "RETURN ON A PLACE BACKS UP, ON A BACKUP RESTORES IT; F4 LOOKS FOR STICKS AGAIN"
+
+
+def _other(verdict: Verdict) -> str:
+    """How many of what a restore would change, in words."""
+    told = [f"{tr(name)} {count}" for name, count in verdict.differs]
+    if verdict.older:
+        told.append(tr("the rest not compared, it is of an older version"))
+    return ", ".join(told) or tr("nothing")
 
 
 def _places(folder: Path, plugged: Sequence[Stick], daily: Path | None) -> tuple[Place, ...]:

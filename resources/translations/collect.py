@@ -104,6 +104,13 @@ ALSO = (
     "IN/OUT",
     "JOB",
     "TRY",
+    # Of what a backup differs in.
+    "programs",
+    "settings",
+    "presets",
+    "jobs",
+    "people",
+    "tools",
     "RED",
     # Of the signal tower.
     "TOOL LIFE GONE, OR PARTS WAIT TO BE MEASURED",

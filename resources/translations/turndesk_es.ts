@@ -690,6 +690,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>BACKUPS</source>
+      <translation>COPIAS DE SEGURIDAD</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>BEGIN PGM and END PGM name different units.</source>
       <translation>BEGIN PGM y END PGM nombran unidades distintas.</translation>
     </message>
@@ -1355,6 +1360,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>FRESH INSERTS</source>
+      <translation>PLAQUITAS NUEVAS</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>Feed %1 is out of range: %2 to %3.</source>
       <translation>El avance %1 está fuera de rango: de %2 a %3.</translation>
     </message>
@@ -1890,6 +1900,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>MEASURED FEATURES</source>
+      <translation>MEDIDAS DE PIEZA</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>Makes a program the cycle that CYCL CALL runs.</source>
       <translation>Hace de un programa el ciclo que CYCL CALL ejecuta.</translation>
     </message>
@@ -2125,6 +2140,16 @@
     </message>
     <message>
       <location filename="" />
+      <source>PART COUNTS</source>
+      <translation>CONTADORES DE PIEZAS</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>PEOPLE AND THEIR PINS</source>
+      <translation>PERSONAS Y SUS PIN</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>PLANE not permitted with M128: %1</source>
       <translation>PLANE no permitido con M128: %1</translation>
     </message>
@@ -2220,6 +2245,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>Position of X, Z or C in the program's system, X as DIAMON says; $P_EP[X] is the same here.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="" />
       <source>Positions.</source>
       <translation>Posiciones.</translation>
     </message>
@@ -2282,6 +2312,11 @@
       <location filename="" />
       <source>R must be a number over 0.</source>
       <translation>R debe ser un número mayor que 0.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>READINGS OF PARTS</source>
+      <translation>LECTURAS DE PIEZAS</translation>
     </message>
     <message>
       <location filename="" />
@@ -2487,6 +2522,16 @@
       <location filename="" />
       <source>S is rpm again.</source>
       <translation>S vuelve a ser rpm.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>SERVICE</source>
+      <translation>SERVICIO</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>STOCK AND CHECKS</source>
+      <translation>MATERIAL Y CONTROLES</translation>
     </message>
     <message>
       <location filename="" />
@@ -2760,8 +2805,23 @@
     </message>
     <message>
       <location filename="" />
+      <source>THE MACHINE FILE</source>
+      <translation>EL FICHERO DE MÁQUINA</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>THE PROGRAM ENDS WITHOUT M30 OR M02</source>
       <translation>EL PROGRAMA TERMINA SIN M30 NI M02</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>THE QUEUE OF JOBS</source>
+      <translation>LA COLA DE TRABAJOS</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>THE SCREEN'S SETTINGS</source>
+      <translation>LOS AJUSTES DE PANTALLA</translation>
     </message>
     <message>
       <location filename="" />
@@ -2775,8 +2835,23 @@
     </message>
     <message>
       <location filename="" />
+      <source>TOOL LIVES</source>
+      <translation>VIDAS DE HERRAMIENTA</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>TOOL SHAPES</source>
+      <translation>FORMAS DE HERRAMIENTA</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>TRACYL(40): Y is measured round the part on 40 mm, Z along it, X is how far out the tool stands. Arcs and radius compensation lie in G19.</source>
       <translation>TRACYL(40): Y se mide alrededor de la pieza sobre 40 mm, Z a lo largo de ella, X es qué tan afuera está la herramienta. Los arcos y la compensación de radio están en G19.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>TRANSFER SETTINGS</source>
+      <translation>AJUSTES DE TRANSFERENCIA</translation>
     </message>
     <message>
       <location filename="" />
@@ -3277,6 +3352,16 @@
       <location filename="" />
       <source>Variables of the program: REAL, INT, BOOL, CHAR, STRING; REAL name[5] is an array.</source>
       <translation>Variables del programa: REAL, INT, BOOL, CHAR, STRING; REAL nombre[5] es una matriz.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>WEAR AND CORRECTIONS</source>
+      <translation>DESGASTE Y CORRECCIONES</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>WHAT IS RESTORED</source>
+      <translation>LO QUE SE RESTAURA</translation>
     </message>
     <message>
       <location filename="" />
@@ -3810,6 +3895,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>jobs</source>
+      <translation>trabajos</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>kind of feed and spindle speed</source>
       <translation>tipo de avance y de velocidad de husillo</translation>
     </message>
@@ -3855,6 +3945,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>people</source>
+      <translation>personas</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>picture</source>
       <translation>imagen</translation>
     </message>
@@ -3875,6 +3970,16 @@
     </message>
     <message>
       <location filename="" />
+      <source>presets</source>
+      <translation>presets</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>programs</source>
+      <translation>programas</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>programs from outside are not called; put the file beside the main program and call its name</source>
       <translation>los programas de fuera no se llaman; ponga el archivo junto al programa principal y llame su nombre</translation>
     </message>
@@ -3882,6 +3987,11 @@
       <location filename="" />
       <source>settable offset</source>
       <translation>cero ajustable</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>settings</source>
+      <translation>ajustes</translation>
     </message>
     <message>
       <location filename="" />
@@ -4007,6 +4117,11 @@
       <location filename="" />
       <source>tool radius compensation</source>
       <translation>compensación de radio de herramienta</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>tools</source>
+      <translation>herramientas</translation>
     </message>
     <message>
       <location filename="" />
@@ -4277,6 +4392,111 @@
       <location filename="app/compose/stored_offsets.py" />
       <source>mend it on the page of its shape (F8), or with 'turndesk offsets set'</source>
       <translation>corríjala en la página de su forma (F8), o con 'turndesk offsets set'</translation>
+    </message>
+    <message>
+      <location filename="app/desk/access.py" />
+      <source>%1 has signed in: %2</source>
+      <translation>%1 ha entrado: %2</translation>
+    </message>
+    <message>
+      <location filename="app/desk/access.py" />
+      <source>%1 has signed out%2</source>
+      <translation>%1 ha salido%2</translation>
+    </message>
+    <message>
+      <location filename="app/desk/access.py" />
+      <source>, after %1 min without a key</source>
+      <translation>, tras %1 min sin una tecla</translation>
+    </message>
+    <message>
+      <location filename="app/desk/access.py" />
+      <source>NOT KEPT: {why}</source>
+      <translation>SIN GUARDAR: {why}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/access.py" />
+      <source>THAT IS NOT THE PIN OF {name}; THE NEXT IS TAKEN IN {seconds} S</source>
+      <translation>ESE NO ES EL PIN DE {name}; EL SIGUIENTE SE ACEPTA EN {seconds} S</translation>
+    </message>
+    <message>
+      <location filename="app/desk/access.py" />
+      <source>THE LEVEL OF {name} ENDS IN {seconds} S: ANY KEY KEEPS IT</source>
+      <translation>EL NIVEL DE {name} TERMINA EN {seconds} S: CUALQUIER TECLA LO MANTIENE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/access.py" />
+      <source>TOO MANY WRONG PINS: THE NEXT IS TAKEN IN {seconds} S</source>
+      <translation>DEMASIADOS PIN ERRÓNEOS: EL SIGUIENTE SE ACEPTA EN {seconds} S</translation>
+    </message>
+    <message>
+      <location filename="app/desk/access.py" />
+      <source>access minutes</source>
+      <translation>access minutes</translation>
+    </message>
+    <message>
+      <location filename="app/desk/access.py" />
+      <source>levels fall back after %1 min</source>
+      <translation>los niveles vuelven a operador tras %1 min</translation>
+    </message>
+    <message>
+      <location filename="app/desk/access.py" />
+      <source>wrong PIN for %1, %2 in a row</source>
+      <translation>PIN erróneo de %1, %2 seguidos</translation>
+    </message>
+    <message>
+      <location filename="app/desk/access.py" />
+      <source>wrong PINs</source>
+      <translation>wrong PINs</translation>
+    </message>
+    <message>
+      <location filename="app/desk/access.py" />
+      <source>{name} HAS SIGNED IN: {level}</source>
+      <translation>{name} HA ENTRADO: {level}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/access.py" />
+      <source>{name} WAS AWAY: OPERATOR LEVEL IS IN FORCE, WHAT IS TYPED STAYS; SIGN IN: F10</source>
+      <translation>{name} NO ESTABA: RIGE EL NIVEL OPERADOR, LO ESCRITO QUEDA; ENTRAR: F10</translation>
+    </message>
+    <message>
+      <location filename="app/desk/access.py" />
+      <source>{what}: {level} LEVEL IS NEEDED, {now} IS IN FORCE; SIGN IN: F10, ACCESS LEVELS</source>
+      <translation>{what}: HACE FALTA EL NIVEL {level}, RIGE {now}; ENTRAR: F10, NIVELES DE ACCESO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/access_reset.py" />
+      <source>PINS ARE RESET IN {time}</source>
+      <translation>LOS PIN SE BORRAN EN {time}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/access_reset.py" />
+      <source>PRESS THE E-STOP FIRST: LEVELS ARE RESET WHILE IT STAYS PRESSED FOR 10 MINUTES</source>
+      <translation>PULSE ANTES LA PARADA DE EMERGENCIA: LOS NIVELES SE BORRAN SI SIGUE PULSADA 10 MINUTOS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/access_reset.py" />
+      <source>THE SERVICE RESET IS GIVEN UP: LEVELS ARE AS THEY WERE</source>
+      <translation>EL BORRADO DE SERVICIO SE ABANDONA: LOS NIVELES SIGUEN IGUAL</translation>
+    </message>
+    <message>
+      <location filename="app/desk/access_reset.py" />
+      <source>THERE ARE NO LEVELS TO RESET</source>
+      <translation>NO HAY NIVELES QUE BORRAR</translation>
+    </message>
+    <message>
+      <location filename="app/desk/access_reset.py" />
+      <source>service reset begun: the E-stop has to stay pressed for 10 min</source>
+      <translation>borrado de servicio empezado: la parada de emergencia debe seguir pulsada 10 min</translation>
+    </message>
+    <message>
+      <location filename="app/desk/access_reset.py" />
+      <source>service reset done: all people and PINs are taken away, levels are off</source>
+      <translation>borrado de servicio hecho: se quitan todas las personas y los PIN, sin niveles</translation>
+    </message>
+    <message>
+      <location filename="app/desk/access_reset.py" />
+      <source>service reset given up</source>
+      <translation>borrado de servicio abandonado</translation>
     </message>
     <message>
       <location filename="app/desk/arithmetic.py" />
@@ -6171,7 +6391,7 @@
     <message>
       <location filename="app/jobs/jobs_model.py" />
       <source>SETUP</source>
-      <translation>PREPARACIÓN</translation>
+      <translation>PREPARADOR</translation>
     </message>
     <message>
       <location filename="app/jobs/jobs_model.py" />
@@ -6197,6 +6417,36 @@
       <location filename="app/jobs/jobs_model.py" />
       <source>in order</source>
       <translation>en orden</translation>
+    </message>
+    <message>
+      <location filename="app/jobs/jobs_model.py" />
+      <source>job %1 taken out</source>
+      <translation>trabajo %1 quitado</translation>
+    </message>
+    <message>
+      <location filename="app/jobs/jobs_model.py" />
+      <source>job %1: %2</source>
+      <translation>trabajo %1: %2</translation>
+    </message>
+    <message>
+      <location filename="app/jobs/jobs_model.py" />
+      <source>job %1: %2 parts</source>
+      <translation>trabajo %1: %2 piezas</translation>
+    </message>
+    <message>
+      <location filename="app/jobs/jobs_model.py" />
+      <source>job %1: %2 → %3 parts</source>
+      <translation>trabajo %1: %2 → %3 piezas</translation>
+    </message>
+    <message>
+      <location filename="app/jobs/jobs_model.py" />
+      <source>job %1: now %2</source>
+      <translation>trabajo %1: ahora %2</translation>
+    </message>
+    <message>
+      <location filename="app/jobs/jobs_model.py" />
+      <source>jobs: those that are done are cleared</source>
+      <translation>trabajos: se quitan los hechos</translation>
     </message>
     <message>
       <location filename="app/jobs/jobs_view.py" />
@@ -6232,6 +6482,11 @@
       <location filename="app/jobs/jobs_watch.py" />
       <source>TOOLS COMPLETE</source>
       <translation>HERRAMIENTAS COMPLETAS</translation>
+    </message>
+    <message>
+      <location filename="app/jobs/jobs_watch.py" />
+      <source>job %1 begun</source>
+      <translation>trabajo %1 empezado</translation>
     </message>
     <message>
       <location filename="app/jobs/jobs_watch.py" />
@@ -7474,6 +7729,11 @@
       <translation>EL CAMBIO ANTERIOR TODAVÍA SE ESTÁ GUARDANDO: OPRIMA RETURN OTRA VEZ</translation>
     </message>
     <message>
+      <location filename="app/offsets/offset_book.py" />
+      <source>preset in force: %1 → %2</source>
+      <translation>preset vigente: %1 → %2</translation>
+    </message>
+    <message>
       <location filename="app/offsets/offset_effect.py" />
       <source>DRAWING THE PATH BEFORE AND AFTER</source>
       <translation>DIBUJANDO LA TRAYECTORIA ANTES Y DESPUÉS</translation>
@@ -8121,7 +8381,7 @@
     <message>
       <location filename="app/offsets/tool_offsets_view.py" />
       <source>TOOL OFFSETS</source>
-      <translation>HERRAMIENTAS</translation>
+      <translation>CORRECTORES DE HERRAMIENTA</translation>
     </message>
     <message>
       <location filename="app/offsets/tool_offsets_view.py" />
@@ -8245,6 +8505,11 @@
     </message>
     <message>
       <location filename="app/part/part_sheet.py" />
+      <source>%1: stock %2, silenced checks %3</source>
+      <translation>%1: material %2, controles callados %3</translation>
+    </message>
+    <message>
+      <location filename="app/part/part_sheet.py" />
       <source>FINDINGS</source>
       <translation>AVISOS</translation>
     </message>
@@ -8277,11 +8542,6 @@
       <location filename="app/part/part_sheet.py" />
       <source>NO PART IS PROVED ON A MILL</source>
       <translation>EN UNA FRESADORA NO SE PRUEBA PIEZA</translation>
-    </message>
-    <message>
-      <location filename="app/part/part_sheet.py" />
-      <source>NOT KEPT: {why}</source>
-      <translation>SIN GUARDAR: {why}</translation>
     </message>
     <message>
       <location filename="app/part/part_sheet.py" />
@@ -8342,6 +8602,11 @@
       <location filename="app/part/part_sheet.py" />
       <source>a check is not silenced without a reason</source>
       <translation>una comprobación no se silencia sin motivo</translation>
+    </message>
+    <message>
+      <location filename="app/part/part_sheet.py" />
+      <source>not said</source>
+      <translation>no dicho</translation>
     </message>
     <message>
       <location filename="app/part/part_sheet.py" />
@@ -8715,6 +8980,11 @@
     </message>
     <message>
       <location filename="app/programs/copy_rename_delete.py" />
+      <source>program %1</source>
+      <translation>programa %1</translation>
+    </message>
+    <message>
+      <location filename="app/programs/copy_rename_delete.py" />
       <source>{name} IS DELETED; ITS VERSIONS ARE KEPT</source>
       <translation>{name} QUEDÓ BORRADO; SUS VERSIONES SE GUARDAN</translation>
     </message>
@@ -8842,6 +9112,11 @@
       <location filename="app/programs/import_export.py" />
       <source>RETURN OPENS A PLACE OR FOLDER; F4 COPIES THE MARKED PROGRAM THERE, F5 ALL; ESC GOES BACK</source>
       <translation>RETURN ABRE UN LUGAR O CARPETA; F4 COPIA AHÍ EL PROGRAMA MARCADO, F5 TODOS; ESC REGRESA</translation>
+    </message>
+    <message>
+      <location filename="app/programs/import_export.py" />
+      <source>programs imported: %1</source>
+      <translation>programas importados: %1</translation>
     </message>
     <message>
       <location filename="app/programs/import_export.py" />
@@ -9195,8 +9470,18 @@
     </message>
     <message>
       <location filename="app/quality/features_section.py" />
+      <source>%1 entered</source>
+      <translation>%1 introducido</translation>
+    </message>
+    <message>
+      <location filename="app/quality/features_section.py" />
       <source>%1 is no whole number</source>
       <translation>%1 no es un número entero</translation>
+    </message>
+    <message>
+      <location filename="app/quality/features_section.py" />
+      <source>%1 removed</source>
+      <translation>%1 quitado</translation>
     </message>
     <message>
       <location filename="app/quality/features_section.py" />
@@ -9360,6 +9645,11 @@
     </message>
     <message>
       <location filename="app/quality/features_section.py" />
+      <source>measured on %1: %2</source>
+      <translation>se mide en %1: %2</translation>
+    </message>
+    <message>
+      <location filename="app/quality/features_section.py" />
       <source>nominal, tolerance, sample plan</source>
       <translation>nominal, tolerancia, plan de muestras</translation>
     </message>
@@ -9434,6 +9724,21 @@
       <translation>características, lecturas, gráficos, tendencias</translation>
     </message>
     <message>
+      <location filename="app/quality/parts_watch.py" />
+      <source>do not wait any more</source>
+      <translation>ya no esperan</translation>
+    </message>
+    <message>
+      <location filename="app/quality/parts_watch.py" />
+      <source>parts of %1 %2</source>
+      <translation>piezas de %1 %2</translation>
+    </message>
+    <message>
+      <location filename="app/quality/parts_watch.py" />
+      <source>wait to be measured</source>
+      <translation>esperan a ser medidas</translation>
+    </message>
+    <message>
       <location filename="app/quality/plots_view.py" />
       <source>NOTHING TO DRAW YET</source>
       <translation>AÚN NO HAY NADA QUE DIBUJAR</translation>
@@ -9442,6 +9747,16 @@
       <location filename="app/quality/readings_section.py" />
       <source>%1 is more than 0; type the measured size, not the deviation</source>
       <translation>%1 es mayor que 0; escriba la medida, no la desviación</translation>
+    </message>
+    <message>
+      <location filename="app/quality/readings_section.py" />
+      <source>%1 of part %2 of %3 measured: %4 mm</source>
+      <translation>%1 de la pieza %2 de %3 medido: %4 mm</translation>
+    </message>
+    <message>
+      <location filename="app/quality/readings_section.py" />
+      <source>%1 of part %2 of %3 taken out: %4 mm</source>
+      <translation>%1 de la pieza %2 de %3 quitado: %4 mm</translation>
     </message>
     <message>
       <location filename="app/quality/readings_section.py" />
@@ -9895,6 +10210,11 @@
     </message>
     <message>
       <location filename="app/quality/tool_life_section.py" />
+      <source>%1 min</source>
+      <translation>%1 min</translation>
+    </message>
+    <message>
+      <location filename="app/quality/tool_life_section.py" />
       <source>LEFT</source>
       <translation>FALTA</translation>
     </message>
@@ -9960,6 +10280,16 @@
     </message>
     <message>
       <location filename="app/quality/tool_life_section.py" />
+      <source>does not stop</source>
+      <translation>no para</translation>
+    </message>
+    <message>
+      <location filename="app/quality/tool_life_section.py" />
+      <source>life of T%1: %2 parts, %3, warn at %4</source>
+      <translation>vida de T%1: %2 piezas, %3, aviso al %4</translation>
+    </message>
+    <message>
+      <location filename="app/quality/tool_life_section.py" />
       <source>parts and minutes of an insert</source>
       <translation>piezas y minutos de un inserto</translation>
     </message>
@@ -9967,6 +10297,11 @@
       <location filename="app/quality/tool_life_section.py" />
       <source>{count} parts</source>
       <translation>{count} piezas</translation>
+    </message>
+    <message>
+      <location filename="app/quality/tool_life_watch.py" />
+      <source>T%1 has cut %2 min</source>
+      <translation>T%1 ha cortado %2 min</translation>
     </message>
     <message>
       <location filename="app/quality/tool_life_watch.py" />
@@ -10077,6 +10412,11 @@
       <location filename="app/quality/trends_section.py" />
       <source>cycle times, stops, availability</source>
       <translation>tiempos de ciclo, paradas, disponibilidad</translation>
+    </message>
+    <message>
+      <location filename="app/quality/trends_section.py" />
+      <source>hours of a shift: %1 to %2</source>
+      <translation>horas de un turno: %1 a %2</translation>
     </message>
     <message>
       <location filename="app/quality/trends_section.py" />
@@ -11256,7 +11596,7 @@
     <message>
       <location filename="app/screen/page_table.py" />
       <source>ZERO OFFSETS</source>
-      <translation>CEROS DE PIEZA</translation>
+      <translation>DECALAJES DE ORIGEN</translation>
     </message>
     <message>
       <location filename="app/screen/page_table.py" />
@@ -12104,6 +12444,161 @@
       <translation>FORMAS  ·  LAS DE ESTE PROGRAMA POR LÍNEA</translation>
     </message>
     <message>
+      <location filename="app/special/access_levels.py" />
+      <source>%1 entered: %2, a new PIN</source>
+      <translation>%1 introducido: %2, PIN nuevo</translation>
+    </message>
+    <message>
+      <location filename="app/special/access_levels.py" />
+      <source>%1 is entered already; F4 is for another PIN</source>
+      <translation>%1 ya está; F4 es para otro PIN</translation>
+    </message>
+    <message>
+      <location filename="app/special/access_levels.py" />
+      <source>%1 taken away</source>
+      <translation>%1 quitado</translation>
+    </message>
+    <message>
+      <location filename="app/special/access_levels.py" />
+      <source>1 OPERATOR, 2 SETUP, 3 SERVICE?</source>
+      <translation>¿1 OPERADOR, 2 PREPARADOR, 3 SERVICIO?</translation>
+    </message>
+    <message>
+      <location filename="app/special/access_levels.py" />
+      <source>ACCESS LEVELS</source>
+      <translation>NIVELES DE ACCESO</translation>
+    </message>
+    <message>
+      <location filename="app/special/access_levels.py" />
+      <source>ALL PINS ARE TAKEN AWAY WHEN THE TIME IS OVER; RELEASING THE E-STOP OR A PIN ENDS IT</source>
+      <translation>AL ACABAR EL TIEMPO SE BORRAN TODOS LOS PIN; SOLTAR LA PARADA O UN PIN LO ACABA</translation>
+    </message>
+    <message>
+      <location filename="app/special/access_levels.py" />
+      <source>ALL PINS ARE TAKEN AWAY: LEVELS ARE OFF</source>
+      <translation>TODOS LOS PIN BORRADOS: SIN NIVELES</translation>
+    </message>
+    <message>
+      <location filename="app/special/access_levels.py" />
+      <source>After {minutes} minutes without a key OPERATOR level is in force again.</source>
+      <translation>Tras {minutes} minutos sin una tecla vuelve a regir el nivel OPERADOR.</translation>
+    </message>
+    <message>
+      <location filename="app/special/access_levels.py" />
+      <source>E-stop, feed hold, Reset and drives off are behind no level.</source>
+      <translation>Parada de emergencia, parada de avance, Reset y quitar accionamientos no dependen de ningún nivel.</translation>
+    </message>
+    <message>
+      <location filename="app/special/access_levels.py" />
+      <source>F3 ENTERS SOMEBODY AND SWITCHES LEVELS ON; ESC GOES BACK TO THE LIST</source>
+      <translation>F3 INTRODUCE A ALGUIEN Y ACTIVA LOS NIVELES; ESC VUELVE A LA LISTA</translation>
+    </message>
+    <message>
+      <location filename="app/special/access_levels.py" />
+      <source>F3 enters the first one, of SERVICE level, and switches them on.</source>
+      <translation>F3 introduce al primero, de nivel SERVICIO, y los activa.</translation>
+    </message>
+    <message>
+      <location filename="app/special/access_levels.py" />
+      <source>Levels are off: everybody may change everything, and nobody is asked.</source>
+      <translation>Sin niveles: todos pueden cambiarlo todo y no se pregunta a nadie.</translation>
+    </message>
+    <message>
+      <location filename="app/special/access_levels.py" />
+      <source>MARK YOUR NAME AND PRESS RETURN TO SIGN IN; F2 SIGNS OUT; ESC GOES BACK TO THE LIST</source>
+      <translation>MARQUE SU NOMBRE Y PULSE RETURN PARA ENTRAR; F2 SALE; ESC VUELVE A LA LISTA</translation>
+    </message>
+    <message>
+      <location filename="app/special/access_levels.py" />
+      <source>NEW PIN OF {name}?</source>
+      <translation>¿PIN NUEVO DE {name}?</translation>
+    </message>
+    <message>
+      <location filename="app/special/access_levels.py" />
+      <source>PEOPLE</source>
+      <translation>PERSONAS</translation>
+    </message>
+    <message>
+      <location filename="app/special/access_levels.py" />
+      <source>PIN OF {name}?</source>
+      <translation>¿PIN DE {name}?</translation>
+    </message>
+    <message>
+      <location filename="app/special/access_levels.py" />
+      <source>PRESS Y TO TAKE ALL PINS AWAY IN 10 MINUTES; IT IS LOGGED; ESC TO KEEP THEM</source>
+      <translation>PULSE Y PARA BORRAR TODOS LOS PIN EN 10 MINUTOS; QUEDA ANOTADO; ESC LOS DEJA</translation>
+    </message>
+    <message>
+      <location filename="app/special/access_levels.py" />
+      <source>PRESS Y TO TAKE {name} AWAY, ESC TO KEEP THE PIN</source>
+      <translation>PULSE Y PARA QUITAR A {name}, ESC PARA DEJAR EL PIN</translation>
+    </message>
+    <message>
+      <location filename="app/special/access_levels.py" />
+      <source>SIGN OUT</source>
+      <translation>SALIR</translation>
+    </message>
+    <message>
+      <location filename="app/special/access_levels.py" />
+      <source>SIGNED OUT: OPERATOR LEVEL IS IN FORCE</source>
+      <translation>HA SALIDO: RIGE EL NIVEL OPERADOR</translation>
+    </message>
+    <message>
+      <location filename="app/special/access_levels.py" />
+      <source>TABLE</source>
+      <translation>TABLA</translation>
+    </message>
+    <message>
+      <location filename="app/special/access_levels.py" />
+      <source>THE SAME PIN AGAIN?</source>
+      <translation>¿EL MISMO PIN OTRA VEZ?</translation>
+    </message>
+    <message>
+      <location filename="app/special/access_levels.py" />
+      <source>TYPE IT AND PRESS RETURN; ESC LEAVES IT</source>
+      <translation>ESCRÍBALO Y PULSE RETURN; ESC LO DEJA</translation>
+    </message>
+    <message>
+      <location filename="app/special/access_levels.py" />
+      <source>WHAT IS CHANGED</source>
+      <translation>QUÉ SE CAMBIA</translation>
+    </message>
+    <message>
+      <location filename="app/special/access_levels.py" />
+      <source>WHOSE NAME?</source>
+      <translation>¿NOMBRE?</translation>
+    </message>
+    <message>
+      <location filename="app/special/access_levels.py" />
+      <source>a level is 1, 2 or 3</source>
+      <translation>un nivel es 1, 2 o 3</translation>
+    </message>
+    <message>
+      <location filename="app/special/access_levels.py" />
+      <source>sign in</source>
+      <translation>sign in</translation>
+    </message>
+    <message>
+      <location filename="app/special/access_levels.py" />
+      <source>sign in, people, PINs</source>
+      <translation>entrar, personas, PIN</translation>
+    </message>
+    <message>
+      <location filename="app/special/access_levels.py" />
+      <source>those were two different PINs; nothing was kept, enter it anew</source>
+      <translation>eran dos PIN distintos; no se guardó nada, introdúzcalo de nuevo</translation>
+    </message>
+    <message>
+      <location filename="app/special/access_levels.py" />
+      <source>{name} IS TAKEN AWAY</source>
+      <translation>{name} QUITADO</translation>
+    </message>
+    <message>
+      <location filename="app/special/access_levels.py" />
+      <source>{name}: {level}, AND THE PIN IS KEPT</source>
+      <translation>{name}: {level}, Y EL PIN QUEDA GUARDADO</translation>
+    </message>
+    <message>
       <location filename="app/special/backup_and_restore.py" />
       <source>%1 KB</source>
       <translation>%1 KB</translation>
@@ -12140,8 +12635,33 @@
     </message>
     <message>
       <location filename="app/special/backup_and_restore.py" />
-      <source>PRESS Y TO RESTORE {name} OVER EVERYTHING KEPT NOW, ESC TO LEAVE IT</source>
-      <translation>OPRIMA Y PARA RESTAURAR {name} SOBRE TODO LO GUARDADO, ESC PARA DEJARLO</translation>
+      <source>IT IS STILL LOOKED THROUGH: WAIT</source>
+      <translation>TODAVÍA SE REVISA: ESPERE</translation>
+    </message>
+    <message>
+      <location filename="app/special/backup_and_restore.py" />
+      <source>LOOKED THROUGH …</source>
+      <translation>SE REVISA …</translation>
+    </message>
+    <message>
+      <location filename="app/special/backup_and_restore.py" />
+      <source>NOTHING: IT IS DAMAGED</source>
+      <translation>NADA: ESTÁ DAÑADA</translation>
+    </message>
+    <message>
+      <location filename="app/special/backup_and_restore.py" />
+      <source>Other than now: {what}.</source>
+      <translation>Distinto de ahora: {what}.</translation>
+    </message>
+    <message>
+      <location filename="app/special/backup_and_restore.py" />
+      <source>PRESS Y TO RESTORE {name} OVER EVERYTHING KEPT NOW ({what}), ESC TO LEAVE IT</source>
+      <translation>PULSE Y PARA RESTAURAR {name} SOBRE TODO LO GUARDADO ({what}), ESC PARA DEJARLO</translation>
+    </message>
+    <message>
+      <location filename="app/special/backup_and_restore.py" />
+      <source>RESTORE: IT IS WHOLE</source>
+      <translation>RESTAURAR: ESTÁ ÍNTEGRA</translation>
     </message>
     <message>
       <location filename="app/special/backup_and_restore.py" />
@@ -12175,8 +12695,23 @@
     </message>
     <message>
       <location filename="app/special/backup_and_restore.py" />
+      <source>nothing</source>
+      <translation>nada</translation>
+    </message>
+    <message>
+      <location filename="app/special/backup_and_restore.py" />
       <source>offsets, versions, counts, settings, log</source>
       <translation>compensaciones, versiones, ajustes</translation>
+    </message>
+    <message>
+      <location filename="app/special/backup_and_restore.py" />
+      <source>restored; what was there before is %1</source>
+      <translation>restaurado; lo anterior está en %1</translation>
+    </message>
+    <message>
+      <location filename="app/special/backup_and_restore.py" />
+      <source>the rest not compared, it is of an older version</source>
+      <translation>el resto sin comparar, es de una versión anterior</translation>
     </message>
     <message>
       <location filename="app/special/drive_status.py" />
@@ -12577,6 +13112,21 @@
       <location filename="app/special/part_count.py" />
       <source>THE LAST PART OF THE TARGET: CYCLE REPEAT IS SWITCHED OFF</source>
       <translation>LA ÚLTIMA PIEZA DE LA META: SE APAGÓ REPETIR CICLO</translation>
+    </message>
+    <message>
+      <location filename="app/special/part_count.py" />
+      <source>parts of %1 stop at: %2 → %3</source>
+      <translation>las piezas de %1 paran a las: %2 → %3</translation>
+    </message>
+    <message>
+      <location filename="app/special/part_count.py" />
+      <source>parts of %1: %2 → %3</source>
+      <translation>piezas de %1: %2 → %3</translation>
+    </message>
+    <message>
+      <location filename="app/special/part_count.py" />
+      <source>parts of %1: %2 → 0</source>
+      <translation>piezas de %1: %2 → 0</translation>
     </message>
     <message>
       <location filename="app/special/parts_counter.py" />
@@ -13360,8 +13910,18 @@
     </message>
     <message>
       <location filename="app/transfer/serial_transfer.py" />
+      <source>program %1 received</source>
+      <translation>programa %1 recibido</translation>
+    </message>
+    <message>
+      <location filename="app/transfer/serial_transfer.py" />
       <source>programs over the serial line</source>
       <translation>programas por la línea serie</translation>
+    </message>
+    <message>
+      <location filename="app/transfer/serial_transfer.py" />
+      <source>serial line: %1</source>
+      <translation>línea serie: %1</translation>
     </message>
     <message>
       <location filename="app/transfer/serial_transfer.py" />
@@ -13387,6 +13947,16 @@
       <location filename="app/working_plane/working_plane_view.py" />
       <source>TABLE AND PLANE</source>
       <translation>MESA Y PLANO</translation>
+    </message>
+    <message>
+      <location filename="core/access/pins.py" />
+      <source>a PIN has %1 to %2 figures</source>
+      <translation>un PIN tiene de %1 a %2 cifras</translation>
+    </message>
+    <message>
+      <location filename="core/access/pins.py" />
+      <source>a PIN of one figure again and again is guessed at once; take another</source>
+      <translation>un PIN de una sola cifra repetida se adivina; tome otro</translation>
     </message>
     <message>
       <location filename="core/alarms/__init__.py" />
@@ -21640,11 +22210,6 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/subprogram_flow.py" />
-      <source>M%1 ends a main program, and this is a subprogram.</source>
-      <translation>M%1 termina un programa principal, y éste es un subprograma.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/subprogram_flow.py" />
       <source>P%1 is no number of passes.</source>
       <translation>P%1 no es un número de repeticiones.</translation>
     </message>
@@ -28309,6 +28874,36 @@
       <translation>todavía no hay almacén en %1, así que no hay nada que respaldar</translation>
     </message>
     <message>
+      <location filename="core/store/backup_verdict.py" />
+      <source>part counts</source>
+      <translation>contadores de piezas</translation>
+    </message>
+    <message>
+      <location filename="core/store/backup_verdict.py" />
+      <source>secondary offsets</source>
+      <translation>correctores secundarios</translation>
+    </message>
+    <message>
+      <location filename="core/store/backup_verdict.py" />
+      <source>tool lives</source>
+      <translation>vidas de herramienta</translation>
+    </message>
+    <message>
+      <location filename="core/store/backup_verdict.py" />
+      <source>tool offsets</source>
+      <translation>correctores de herramienta</translation>
+    </message>
+    <message>
+      <location filename="core/store/backup_verdict.py" />
+      <source>tool shapes</source>
+      <translation>formas de herramienta</translation>
+    </message>
+    <message>
+      <location filename="core/store/backup_verdict.py" />
+      <source>zero offsets</source>
+      <translation>decalajes de origen</translation>
+    </message>
+    <message>
       <location filename="core/store/damaged_rows.py" />
       <source>%1 is not as it was saved, and is not used; %2</source>
       <translation>%1 no está como se guardó, y no se usa; %2</translation>
@@ -28327,6 +28922,11 @@
       <location filename="core/store/damaged_rows.py" />
       <source>count the parts and enter them, or restore a backup</source>
       <translation>cuente las piezas e introdúzcalas, o restaure un respaldo</translation>
+    </message>
+    <message>
+      <location filename="core/store/damaged_rows.py" />
+      <source>enter it anew, or reset the levels ('turndesk access reset')</source>
+      <translation>introdúzcalo de nuevo, o borre los niveles («turndesk access reset»)</translation>
     </message>
     <message>
       <location filename="core/store/damaged_rows.py" />
@@ -28366,7 +28966,7 @@
     <message>
       <location filename="core/store/database.py" />
       <source>malformed database schema</source>
-      <translation type="unfinished" />
+      <translation>malformed database schema</translation>
     </message>
     <message>
       <location filename="core/store/database.py" />
@@ -28511,7 +29111,12 @@
     <message>
       <location filename="core/store/offset_tables.py" />
       <source>entry %1 of the history of offsets is damaged; the offsets themselves are looked at by their own sums. Restore a backup for the history</source>
-      <translation type="unfinished" />
+      <translation>la entrada %1 de la historia de correctores está dañada; los correctores mismos se vigilan por sus propias sumas. Restaure una copia para la historia</translation>
+    </message>
+    <message>
+      <location filename="core/store/offset_tables.py" />
+      <source>the PIN of</source>
+      <translation>el PIN de</translation>
     </message>
     <message>
       <location filename="core/store/offset_tables.py" />
@@ -28559,6 +29164,21 @@
       <translation>no hay cambio de compensación que deshacer</translation>
     </message>
     <message>
+      <location filename="core/store/people.py" />
+      <source>%1 is not among the people</source>
+      <translation>%1 no está entre las personas</translation>
+    </message>
+    <message>
+      <location filename="core/store/people.py" />
+      <source>a name has 1 to %1 letters</source>
+      <translation>un nombre tiene de 1 a %1 letras</translation>
+    </message>
+    <message>
+      <location filename="core/store/people.py" />
+      <source>one of SERVICE level has to stay, who enters the others; enter one first</source>
+      <translation>tiene que quedar uno de nivel SERVICIO, que introduce a los demás; introdúzcalo antes</translation>
+    </message>
+    <message>
       <location filename="core/store/program_records.py" />
       <source> version %1</source>
       <translation> versión %1</translation>
@@ -28586,7 +29206,7 @@
     <message>
       <location filename="core/store/shared_versions.py" />
       <source>id, program, text, size, follows, desk, saved, why</source>
-      <translation type="unfinished" />
+      <translation>id, program, text, size, follows, desk, saved, why</translation>
     </message>
     <message>
       <location filename="core/store/store.py" />

@@ -218,7 +218,7 @@ def test_a_backup_is_made_and_restored(hands: Hands, journal: Journal) -> None:
     hands.sees(lambda: len(page.table.sheet.rows) >= 1)
     hands.key(Key.Key_Return)
     hands.sees(lambda: "IS WHOLE AND ON THE DISK" in hands.prompt())
-    hands.sees(lambda: len(page.table.sheet.rows) >= 2)
+    hands.sees(lambda: len(page.table.sheet.rows) >= 2 and cells(page, 1)[1] == "RESTORE: IT IS WHOLE")
     store.set_setting("mark", "after").result(5)
     hands.key(Key.Key_Down)
     hands.key(Key.Key_Return)
@@ -229,6 +229,33 @@ def test_a_backup_is_made_and_restored(hands: Hands, journal: Journal) -> None:
     assert hands.desk.book.store is not store
     journal.hear(Event(0.0, "start", "after the restore"))
     hands.sees(lambda: [e.text for e in journal.events("after the", (), 9)] == ["after the restore"])
+
+
+def test_the_list_tells_what_a_backup_is_worth(hands: Hands, journal: Journal) -> None:
+    hands.desk.book = journal.book()
+    store = hands.desk.book.store
+    assert store is not None
+    store.set_tool(3, "x", x=1.0, z=0.0).result(5)
+    page = open_function(hands, 6)
+    hands.sees(lambda: len(page.table.sheet.rows) >= 1)
+    folder = page.model.current.places[0].path
+    folder.mkdir(parents=True, exist_ok=True)
+    journal.backup(folder / "2026-11-23-good.turndesk.db")
+    (folder / "2026-11-22-bad.turndesk.db").write_bytes(b"no store any more")
+    store.set_tool(3, "x", x=2.0).result(5)
+    hands.key(Key.Key_F4)
+    said = ["RESTORE: IT IS WHOLE", "NOTHING: IT IS DAMAGED"]
+    hands.sees(lambda: [row.cells[1] for row in page.table.sheet.rows[1:3]] == said)
+    hands.key(Key.Key_Down)
+    hands.sees(lambda: page.table.sheet.notes[0] == "Other than now: tool offsets 1.")
+    hands.key(Key.Key_Return)
+    assert "(tool offsets 1)" in hands.prompt()
+    hands.key(Key.Key_Escape)
+    hands.key(Key.Key_Down)
+    hands.key(Key.Key_Return)
+    assert "REFUSED" in hands.desk.notice
+    assert "is not a database" in hands.desk.notice
+    assert store.tools()[3].x == 2.0
 
 
 def test_nothing_is_restored_under_way(hands: Hands) -> None:

@@ -1,0 +1,83 @@
+"""What the list of backups says of each: whole or not, and what a restore would change."""
+
+from __future__ import annotations
+
+import sqlite3
+from contextlib import closing
+from pathlib import Path
+
+import pytest
+
+from core.store import backup, database
+from core.store.backup_verdict import Verdict, verdict
+from core.store.store import Store
+from core.store.store_rows import Kind
+
+
+def judged(folder: Path, path: Path) -> Verdict:
+    with closing(database.connect(folder / "turndesk.db", read_only=True)) as now:
+        return verdict(now, path)
+
+
+@pytest.fixture
+def kept(store: Store, folder: Path, tmp_path: Path) -> Path:
+    """A backup of two tools, a correction, two programs and a setting."""
+    store.set_tool(1, "x", x=1.0, z=0.0)
+    store.set_tool(2, "x", x=2.0, z=0.0)
+    store.set_secondary(4, "x", x=-0.01)
+    store.save_program("pin.nc", b"M30\n", "saved")
+    store.save_program("bush.nc", b"M30\n", "saved")
+    store.count_part("pin.nc")
+    store.set_setting("preset", 1).result()
+    backup.backup(folder, tmp_path / "b.db")
+    return tmp_path / "b.db"
+
+
+def test_the_same_is_whole_and_differs_in_nothing(folder: Path, kept: Path) -> None:
+    assert judged(folder, kept) == Verdict()
+
+
+def test_what_is_other_missing_or_new_is_counted(store: Store, folder: Path, kept: Path) -> None:
+    store.set_tool(1, "x", x=1.5)  # other
+    store.remove_offset(Kind.TOOL, 2, "x")  # missing now
+    store.set_tool(3, "x", x=3.0, z=0.0)  # new since
+    store.save_program("pin.nc", b"G90\nM30\n", "saved")
+    store.save_program("new.nc", b"M30\n", "saved")
+    store.count_part("pin.nc")
+    store.set_setting("preset", 2).result()
+    differs = (("programs", 2), ("tool offsets", 3), ("part counts", 1), ("settings", 1))
+    assert judged(folder, kept).differs == differs
+
+
+def test_what_was_put_back_by_hand_is_no_difference(store: Store, folder: Path, kept: Path) -> None:
+    store.set_tool(1, "x", x=1.5)
+    store.set_tool(1, "back", x=1.0).result()
+    assert judged(folder, kept) == Verdict()
+
+
+def test_a_damaged_one_is_told_and_not_compared(folder: Path, kept: Path) -> None:
+    kept.write_bytes(kept.read_bytes().replace(b"M30\n", b"M31\n"))
+    found = judged(folder, kept)
+    assert "is not what was saved" in found.problem
+    assert found.differs == ()
+
+
+@pytest.mark.parametrize("data", [b"", b"no database", bytes(5000)])
+def test_what_is_no_backup_is_told(data: bytes, store: Store, folder: Path, tmp_path: Path) -> None:
+    store.set_setting("a", 1).result()
+    (tmp_path / "b.db").write_bytes(data)
+    assert "is not a database" in judged(folder, tmp_path / "b.db").problem
+    assert "is not there" in judged(folder, tmp_path / "gone.db").problem
+
+
+def test_one_of_an_older_version_has_its_programs_compared(folder: Path, kept: Path) -> None:
+    with closing(sqlite3.connect(kept)) as connection:
+        connection.execute("PRAGMA user_version = 10")
+    assert judged(folder, kept) == Verdict(older=True)
+
+
+def test_looking_writes_nothing(folder: Path, kept: Path) -> None:
+    before = kept.read_bytes()
+    judged(folder, kept)
+    assert kept.read_bytes() == before
+    assert sorted(each.name for each in kept.parent.iterdir()) == ["b.db", "home"]
