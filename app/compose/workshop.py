@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
+from functools import partial
 from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -19,12 +20,14 @@ from app.desk.persistence import Persistence
 from app.desk.prepared_line import ProveLine
 from app.desk.program_loading import LoadingSteps, PartProved, Proved
 from app.jog.hand_functions import HandFunctions
-from app.mdi.mdi_model import MdiLine, MdiModel
+from app.mdi.mdi_line import MdiLine
+from app.mdi.mdi_model import MdiModel
 from app.part.part_sheet import PartSheet
 from app.searchto.searchto_model import SearchtoModel
 from core.executor.job import Job, Proof, make_job
 from core.executor.snapshot import Snapshot
 from core.interpreter.checkpoint import Begin, Checkpoint
+from core.interpreter.dialects import code_book
 from core.interpreter.job_setup import ToolOffset
 from core.interpreter.modal_state import Modal
 from core.interpreter.restart.restart_approach import Choices
@@ -235,7 +238,8 @@ def line_prover(machine: Machine, offsets: Callable[[], Offsets]) -> ProveLine:
 def give_mdi(desk: Desk, machine: Machine, offsets: Callable[[], Offsets], keep: Persistence) -> None:
     """Give the desk its MDI, and the Jog page what it switches by the same lines."""
     prove_line = line_prover(machine, offsets)
-    mdi = MdiModel(prove_line, desk.post, desk.snapshot, desk.say, desk.clear, MdiLine(keep))
+    codes = partial(code_book, Dialect(machine.language))
+    mdi = MdiModel(prove_line, desk.post, desk.snapshot, desk.say, desk.clear, codes, MdiLine(keep))
     hand = HandFunctions(desk, machine, prove_line)
     for each in (mdi, hand):
         desk.attach(each)

@@ -10,6 +10,7 @@ from PySide6.QtGui import QFontMetricsF
 from PySide6.QtWidgets import QWidget
 
 from app.desk.translation import tr
+from app.screen.code_choices_view import CODE_LINE
 from app.screen.look import CENTRE, RIGHT, Look, Painter
 from app.screen.panel import Panel, Shown
 from app.screen.window_layout import Rect
@@ -69,7 +70,6 @@ class HeadLine(Panel):
 
 KEYBOARD = 29.0  # units: height of the drawn keyboard, four rows of a finger's height
 NOWHERE = Rect(0, 0, 0, 0)
-CODE_LINE = 5.2  # units: a finger's height, two lines of text
 HEAD_LINE = 6.8  # units: a finger's height, for the place that shows the keyboard
 
 

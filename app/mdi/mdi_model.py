@@ -3,123 +3,36 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from contextlib import suppress
 from dataclasses import dataclass, field
 
 from app.desk import prompt_line
-from app.desk.persistence import Persistence
 from app.desk.prepared_line import PreparedLine, ProveLine
 from app.desk.translation import tr
+from app.mdi.line_completion import LineCompletion
+from app.mdi.mdi_line import MdiLine
 from core.executor.commands import Command, SpindleStop
 from core.executor.snapshot import CYCLE, Snapshot, State
+from core.language.code_book import CodeBook
 from core.language.diagnostics import Diagnostic
-from core.store.store_errors import StoreError
-
-# --- the line and its history -------------------------------------------------------------------------
-
-
-KEY = "mdi"
-LONGEST = 120  # characters of a line
-KEPT = 100  # lines
-
-
-@dataclass(slots=True)
-class MdiLine:
-    """One line with a cursor; arrows up and down go through the history, as in every shell."""
-
-    persistence: Persistence = field(default_factory=Persistence)
-    text: str = ""
-    at: int = 0  # the cursor stands before this character
-    history: list[str] = field(default_factory=list)  # oldest first
-    refused: dict[str, int] = field(
-        default_factory=dict
-    )  # lines of it that do not run: column, from 1; 0: whole
-    back: int = 0  # how far up the history the text comes from, 0: it is being typed
-    _draft: str = ""
-
-    def __post_init__(self) -> None:
-        self.reload()
-
-    def reload(self) -> None:
-        """Read the history that is kept; what is no list of lines is forgotten."""
-        try:
-            kept = self.persistence.setting(KEY)
-        except StoreError:
-            kept = None
-        lines = kept if isinstance(kept, list) else []
-        self.history = [line for line in lines if isinstance(line, str)][-KEPT:]
-
-    def type(self, key: str) -> bool:
-        """A character or an editing key; False when it means nothing here."""
-        match key:
-            case "Back":
-                self._cut(self.at - 1)
-            case "Delete":
-                self._cut(self.at)
-            case "Left" | "Right":
-                self.at = max(0, min(len(self.text), self.at + (1 if key == "Right" else -1)))
-            case "Up" | "Down":
-                self.recall(self.back + (1 if key == "Up" else -1))
-            case _ if len(key) == 1 and key.isprintable():
-                if len(self.text) < LONGEST:
-                    self.put(self.text[: self.at] + key + self.text[self.at :], self.at + 1)
-            case _:
-                return False
-        return True
-
-    def put(self, text: str, at: int | None = None) -> None:
-        """Another text, the cursor there or at its end."""
-        self.text = text
-        self.at = len(text) if at is None else at
-
-    def recall(self, back: int) -> None:
-        """Take up the line that stands so far up the history; 0: what was being typed."""
-        if not 0 <= back <= len(self.history):
-            return
-        if not self.back:
-            self._draft = self.text
-        self.back = back
-        self.put(self.history[-back] if back else self._draft)
-
-    def done(self) -> None:
-        """The line has been started: it goes into the history, and an empty one begins."""
-        self.refused.pop(self.text, None)
-        self._remember()
-        self.put("")
-        self.back, self._draft = 0, ""
-
-    def refuse(self, column: int) -> None:
-        """The line does not run: it stays to be mended, and stands in the history with its word marked."""
-        self._remember()
-        self.refused[self.text] = column
-        self.refused = {line: at for line, at in self.refused.items() if line in self.history}
-        self.back = 0
-
-    def _remember(self) -> None:
-        if self.text.strip() and (not self.history or self.history[-1] != self.text):
-            self.history = [*self.history, self.text][-KEPT:]
-            with suppress(StoreError):  # the desk says by itself that nothing is kept
-                self.persistence.save_setting(KEY, self.history)
-
-    def _cut(self, index: int) -> None:
-        if 0 <= index < len(self.text):
-            self.put(self.text[:index] + self.text[index + 1 :], index)
 
 
 @dataclass(slots=True)
 class MdiModel:
-    """The model behind the MDI page. ``say`` answers on the prompt line."""
+    """The model behind the MDI page. ``say`` answers on the prompt line, ``book`` has the codes."""
 
     prove: ProveLine
     post: Callable[[Command], None]
     snapshot: Callable[[], Snapshot]
     say: Callable[[str], None]
     clear: Callable[[], None]
+    book: Callable[[], CodeBook]
     typing: MdiLine = field(default_factory=MdiLine)
     open: bool = False
     line: PreparedLine = field(init=False)
+    completion: LineCompletion = field(init=False)
 
     def __post_init__(self) -> None:
+        self.completion = LineCompletion(self.typing, self.book)
         self.line = PreparedLine(self.prove, self.post, refused=self._refused)
 
     # --- page ----------------------------------------------------------------------------------------
@@ -135,6 +48,7 @@ class MdiModel:
         """From now on Cycle Start begins lines, and no program."""
         self.open = True
         self.typing.reload()
+        self.completion.open = False
         self.line.take_back()
 
     def leave(self) -> bool:
@@ -167,11 +81,12 @@ class MdiModel:
         """A key that was pressed; False leaves it to the window."""
         if not self.has_keyboard:
             return False
-        if key == "Enter":
+        before = self.typing.text
+        taken = self.completion.typed(key)
+        if key == "Enter" and not taken:
             self.enter()
             return True
-        before = self.typing.text
-        taken = self.typing.type(key)
+        taken = taken or self.typing.type(key)
         if self.typing.text != before:
             self.clear()
             self.line.take_back()
@@ -189,6 +104,18 @@ class MdiModel:
             return
         self.line.ask(self.typing.text, snapshot, self._failed)
 
+    def complete(self) -> None:
+        """Complete what is typed, or look up the code at the cursor; again: back to the history."""
+        if self.has_keyboard:
+            self.clear()
+            self.completion.turn()
+
+    def take_code(self) -> None:
+        """Write the marked code into the line."""
+        self.completion.take()
+        self.clear()
+        self.line.take_back()
+
     def recall(self, back: int) -> None:
         """Take up the line that stands so far up the history."""
         self.typing.recall(back)
@@ -196,7 +123,10 @@ class MdiModel:
         self.line.take_back()
 
     def escape(self) -> bool:
-        """Take a ready line back, then what is typed; False when there was neither."""
+        """Close the codes, take a ready line back, then what is typed; False when there was neither."""
+        if self.completion.open:
+            self.completion.open = False
+            return True
         begun = self.line.ready or self.typing.text or self.line.busy
         if self.snapshot().state in prompt_line.UNDER_WAY or not begun:
             return False
@@ -225,13 +155,19 @@ class MdiModel:
             return tr("DRIVES ARE OFF: PRESS F5 FOR DRIVES ON; A LINE CAN BE TYPED MEANWHILE")
         if snapshot.state is not State.IDLE:
             return ""
+        if self.completion.open:
+            return tr("ARROWS MARK A CODE OR ANOTHER CHAPTER, RETURN WRITES IT INTO THE LINE; ESC: BACK")
+        return self._of_the_line(start)
+
+    def _of_the_line(self, start: str) -> str:
+        """How far the line is."""
         if self.line.busy:
             return tr("PROVING THE LINE")
         if self.line.errors:
             return tr("THE LINE DOES NOT RUN: MEND IT, OR ESC TO CLEAR IT")
         if self.line.ready is not None:
             return tr("TO RUN THE LINE {start}; ESC TAKES IT BACK").format(start=start)
-        return tr("TYPE A LINE, ENTER PROVES IT; F1 LEAVES, THE SPINDLE STAYS AS IT IS")
+        return tr("TYPE A LINE, TAB COMPLETES A CODE, ENTER PROVES IT; F1 LEAVES, THE SPINDLE STAYS AS IT IS")
 
     def barred(self) -> str:
         """Why the palms start nothing now; empty when they may."""

@@ -16,6 +16,7 @@ from app.desk.program_loading import Loaded
 from app.desk.translation import tr
 from app.mdi.mdi_model import MdiModel
 from app.screen import page_table
+from app.screen.code_choices_view import CodeChoices
 from app.screen.letter_keys import LINES, LetterPad
 from app.screen.look import RIGHT, Look, Painter
 from app.screen.page_base import Host, KeyActions, ModelPage
@@ -159,7 +160,7 @@ class MdiPage(ModelPage):
     """At rest, keys are text; while a line is under way the letters are the keys they are everywhere."""
 
     NAME = page_table.MDI
-    LABELS = ("MENU", "AUTO", "", "READOUT", "DRIVES", "RESET", "ALARMS", "SPN STOP", "SECCMP", "SCOPE")
+    LABELS = ("MENU", "AUTO", "CODES", "READOUT", "DRIVES", "RESET", "ALARMS", "SPN STOP", "SECCMP", "SCOPE")
     STARTS = True
     model: MdiModel
 
@@ -168,6 +169,7 @@ class MdiPage(ModelPage):
         self.model = model
         self.line = LinePanel(self.look, self._other_hand, self)
         self.history = HistoryPanel(self.look, self._recall, self)
+        self.codes = CodeChoices(self.look, model.completion.codes, model.take_code, self)
         self.letters = LetterPad(self.look, self.touched, self, LINES)
         self.inforce = ModalPanel(self.look, self)
 
@@ -175,6 +177,7 @@ class MdiPage(ModelPage):
         """Keys of this page alone."""
         return {
             "F2": partial(self.host.go, page_table.AUTOMATIC),
+            "F3": self.model.complete,
             "F4": self.desk.next_readout,
             "F5": self.desk.enable,
             "F6": self.desk.reset,
@@ -219,6 +222,8 @@ class MdiPage(ModelPage):
         line.found, line.ready = model.line.found, model.line.ready is not None
         history.lines, history.back = tuple(typing.history), typing.back
         history.refused = tuple(typing.refused.items())
+        self.codes.setVisible(model.completion.open)
+        self.codes.refresh()
         angle = snapshot.demand[2] - snapshot.modal.offset_c
         point = Checkpoint(snapshot.modal, c=angle, kept=snapshot.kept)
         self.inforce.rows = rows_of(point, self.desk.language)
@@ -229,6 +234,6 @@ class MdiPage(ModelPage):
         gap, high, state = max(4, round(0.7 * u)), round(LINE * u), round(STATE * u)
         wide = self.width() - state - gap
         self.line.setGeometry(0, 0, wide, high)
-        for part in (self.history, self.letters):
+        for part in (self.history, self.codes, self.letters):
             part.setGeometry(0, high + gap, wide, self.height() - high - gap)
         self.inforce.setGeometry(wide + gap, 0, state, self.height())

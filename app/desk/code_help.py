@@ -1,4 +1,4 @@
-"""Code help of the editor: what the code at the cursor means, and what typing may become."""
+"""Code help of editor and MDI: what the code at the cursor means, and what typing may become."""
 
 from __future__ import annotations
 
@@ -36,11 +36,13 @@ class CodeHelp:
         """
         if self._book is None:
             return False
-        self.begin, self.choices = self._book.completions(*self._asked)
+        begin, self.choices = self._book.completions(*self._asked)
         self.title, self.marked = "CODES THAT BEGIN SO", 0
         written = self.entry is not None and any(each.head == self.entry.head for each in self.choices)
-        if not self.choices or (written and len(self.choices) == 1):
+        typed = bool(self.choices)
+        if not typed or (written and len(self.choices) == 1):
             self._chapter(self._book.chapter_of(self.entry))
+        self.begin = begin if typed else 0  # what is written whole is replaced, not doubled
         return True
 
     def _chapter(self, number: int) -> None:

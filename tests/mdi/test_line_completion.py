@@ -1,0 +1,90 @@
+"""Codes for the line of MDI, in every language: completed, looked up, written in one line."""
+
+from __future__ import annotations
+
+import pytest
+
+from app.mdi.line_completion import LineCompletion
+from app.mdi.mdi_line import LONGEST, MdiLine
+from core.interpreter.dialects import code_book
+from core.language.source import Dialect
+
+
+def line(dialect: Dialect, text: str, at: int | None = None) -> LineCompletion:
+    typing = MdiLine()
+    typing.put(text, at)
+    return LineCompletion(typing, lambda: code_book(dialect))
+
+
+def press(completion: LineCompletion, *keys: str) -> str:
+    for key in keys:
+        assert completion.typed(key), key
+    return completion.typing.text
+
+
+@pytest.mark.parametrize(
+    ("dialect", "typed", "down", "written"),
+    [
+        (Dialect.OMNITURN, "G90 G0", 0, "G90 G00"),
+        (Dialect.OMNITURN, "G90 G0", 2, "G90 G02"),
+        (Dialect.KLARTEXT, "TOOL C", 0, "TOOL CALL"),
+        (Dialect.KLARTEXT, "PLANE R", 1, "PLANE RESET"),
+        (Dialect.KLARTEXT, "L X+10 M", 0, "L X+10 MOVE"),
+        (Dialect.SINUMERIK, "SPO", 0, "SPOS"),
+        (Dialect.SINUMERIK, "G0 X10 M1", 1, "G0 X10 M17"),
+    ],
+)
+def test_what_is_typed_is_completed(dialect: Dialect, typed: str, down: int, written: str) -> None:
+    completion = line(dialect, typed)
+    assert press(completion, "Tab", *(["Down"] * down), "Enter") == written
+    assert completion.typing.at == len(written)
+    assert not completion.open
+
+
+def test_a_code_is_put_in_at_the_cursor() -> None:
+    completion = line(Dialect.OMNITURN, "G0 X5", 2)
+    assert press(completion, "Tab", "Down", "Tab") == "G01 X5"
+    assert completion.typing.at == 3
+
+
+def test_what_begins_no_code_is_looked_up_by_chapters() -> None:
+    """Behind a blank nothing is begun: the chapter of the code before, and the next ones by the arrows."""
+    completion = line(Dialect.SINUMERIK, "G0 ")
+    press(completion, "Tab")
+    assert completion.codes.chosen is not None
+    assert completion.codes.chosen.head == "G0"
+    first = completion.codes.title
+    press(completion, "Right")
+    assert completion.codes.title != first
+    press(completion, "Left")
+    assert completion.codes.title == first
+
+
+def test_a_block_that_goes_on_is_written_in_one_line() -> None:
+    completion = line(Dialect.KLARTEXT, "CYCL DEF 240")
+    written = press(completion, "Tab", "Enter")
+    assert written.startswith("CYCL DEF 240 CENTERING Q200=2 Q343=+0")
+    assert "~" not in written
+    assert "\n" not in written
+
+
+def test_of_what_does_not_fit_only_the_head_is_written() -> None:
+    assert press(line(Dialect.KLARTEXT, "CYCL DEF 251"), "Tab", "Enter") == "CYCL DEF 251"
+    full = "M" * (LONGEST - 2) + " G"
+    completion = line(Dialect.OMNITURN, full)
+    press(completion, "Tab", "Enter")
+    assert completion.typing.text == full
+    assert not completion.open
+
+
+def test_any_other_key_goes_to_the_line_and_closes_the_choices() -> None:
+    completion = line(Dialect.OMNITURN, "G0")
+    press(completion, "Tab")
+    assert not completion.typed("X")
+    assert not completion.open
+    assert completion.typing.text == "G0"
+
+
+def test_closed_it_takes_nothing_but_tab() -> None:
+    completion = line(Dialect.OMNITURN, "G0")
+    assert not any(completion.typed(key) for key in ("Up", "Left", "Enter", "5"))
