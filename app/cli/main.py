@@ -127,7 +127,7 @@ def _screen(args: argparse.Namespace) -> int:
         from app.compose.demo_store import demo_program, open_demo
 
         open_demo(args.machine)
-        program = program or demo_program()
+        program = program or demo_program(args.machine)
     from app.screen.run_screen import run_screen
 
     return run_screen(machine=args.machine, program=program, offsets=args.offsets, kiosk=args.kiosk)

@@ -12,6 +12,7 @@ from app.desk.command_errors import CommandError
 from app.desk.data_folder import HOME, data_folder
 from app.desk.screen_settings import KEY as SCREEN
 from app.offsets.offsets_file import read_rows
+from core.language.source import Dialect
 from core.store.store import Store
 from core.store.store_errors import StoreError
 from core.store.store_file import has_store
@@ -36,9 +37,12 @@ def open_demo(machine_file: str | None) -> Path:
     return folder
 
 
-def demo_program() -> str:
-    """What the demo has on the desk where nobody names a program."""
-    return str(samples() / "bushing.nc")
+_PROGRAMS = {Dialect.OMNITURN: "bushing.nc", Dialect.SINUMERIK: "shaft.mpf", Dialect.KLARTEXT: "nozzle.h"}
+
+
+def demo_program(machine_file: str | None) -> str:
+    """What the demo has on the desk where nobody names a program: a sample in the machine's language."""
+    return str(samples() / _PROGRAMS[Dialect(read_machine(machine_file).language)])
 
 
 def _seed(folder: Path) -> None:

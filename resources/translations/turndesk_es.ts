@@ -4554,6 +4554,11 @@
       <translation>la entrada tiene más de %1 caracteres; escriba el resultado</translation>
     </message>
     <message>
+      <location filename="app/desk/code_help.py" />
+      <source>CODES THAT BEGIN SO</source>
+      <translation>CÓDIGOS QUE EMPIEZAN ASÍ</translation>
+    </message>
+    <message>
       <location filename="app/desk/daily_backup.py" />
       <source>it was written, but %1; look at the disk of %2</source>
       <translation>se escribió, pero %1; revise el disco de %2</translation>
@@ -5717,11 +5722,6 @@
       <location filename="app/desk/waiting.py" />
       <source>THE TAP FIRST COMES OUT OF ITS HOLE; E-STOP STOPS IT AT ONCE</source>
       <translation>EL MACHO SALE PRIMERO DEL AGUJERO; LA PARADA DE EMERGENCIA LO DETIENE EN EL ACTO</translation>
-    </message>
-    <message>
-      <location filename="app/editor/code_help.py" />
-      <source>CODES THAT BEGIN SO</source>
-      <translation>CÓDIGOS QUE EMPIEZAN ASÍ</translation>
     </message>
     <message>
       <location filename="app/editor/code_help_view.py" />
@@ -7515,6 +7515,11 @@
     </message>
     <message>
       <location filename="app/mdi/mdi_model.py" />
+      <source>ARROWS MARK A CODE OR ANOTHER CHAPTER, RETURN WRITES IT INTO THE LINE; ESC: BACK</source>
+      <translation>FLECHAS MARCAN UN CÓDIGO U OTRO CAPÍTULO, RETORNO LO ESCRIBE EN LA LÍNEA; ESC: ATRÁS</translation>
+    </message>
+    <message>
+      <location filename="app/mdi/mdi_model.py" />
       <source>DRIVES ARE OFF: PRESS F5 FOR DRIVES ON; A LINE CAN BE TYPED MEANWHILE</source>
       <translation>SERVOS APAGADOS: OPRIMA F5 PARA ENCENDERLOS; MIENTRAS TANTO SE PUEDE ESCRIBIR UNA LÍNEA</translation>
     </message>
@@ -7545,8 +7550,8 @@
     </message>
     <message>
       <location filename="app/mdi/mdi_model.py" />
-      <source>TYPE A LINE, ENTER PROVES IT; F1 LEAVES, THE SPINDLE STAYS AS IT IS</source>
-      <translation>ESCRIBA UNA LÍNEA, ENTER LA COMPRUEBA; F1 SALE, EL HUSILLO QUEDA COMO ESTÁ</translation>
+      <source>TYPE A LINE, TAB COMPLETES A CODE, ENTER PROVES IT; F1 LEAVES, THE SPINDLE STAYS AS IT IS</source>
+      <translation>ESCRIBA UNA LÍNEA, TAB COMPLETA UN CÓDIGO, ENTER LA COMPRUEBA; F1 SALE, EL HUSILLO SIGUE COMO ESTÁ</translation>
     </message>
     <message>
       <location filename="app/mdi/mdi_view.py" />
@@ -17190,6 +17195,11 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/blocks_without_motion.py" />
+      <source>Change a Q parameter of its condition in the loop.</source>
+      <translation>Cambie en el bucle un parámetro Q de su condición.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/blocks_without_motion.py" />
       <source>Correct the text, or write the label.</source>
       <translation>Corrija el texto, o escriba la etiqueta.</translation>
     </message>
@@ -17197,6 +17207,11 @@
       <location filename="core/interpreter/klartext/blocks_without_motion.py" />
       <source>LBL "%1" is nowhere in the program, or has no LBL 0.</source>
       <translation>LBL "%1" no está en el programa, o no tiene LBL 0.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/blocks_without_motion.py" />
+      <source>This jump never ends: it comes round with nothing changed that a jump goes by.</source>
+      <translation>Este salto no termina nunca: vuelve sin que haya cambiado nada de lo que decide un salto.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/circular_slot_cycle.py" />

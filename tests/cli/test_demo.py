@@ -8,10 +8,14 @@ from pathlib import Path
 import pytest
 
 from app.cli.main import main
-from app.compose.demo_store import open_demo
+from app.compose.demo_store import demo_program, open_demo
 from app.compose.journal import Journal
+from app.compose.machine_setup import read_machine, setup_for
 from app.compose.stored_offsets import book_of, stored_offsets
 from app.desk.command_errors import CommandError
+from core.language.diagnostics import Severity
+from core.language.source import load_source
+from core.proving.prove_program import prove
 from core.store.store import Store
 from core.store.store_rows import Kind
 
@@ -55,3 +59,16 @@ def test_it_is_the_screen_alone(home: Path, capsys: pytest.CaptureFixture[str]) 
     assert main(["--demo", "offsets", "show"]) == 2
     assert "leave it out before offsets" in capsys.readouterr().err
     assert main(["--version", "--demo"]) == 2
+
+
+MILLS = ("ac-table-mill", "bc-table-mill", "fork-head-mill", "head-table-mill")
+
+
+@pytest.mark.parametrize("machine", [None, "sinumerik-modulo", "sinumerik-linear", *MILLS])
+def test_its_program_is_one_that_the_machine_runs(machine: str | None) -> None:
+    """A mill's desk began with a lathe's part, which it refuses."""
+    source = load_source(Path(demo_program(machine)))
+    found = read_machine(machine)
+    report = prove(source, setup_for(found, tools={}, secondary={}), found)
+    assert [each for each in report.diagnostics if each.severity is Severity.ERROR] == []
+    assert str(source.dialect) == found.language

@@ -97,9 +97,40 @@ def test_a_loop_that_counts_by_a_jump() -> None:
     assert ran.state.programmed[0] == pytest.approx(20.0)
 
 
-def test_a_jump_that_never_ends_is_an_error() -> None:
-    ran = run("LBL 1\nFN 9: IF +1 EQU +1 GOTO LBL 1")
-    assert ran.codes == ["too-many-blocks"]
+@pytest.mark.parametrize(
+    ("text", "line", "most"),
+    [
+        ("LBL 1\nFN 9: IF +1 EQU +1 GOTO LBL 1", 4, 0),
+        ("LBL 1\nL IX+5 FMAX\nQ1 = 3\nFN 12: IF +Q1 LT +4 GOTO LBL 1", 6, 4),  # no condition reads X
+        ("LBL 1\nL IX+5 FMAX\nCALL LBL 2\nFN 9: IF +0 EQU +0 GOTO LBL 1\nM30\nLBL 2\nQ7 = 1\nLBL 0", 6, 4),
+        ("Q1 = 0\nLBL 1\nQ1 = 1 - +Q1\nL X+Q1 FMAX\nFN 9: IF +0 EQU +0 GOTO LBL 1", 7, 6),  # two jumps
+    ],
+)
+def test_a_loop_that_comes_round_unchanged_is_told_at_its_jump(text: str, line: int, most: int) -> None:
+    ran = run(text)
+    assert ran.codes == ["endless-loop"]
+    assert ran.errors[0].line == line
+    assert len([block for block in ran.blocks if block.moves]) <= most
+
+
+def test_long_loops_that_count_are_none() -> None:
+    text = "Q1 = 0\nLBL 1\nQ1 = Q1 + 0.001\nQ2 = INT( Q1 )\nFN 12: IF +Q2 LT +2 GOTO LBL 1\nL X+Q1 FMAX"
+    ran = run(text)
+    assert ran.codes == []
+    assert ran.state.programmed[0] == pytest.approx(2.0, abs=2e-3)
+
+
+def test_a_loop_within_repeats_is_none() -> None:
+    """The inner jump meets the same Q parameters again, but another repeat is left."""
+    inner = "Q1 = 0\nLBL 2\nQ1 = Q1 + 1\nFN 12: IF +Q1 LT +3 GOTO LBL 2"
+    assert run(f"LBL 1\n{inner}\nCALL LBL 1 REP 5").codes == []
+
+
+def test_what_reads_the_control_is_not_judged(monkeypatch: pytest.MonkeyPatch) -> None:
+    """FN 18 may read what no parameter shows, so only the count of blocks ends such a loop."""
+    monkeypatch.setattr("core.interpreter.klartext.klartext_interpreter.MOST_BLOCKS", 200)
+    text = "LBL 1\nFN 18: SYSREAD Q5 = ID20 NR1\nL IX+1 FMAX\nFN 9: IF +0 EQU +0 GOTO LBL 1"
+    assert run(text).codes == ["too-many-blocks"]
 
 
 def test_local_and_kept_parameters_are_others() -> None:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
+from copy import deepcopy
 from dataclasses import replace
 
+from core.interpreter.endless_loops import LoopWatch
 from core.interpreter.klartext import q_functions, system_data, text_values, word_values
 from core.interpreter.klartext.klartext_program import Flow
 from core.interpreter.klartext.klartext_state import State
@@ -25,6 +27,40 @@ def go_on(state: State, flow: Flow, line: int, node: nodes.Label | nodes.Call | 
         flow.call(line, node, math.floor(times))
     elif texts_agree(state, node) if node.texts else q_functions.jumps(state, node):
         flow.jump(replace(node, name=_label(state, flow, node.name, subprogram=False)))
+
+
+ENDLESS = "endless-loop"
+
+
+class EndlessJumps:
+    """Jumps back of one pass that come round unchanged. Not where FN 18 reads what no parameter shows."""
+
+    def __init__(self, flow: Flow) -> None:
+        self._loops = None if flow.reads_the_control else LoopWatch()
+
+    def look(self, state: State, flow: Flow, line: int, node: nodes.Jump) -> None:
+        """A jump was executed. Raises ProgramError where it has met all that jumps go by before."""
+        if self._loops is None or not flow.jumped_back(line):
+            return
+        stands = line, flow.standing(), _of_the_tool(state)
+        held = (
+            state.q,
+            state.q_beside,
+            state.texts,
+            state.q_global,
+            state.free_table,
+            state.selected_program,
+        )
+        if self._loops.comes_round((stands, held), lambda: (stands, deepcopy(held))):
+            text = "This jump never ends: it comes round with nothing changed that a jump goes by."
+            raise state.refuse(
+                node.column, ENDLESS, text, "Change a Q parameter of its condition in the loop."
+            )
+
+
+def _of_the_tool(state: State) -> tuple[object, ...]:
+    """What Q108 to Q114 show."""
+    return state.tool_radius, state.tool_length, state.tool_axis, state.modal.spindle, state.modal.coolant
 
 
 def _label(state: State, flow: Flow, name: int | str | nodes.TextName, *, subprogram: bool) -> int | str:

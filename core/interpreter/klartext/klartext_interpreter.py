@@ -17,7 +17,7 @@ from core.interpreter.klartext import (
     mid_program_startup,
     tip_control,
 )
-from core.interpreter.klartext.blocks_without_motion import Reckoned, go_on, reckon
+from core.interpreter.klartext.blocks_without_motion import EndlessJumps, Reckoned, go_on, reckon
 from core.interpreter.klartext.consequent_faults import Consequences, ends_the_pass
 from core.interpreter.klartext.contour_figures import ContourFigure, FigureRunner, copy_of
 from core.interpreter.klartext.coordinate_transformations import datum, transform
@@ -46,6 +46,7 @@ class Interpreter(Interpretation):
         self._state = State(setup, kinematics, self._log, inch=program.inch)
         self._state.blank = program.corners
         self._flow = Flow(program)
+        self._jumps = EndlessJumps(self._flow)
         self._path = PathRunner(self._state)
         self._cycles = Cycles(self._state)
         self._setup = setup
@@ -177,6 +178,8 @@ class Interpreter(Interpretation):
                 self._path.pole(node)
             case nodes.Label() | nodes.Call() | nodes.Jump():
                 go_on(state, self._flow, line.number, node)
+                if isinstance(node, nodes.Jump):
+                    self._jumps.look(state, self._flow, line.number, node)
             case _ if isinstance(node, Reckoned):
                 reckon(state, node)
             case (

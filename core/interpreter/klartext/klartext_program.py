@@ -28,6 +28,7 @@ from core.language.klartext.klartext_nodes import (
     Label,
     Node,
     RoundBlank,
+    SystemRead,
     TextName,
 )
 from core.language.klartext.table_file import Row, is_table, table_rows
@@ -350,6 +351,24 @@ class Flow:
         target = None if isinstance(node.name, TextName) else running.program.labels.get(node.name)
         if target is not None:  # else it was told when the program was read
             running.at = target + 1
+
+    def jumped_back(self, line: int) -> bool:
+        """Whether the way goes on at or before this line of the program under way."""
+        return self._running[-1].at < line
+
+    def standing(self) -> tuple[object, ...]:
+        """Where it stands, in which programs and subprograms, and the repeats that are left: as values."""
+        return tuple(
+            (each.program.source.name, each.at, *((at.back, *sorted(at.left.items())) for at in each.levels))
+            for each in self._running
+        )
+
+    @property
+    def reads_the_control(self) -> bool:
+        """Whether FN 18 stands in the program or in one that lies beside it."""
+        main = self._running[0].program
+        programs = (main, *main.called.values())
+        return any(isinstance(line.node, SystemRead) for each in programs for line in each.lines)
 
     def table(self, name: str) -> dict[int, Row] | None:
         """The rows of a table that lies beside the program; None where there is none of this name."""
