@@ -238,7 +238,7 @@ def _table(sharing: Sharing, shared: Shared) -> str:
         name = (family.versions.get(family.here) or family.newest[0]).program
         lines.append(f"{name:24}  {_STATES[family.state]}\n")
         for each in family.elsewhere:
-            on = ", ".join(shared.who_has(each.id)) or "no desk"
+            on = ", ".join(shared.who_has(each.id)) or ("-" if shared.trouble else "no desk")
             lines.append(f"    {each.id[:8]}  {each.desk}  {each.saved}  {each.size} bytes  on {on}\n")
     lines += [f"{name} is not shared: {why}\n" for name, why in shared.refused.items()]
     if shared.strays:

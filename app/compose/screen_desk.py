@@ -22,6 +22,7 @@ from app.compose.machine_setup import read_machine
 from app.compose.office import open_office
 from app.compose.scope_desk import give_scope
 from app.compose.shapes_desk import give_shapes
+from app.compose.sharing_desk import give_sharing, open_sharing
 from app.compose.shop_floor import keep_status, open_shop_floor
 from app.compose.stored_offsets import Offsets, book_of, shapes_at_hand, stored_offsets
 from app.compose.workshop import (
@@ -75,6 +76,7 @@ SUPERVISED = {
     "pendant": "WHAT READS THE PENDANT",
     "status-page": "THE STATUS PAGE",
     "announcer": "MQTT AND THE WEB HOOK",
+    "sharing": "THE SHARING OF PROGRAMS",
     "inverter": "WHAT TALKS TO THE INVERTER",
     "recorder": "THE RECORD OF THE SCOPE",
 }
@@ -149,6 +151,7 @@ def _shop_floor(desk: Desk, executor: Executor, journal: Journal) -> Callable[[]
         open_ones.append(keep_status(desk.lathe, snapshot, data_folder()))
         open_ones.append(_daily_backup(desk, desk.lathe, journal))
     open_ones.append(open_office(desk, desk.lathe, journal, tell))
+    open_ones.append(open_sharing(desk, journal))
 
     def close() -> None:
         for each in open_ones:
@@ -288,6 +291,7 @@ def _desk(
     give_quality(desk, machine, journal)
     alone = workshop(machine, offsets, left=left, pictures=False)
     give_jobs(desk, machine, alone, shapes_at_hand, kept, journal)
+    give_sharing(desk, machine, journal)
     return desk
 
 

@@ -4,15 +4,23 @@ from __future__ import annotations
 
 import secrets
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 
+from app.compose.journal import Journal
 from app.desk.command_errors import CommandError
 from app.desk.data_folder import data_folder
-from app.sharing.sharing import Sharing
+from app.desk.desk import Desk
+from app.desk.translation import tr
+from app.sharing.sharing import Shared, Sharing
+from app.sharing.sharing_model import SharingModel
+from app.sharing.sharing_thread import SharingThread
+from core.executor.snapshot import Event
 from core.machine.machine_model import Machine
 from core.machine.sharing_table import SharingTable
 from core.sharing.shared_place import SharedPlace
 from core.sharing.version_record import is_home
+from core.store.shared_versions import Family, key_of
 from core.store.store import Store
 
 HOME_FILE = "sharing-id"  # beside the store and not in it: a setup or a backup of another desk has another
@@ -28,6 +36,54 @@ def sharing_of(machine: Machine, store: Callable[[], Store]) -> Sharing | None:
     return Sharing(
         place_of(table, folder), table.desk or machine.name, home_of(folder), folder / "programs", store
     )
+
+
+def give_sharing(desk: Desk, machine: Machine, journal: Journal | None) -> None:
+    """The desk has its page; without a store, or without [sharing], it says why nothing is shared."""
+    sharing = None
+    if journal is not None:
+        try:
+            sharing = sharing_of(machine, journal.opened)
+        except CommandError as error:
+            desk.say(tr("NOTHING IS SHARED: {why}").format(why=error))
+    desk.attach(SharingModel(desk, sharing))
+
+
+def open_sharing(desk: Desk, journal: Journal) -> Callable[[], None]:
+    """Begin to publish and to look; returns how to end it."""
+    model, machine = desk.attached(SharingModel), desk.lathe
+    if model is None or model.sharing is None or machine is None:
+        return lambda: None
+    table = machine.hardware.table(SharingTable)
+    assert table is not None
+    heard = Heard(desk, journal)
+    thread = SharingThread(model.sharing, table.look, heard.hear)
+    model.look_now = thread.look_now
+    thread.start()
+    return thread.close
+
+
+@dataclass(slots=True)
+class Heard:
+    """What a look has found, on the sharing thread: each thing is told once."""
+
+    desk: Desk
+    journal: Journal
+    _trouble: str = ""
+    _told: frozenset[str] = frozenset()
+
+    def hear(self, shared: Shared) -> None:
+        """Trouble to the log; that the program on the desk is newer elsewhere to the prompt line."""
+        if shared.trouble and shared.trouble != self._trouble:
+            self.journal.hear(Event(self.desk.snapshot().t, "warning", shared.trouble))
+        self._trouble = shared.trouble
+        name = self.desk.session.now.name
+        family = shared.families.get(key_of(name), Family())
+        fresh = frozenset(each.id for each in family.elsewhere) - self._told if family.here else frozenset()
+        if fresh:
+            self._told |= fresh
+            who = next(each.desk for each in family.elsewhere if each.id in fresh)
+            self.desk.say(tr("{name} WAS CHANGED ON {desk}: F1, X SHOWS WHAT").format(name=name, desk=who))
 
 
 def place_of(table: SharingTable, folder: Path) -> SharedPlace:

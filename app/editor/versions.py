@@ -130,9 +130,17 @@ class VersionHistory:
 
         def compare(_watch: Watch) -> tuple[str, tuple[DifferenceRow, ...]]:
             text = lines_of(self.archive.text_of(name, number))
-            return text, differences(text, now)
+            return text, differences(*self.between(text, now))
 
         self.worker.ask(compare, self._compared, self._failed)
+
+    def between(self, marked: str, now: str) -> tuple[str, str]:
+        """From which text to which the changes lead."""
+        return marked, now
+
+    def heading(self) -> str:
+        """What the lines of the comparison are."""
+        return f"FROM VERSION {self.number} TO THE TEXT IN THE EDITOR"
 
     @property
     def number(self) -> int:

@@ -86,7 +86,7 @@ class VersionList(Panel):
     def _comparison(self, painter: Painter) -> None:
         u, history = self.look.u, self._history
         room = QRectF((LIST + 2) * u, 2.8 * u, self.width() - (LIST + 3.4) * u, 3 * u)
-        head = history.words() or f"FROM VERSION {history.number} TO THE TEXT IN THE EDITOR"
+        head = history.words() or history.heading()
         painter.write(room, head, 1.8, "text", fit=False)
         row = QRectF(room.x(), 6.2 * u, room.width(), LINE * u)
         for change in history.changes[self._top : self._top + self.lines]:

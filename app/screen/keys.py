@@ -58,6 +58,7 @@ NAMES: dict[tuple[int, Qt.KeyboardModifier], str] = {
     (Key.Key_F4, SHIFT): "Calculators",
     (Key.Key_F6, SHIFT): "Jobs",
     (Key.Key_Q, NONE): "Q",
+    (Key.Key_X, NONE): "X",
 }
 OF_MENU = {"J": "Step back"}
 """Letters of the main menu that are called otherwise, by what they do where a part is played."""

@@ -17,6 +17,7 @@ ZERO, MILL_TOOLS, PRESETS = "ZERO OFFSETS", "TOOL TABLE", "PRESETS"
 PROGRAMS, SHAPE, PART = "PROGRAMS", "TOOL SHAPE", "PART"
 SCOPE, ANALYSES, DRIVE_TEST = "SCOPE", "ANALYSES", "DRIVE TEST"
 MEASURED, JOBS = "MEASURED PARTS", "JOBS"
+SHARED = "SHARED PROGRAMS"
 
 
 _OMNITURN, _LATHES = frozenset({"omniturn"}), frozenset({"omniturn", "sinumerik"})
@@ -169,6 +170,14 @@ PAGES = (
         "J",
         "JOBS",
         "what is made next, how many, what it needs",
+    ),
+    PageEntry(
+        SHARED,
+        "app.sharing.sharing_view.SharedProgramsPage",
+        "app.sharing.sharing_model.SharingModel",
+        "X",
+        "SHARED",
+        "programs of other desks: what is newer, taken when asked",
     ),
     PageEntry(
         ANALYSES, "app.scope.analyses_view.AnalysesPage", "app.scope.analyses.Analyses", later=_ANALYSIS

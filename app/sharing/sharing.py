@@ -36,6 +36,8 @@ class Shared:
     """All that is known after a look, one immutable object. ``trouble``: why the place was of no use."""
 
     families: Mapping[str, Family] = field(default_factory=dict)
+    states: Mapping[str, str] = field(default_factory=dict)  # how each stands, see ``Family.state``
+    holders: Mapping[str, tuple[str, ...]] = field(default_factory=dict)  # desks that have a version, by id
     desks: tuple[DeskState, ...] = ()
     strays: tuple[str, ...] = ()
     refused: Mapping[str, str] = field(default_factory=dict)  # files of this machine that are not shared
@@ -44,7 +46,7 @@ class Shared:
 
     def who_has(self, version: str) -> tuple[str, ...]:
         """The desks that have this version in their program folder, by name."""
-        return tuple(sorted(each.desk for each in self.desks if version in each.has.values()))
+        return self.holders.get(version, ())
 
 
 class Sharing:
@@ -193,7 +195,9 @@ class Sharing:
         if found is not None:
             desks = (*(each for each in found.desks if each.home != self.home), self._state(store))
         strays = found.strays if found is not None else self.now.strays
-        self.now = Shared(families, desks, strays, dict(self._files.refused), waiting, trouble)
+        states = {key: family.state for key, family in families.items()}
+        refused = dict(self._files.refused)
+        self.now = Shared(families, states, _holders(desks), desks, strays, refused, waiting, trouble)
 
     # --- what the operator asks for --------------------------------------------------------------------
 
@@ -268,6 +272,14 @@ class Sharing:
             raise TakeError(f"{names[0]}: {self._files.refused[names[0]]}")
         file = self._files.look(settled=False).get(version.key)
         return file.name if file is not None else version.program
+
+
+def _holders(desks: Sequence[DeskState]) -> dict[str, tuple[str, ...]]:
+    found: dict[str, set[str]] = {}
+    for desk in desks:
+        for version in desk.has.values():
+            found.setdefault(version, set()).add(desk.desk)
+    return {version: tuple(sorted(names)) for version, names in found.items()}
 
 
 def _family(store: Store, key: str) -> Family:

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-from core.sharing.shared_place import Found, Published
+from core.sharing.shared_place import Found, Published, database_at
 from core.sharing.sharing_errors import Cause, SharingError
 from core.sharing.version_record import (
     FORMAT,
@@ -61,7 +61,7 @@ class SharedDatabase:
     """
 
     def __init__(self, conninfo: str) -> None:
-        self.name = f"the database {_named(conninfo)}"
+        self.name = database_at(_named(conninfo))
         self._conninfo = conninfo
 
     def begin(self) -> None:
@@ -152,6 +152,7 @@ class SharedDatabase:
 
     def _refusal(self, code: str, told: str) -> SharingError:
         first = next((line for line in told.splitlines() if line.strip()), "it failed")
+        first = first.rpartition(" failed: ")[2]  # of a connection that was not made: the cause alone
         said = told.lower()
         for cause, begins in _CODES if code else ():
             if code.startswith(begins):

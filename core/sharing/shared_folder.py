@@ -12,7 +12,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from core.sharing.shared_place import Found, Published
+from core.sharing.shared_place import Found, Published, folder_at
 from core.sharing.sharing_errors import Cause, of_system
 from core.sharing.version_record import (
     FORMAT,
@@ -37,7 +37,7 @@ class SharedFolder:
     """A folder that all desks reach. A version's file is its record, a line end, and its text."""
 
     def __init__(self, folder: Path) -> None:
-        self.name = f"the folder {folder}"
+        self.name = folder_at(folder)
         self._folder = folder
         self._sizes: dict[str, int] = {}  # of files, by the id of the version
 

@@ -14,7 +14,7 @@ from pathlib import Path
 
 from core.sharing.git_command import GitCommand
 from core.sharing.shared_folder import DESKS, MARK, VERSIONS, check_mark
-from core.sharing.shared_place import Found, Published
+from core.sharing.shared_place import Found, Published, repository_at
 from core.sharing.sharing_errors import Cause, SharingError, of_system
 from core.sharing.version_record import (
     FORMAT,
@@ -47,7 +47,7 @@ class SharedGit:
     """``folder`` is this desk's own copy of the branch, which can be made again at any time."""
 
     def __init__(self, remote: str, folder: Path) -> None:
-        self.name = f"the git repository {remote}"
+        self.name = repository_at(_named(remote))
         self._remote, self._folder = remote, folder
         self._git = GitCommand(folder, self.name)
 
@@ -186,6 +186,13 @@ class SharedGit:
                 return False
             raise
         return True
+
+
+def _named(remote: str) -> str:
+    """Without a password: it stands in sentences and logs."""
+    scheme, between, rest = remote.partition("://")
+    who, at, where = rest.rpartition("@")
+    return f"{scheme}{between}{who.partition(':')[0]}{at}{where}"
 
 
 def _last(path: str) -> str:

@@ -58,3 +58,18 @@ class SharedPlace(Protocol):
     def close(self) -> None:
         """Give up what is under way; it raises SharingError there."""
         ...
+
+
+def folder_at(folder: object) -> str:
+    """What sentences call a folder."""
+    return f"the folder {folder}"
+
+
+def repository_at(address: str) -> str:
+    """What they call a git repository; ``address`` without a password."""
+    return f"the git repository {address}"
+
+
+def database_at(address: str) -> str:
+    """What they call a database; ``address`` without a password."""
+    return f"the database {address}"

@@ -8,8 +8,6 @@ from dataclasses import dataclass, field
 from hashlib import sha256
 from typing import NamedTuple
 
-_COLUMNS = "id, program, text, size, follows, desk, saved, why"
-
 
 class SharedVersion(NamedTuple):
     """One version of a program: whose it is, what it was made from, and the SHA-256 of its text.
@@ -31,6 +29,9 @@ class SharedVersion(NamedTuple):
     def key(self) -> str:
         """Of its program: names that differ by case only are one program."""
         return key_of(self.program)
+
+
+_COLUMNS = ", ".join(SharedVersion._fields)
 
 
 def key_of(name: str) -> str:

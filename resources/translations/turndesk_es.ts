@@ -2246,7 +2246,7 @@
     <message>
       <location filename="" />
       <source>Position of X, Z or C in the program's system, X as DIAMON says; $P_EP[X] is the same here.</source>
-      <translation type="unfinished" />
+      <translation>Posición de X, Z o C en el sistema del programa, X según DIAMON; $P_EP[X] es lo mismo aquí.</translation>
     </message>
     <message>
       <location filename="" />
@@ -4342,6 +4342,11 @@
       <location filename="app/compose/screen_desk.py" />
       <source>THE RECORD OF THE SCOPE</source>
       <translation>EL REGISTRO DEL OSCILOSCOPIO</translation>
+    </message>
+    <message>
+      <location filename="app/compose/screen_desk.py" />
+      <source>THE SHARING OF PROGRAMS</source>
+      <translation>LA COMPARTICIÓN DE PROGRAMAS</translation>
     </message>
     <message>
       <location filename="app/compose/screen_desk.py" />
@@ -11580,6 +11585,16 @@
     </message>
     <message>
       <location filename="app/screen/page_table.py" />
+      <source>SHARED</source>
+      <translation>COMPART.</translation>
+    </message>
+    <message>
+      <location filename="app/screen/page_table.py" />
+      <source>SHARED PROGRAMS</source>
+      <translation>PROGRAMAS COMPARTIDOS</translation>
+    </message>
+    <message>
+      <location filename="app/screen/page_table.py" />
       <source>SPECIAL FUNCTIONS</source>
       <translation>FUNCIONES ESPECIALES</translation>
     </message>
@@ -11627,6 +11642,11 @@
       <location filename="app/screen/page_table.py" />
       <source>one line at a time</source>
       <translation>una línea a la vez</translation>
+    </message>
+    <message>
+      <location filename="app/screen/page_table.py" />
+      <source>programs of other desks: what is newer, taken when asked</source>
+      <translation>programas de otros puestos: qué es más nuevo allí; se toma si se pide</translation>
     </message>
     <message>
       <location filename="app/screen/page_table.py" />
@@ -28981,7 +29001,7 @@
     <message>
       <location filename="core/store/database.py" />
       <source>malformed database schema</source>
-      <translation>malformed database schema</translation>
+      <translation>esquema de la base de datos dañado</translation>
     </message>
     <message>
       <location filename="core/store/database.py" />
@@ -29126,7 +29146,7 @@
     <message>
       <location filename="core/store/offset_tables.py" />
       <source>entry %1 of the history of offsets is damaged; the offsets themselves are looked at by their own sums. Restore a backup for the history</source>
-      <translation>la entrada %1 de la historia de correctores está dañada; los correctores mismos se vigilan por sus propias sumas. Restaure una copia para la historia</translation>
+      <translation>la entrada %1 del historial de correctores está dañada; los correctores se revisan por sus propias sumas. Restaure una copia para el historial</translation>
     </message>
     <message>
       <location filename="core/store/offset_tables.py" />
@@ -29217,11 +29237,6 @@
       <location filename="core/store/program_records.py" />
       <source>the store has no program %1%2; see the list of programs and versions</source>
       <translation>el almacén no tiene el programa %1%2; vea la lista de programas y versiones</translation>
-    </message>
-    <message>
-      <location filename="core/store/shared_versions.py" />
-      <source>id, program, text, size, follows, desk, saved, why</source>
-      <translation>id, program, text, size, follows, desk, saved, why</translation>
     </message>
     <message>
       <location filename="core/store/store.py" />

@@ -311,3 +311,11 @@ def test_without_psycopg_one_sentence_says_so(monkeypatch: pytest.MonkeyPatch) -
 )
 def test_no_password_stands_in_a_sentence(conninfo: str) -> None:
     assert "secret" not in SharedDatabase(conninfo).name
+
+
+def test_nor_does_that_of_a_repository(tmp_path: Path) -> None:
+    name = SharedGit("https://lathe:secret@shop-pc/programs.git", tmp_path).name
+    assert name == "the git repository https://lathe@shop-pc/programs.git"
+    assert (
+        SharedGit("git@shop-pc:programs.git", tmp_path).name == "the git repository git@shop-pc:programs.git"
+    )

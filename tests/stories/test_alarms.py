@@ -21,6 +21,7 @@ PAGES = (
     (("F1", "q"), "SCOPE"),
     (("F1", "w"), "MEASURED PARTS"),
     (("F1", "j"), "JOBS"),
+    (("F1", "x"), "SHARED PROGRAMS"),
     (("F1",), "MAIN MENU"),
 )
 OURS = ("setpoint", "too early", "splice", "Error", "queue")  # words of whoever wrote the control
