@@ -15,7 +15,10 @@ from app.shopfloor.status_page import OtherDesk
 
 EVERY = 3.0  # s
 LOOKED_AT = 15.0  # s after which nobody looks any more
+STALE = 10.0  # s after which what was heard is not true any more
 _PATIENCE = 2.0  # s
+_LARGEST = 1e9  # of its figures; JSON as Python reads it has Infinity and NaN
+_NOT_YET = "not asked yet"
 _MOST = 100_000  # bytes
 _ASK = build_opener(ProxyHandler({}))  # desks of one shop are not asked by way of a proxy
 
@@ -56,41 +59,63 @@ _FIGURES = frozenset({"line", "made", "time_left", "last_cycle", "spindle_load"}
 
 def _fits(key: str, value: object) -> bool:
     """Whether the page can show it: nobody knows who answers there."""
-    figure = isinstance(value, int | float) and not isinstance(value, bool)
+    figure = isinstance(value, int | float) and not isinstance(value, bool) and abs(value) < _LARGEST
     return (key in _TEXTS and isinstance(value, str)) or (key in _FIGURES and figure)
 
 
 class OtherDesks:
-    """``look`` tells what was heard last; a thread asks while ``look`` is called now and then."""
+    """``look`` tells what was heard last; each is asked by a thread while ``look`` is called.
 
-    def __init__(self, addresses: Sequence[str], ask: Callable[[str], OtherDesk] = asked) -> None:
-        self._addresses, self._ask = addresses, ask
-        self._heard = tuple(OtherDesk(urlsplit(each).netloc, trouble="not asked yet") for each in addresses)
+    One that hangs, or sends its answer letter by letter, keeps nobody from hearing of the others; and what
+    was heard long ago is not told as if it were so now.
+    """
+
+    def __init__(
+        self,
+        addresses: Sequence[str],
+        ask: Callable[[str], OtherDesk] = asked,
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        self._ask, self._clock = ask, clock
+        self._heard = {
+            each: (clock(), OtherDesk(urlsplit(each).netloc, trouble=_NOT_YET)) for each in addresses
+        }
         self._looked = threading.Event()
         self._closing = threading.Event()
-        self._last = time.monotonic()
-        self._thread = threading.Thread(target=self._keep, name="other-desks", daemon=True)
+        self._last = clock()
+        self._threads = [
+            threading.Thread(target=self._keep, args=(each,), name="other-desks", daemon=True)
+            for each in addresses
+        ]
 
     def start(self) -> None:
         """Once; without other desks nothing is to be asked."""
-        if self._addresses:
-            self._thread.start()
+        for thread in self._threads:
+            thread.start()
 
     def look(self) -> Sequence[OtherDesk]:
         """What was heard of each."""
-        self._last = time.monotonic()
+        self._last = now = self._clock()
         self._looked.set()
-        return self._heard
+        return tuple(_if_fresh(desk, now - at) for at, desk in self._heard.values())
 
     def close(self) -> None:
-        """The thread ends behind the question that is open; nobody waits for it."""
+        """The threads end behind the questions that are open; nobody waits for them."""
         self._closing.set()
         self._looked.set()
 
-    def _keep(self) -> None:
+    def _keep(self, address: str) -> None:
         while not self._closing.is_set():
             self._looked.wait()
-            self._heard = tuple(self._ask(each) for each in self._addresses)
-            if time.monotonic() - self._last > LOOKED_AT:
+            heard = self._ask(address)
+            self._heard[address] = self._clock(), heard
+            if self._clock() - self._last > LOOKED_AT:
                 self._looked.clear()
             self._closing.wait(EVERY)
+
+
+def _if_fresh(desk: OtherDesk, age: float) -> OtherDesk:
+    """Of a desk that was not heard for ``age`` s nobody knows how it is."""
+    if age <= STALE or desk.trouble == _NOT_YET:
+        return desk
+    return OtherDesk(desk.address, trouble=f"not heard for {age:.0f} s")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import socket
+import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
@@ -258,6 +259,15 @@ def test_what_another_desk_says_is_not_believed() -> None:
     assert "<hr>" not in shown
 
 
+@pytest.mark.parametrize("odd", [float("inf"), float("nan"), -float("inf"), 10**400, True])
+def test_a_figure_that_is_none_is_left_out(odd: float) -> None:
+    with served(page(status={**STATUS, "time_left": odd, "last_cycle": odd})) as address:
+        heard = asked(address)
+    assert heard.status is not None
+    assert heard.status.keys() & {"time_left", "last_cycle"} == set()
+    assert "RUNNING" in get(page(others=(heard,)))[2]
+
+
 def test_the_address_of_the_status() -> None:
     assert status_address("http://a:1/?token=x") == "http://a:1/status.json?token=x"
     assert status_address("http://a:1/desk") == "http://a:1/desk/status.json"
@@ -271,6 +281,52 @@ def test_other_desks_are_asked_while_somebody_looks() -> None:
     while asking.look()[0] is not heard:
         pass
     asking.close()
+
+
+def test_an_older_desk_shows_what_it_says_and_a_dead_one_that_it_is_dead() -> None:
+    """Side by side: one that knows no counts and times yet, one that was killed, one as new as this."""
+    older: Status = {key: STATUS[key] for key in ("machine", "state", "program", "line")}
+    with served(page(status=older)) as old, served(page(status=STATUS)) as new, socket.socket() as dead:
+        dead.bind(("127.0.0.1", 0))
+        heard = [asked(each) for each in (old, f"http://127.0.0.1:{dead.getsockname()[1]}", new)]
+    assert [each.status is not None for each in heard] == [True, False, True]
+    shown = get(page(others=tuple(heard)))[2]
+    cards = shown[shown.index('class="others"') :].split("<article>")[1:]
+    assert [("NO ANSWER" in card, ">PARTS<" in card.upper()) for card in cards] == [
+        (False, False),
+        (True, False),
+        (False, True),
+    ]
+
+
+def test_a_desk_that_hangs_keeps_nobody_from_hearing_of_the_others() -> None:
+    hangs, healthy = threading.Event(), OtherDesk("lathe3", {"state": "READY"})
+
+    def ask(address: str) -> OtherDesk:
+        if "lathe2" in address:
+            hangs.wait()
+        return healthy
+
+    asking = OtherDesks(("http://lathe2:8317", "http://lathe3:8317"), ask)
+    asking.look()
+    asking.start()
+    try:
+        while asking.look()[1] is not healthy:
+            pass
+        assert asking.look()[0].trouble == "not asked yet"
+    finally:
+        hangs.set()
+        asking.close()
+
+
+def test_what_was_heard_long_ago_is_not_told_as_of_now() -> None:
+    now = [0.0]
+    asking = OtherDesks(("http://lathe2:8317",), lambda _address: OtherDesk("lathe2"), lambda: now[0])
+    asking._heard["http://lathe2:8317"] = 0.0, OtherDesk("lathe2", {"state": "RUNNING"})
+    now[0] = 10.0
+    assert asking.look()[0].status == {"state": "RUNNING"}
+    now[0] = 10.5
+    assert (asking.look()[0].status, asking.look()[0].trouble) == (None, "not heard for 10 s")
 
 
 def test_a_port_that_is_taken_is_told() -> None:
