@@ -15,18 +15,19 @@ from app.shapes.shape_form import ShapeForm
 from core.drawings.drawing_file import read_drawing
 from core.drawings.part_against_drawing import Comparison
 from core.language.source import Dialect, dialect_of
-from core.shapes.pieces import Piece, pieces, renewed, setting_at, with_shape
+from core.shapes.pieces import Piece, begun, ends_program, pieces, renewed, setting_at, with_shape
 from core.shapes.program_head import HEAD
 from core.shapes.shape import Shape
 from core.shapes.shape_setting import Setting, Shop
-from core.shapes.shape_table import SHAPES
+from core.shapes.shape_table import HELPERS, SHAPES, SHAPES_OF
 
 FORMS = {**SHAPES, "X": PROFILE}
+"""Of OmniTurn; another language has those of ``SHAPES_OF``."""
 
 
 def written_in(name: str) -> bool:
-    """Whether a program of this name takes shapes: they are lines of OmniTurn."""
-    return dialect_of(name) is Dialect.OMNITURN
+    """Whether a program of this name takes shapes: their lines are OmniTurn or SINUMERIK."""
+    return dialect_of(name) in SHAPES_OF
 
 
 Attempt = Callable[[str, Plan, Watch], tuple[Comparison | None, tuple[str, ...]]]
@@ -88,17 +89,28 @@ class Shapes:
         ``table``: the forms of the list; of calculators and templates no piece of the text is opened.
         """
         if not written_in(name):
-            return tr("SHAPES ARE WRITTEN IN OMNITURN: THIS PROGRAM SPEAKS ANOTHER LANGUAGE")
+            return tr("SHAPES ARE WRITTEN IN OMNITURN OR SINUMERIK: THIS PROGRAM SPEAKS ANOTHER LANGUAGE")
+        dialect = dialect_of(name)
+        if dialect is not Dialect.OMNITURN:
+            if table is not FORMS:
+                return tr("CALCULATORS AND TEMPLATES WRITE OMNITURN: THIS PROGRAM SPEAKS ANOTHER LANGUAGE")
+            table = SHAPES_OF[dialect]
+        self.new = replace(self.new, dialect=dialect)
         self.worker.ask(lambda _request: self.fetch(), self._have_shop, self._no_shop)
         self.notice, self.asked, self.form, self.table = "", None, None, table
         self._take(text)
         here = self.piece_at(line - 1)
         self.at = self._place(line - 1)
-        if here is not None and table is FORMS:
+        if here is not None and self.of_shapes:
             self._open_piece(here)
         else:
-            self.marked = 0 if not self.pieces or table is not FORMS else max(1, self.marked)
+            self.marked = 0 if not self.listed else max(1, self.marked)
         return ""
+
+    @property
+    def of_shapes(self) -> bool:
+        """Whether the list is that of shapes, not of calculators and templates."""
+        return self.table is not HELPERS
 
     @property
     def keys_of_list(self) -> tuple[str, ...]:
@@ -108,7 +120,7 @@ class Shapes:
     @property
     def listed(self) -> list[Piece]:
         """The pieces that the list offers behind the forms."""
-        return self.pieces if self.table is FORMS else []
+        return self.pieces if self.of_shapes else []
 
     def _take(self, text: str) -> None:
         self.lines = text.split("\n")
@@ -136,9 +148,7 @@ class Shapes:
         """Where a new shape goes: behind the piece of the cursor, and before the end of the program."""
         here = self.piece_at(line)
         at = here.behind if here is not None else min(line + 1, len(self.lines))
-        ends = [
-            n for n, each in enumerate(self.lines) if each.strip().upper().startswith(("M30", "M02", "M99"))
-        ]
+        ends = [n for n, each in enumerate(self.lines) if ends_program(each, self.new.dialect)]
         started = [n for n, each in enumerate(self.lines) if each.strip().startswith("}")]
         for end in ends:
             begin = max((n for n in started if n < end), default=-1)
@@ -170,9 +180,9 @@ class Shapes:
         self.notice = ""
         shape = self.table[key]
         self.marked = self.keys_of_list.index(key)
-        if shape is HEAD:
+        if shape.name == HEAD.name:
             self.at = 0
-            head = next((each for each in self.pieces if each.filled.shape is HEAD), None)
+            head = next((each for each in self.pieces if each.filled.shape is shape), None)
             if head is not None:
                 self._open_piece(head)
                 return
@@ -180,7 +190,7 @@ class Shapes:
             pass  # no piece of a program: it needs no head
         elif shape is PROFILE and not self.lines:
             self.at = 0  # it writes a head of its own
-        elif not any(line.upper().startswith(("G90", "G91")) for line in self.lines[:1]):
+        elif not begun(self.lines, self.new.dialect):
             self.notice = tr("A PROGRAM BEGINS WITH ITS HEAD: PRESS N, THEN WRITE IT")
             return
         setting = setting_at(self.lines, self.at, self.shop, self.new)
@@ -196,8 +206,12 @@ class Shapes:
         return DrawingForm(PROFILE, setting, files=files, before=tuple(self.lines[: self.at]))
 
     def open_wanted(self) -> None:
-        """The form of the drawing that is waiting to be opened."""
-        self.open_shape("X")
+        """The form of the drawing that is waiting to be opened; of another language why there is none."""
+        if "X" in self.table:
+            self.open_shape("X")
+        else:
+            self.wanted = None
+            self.notice = tr("A DRAWING IS WRITTEN IN OMNITURN: OPEN IT BESIDE A PROGRAM OF THAT LANGUAGE")
 
     def _open_piece(self, piece: Piece) -> None:
         """A piece of the program; of one that somebody has changed by hand it is said."""
@@ -343,9 +357,9 @@ class Shapes:
         assert form is not None
         text, behind = with_shape(self.lines, self.at, form.one, form.setting, form.instead)
         said = ""
-        if form.shape is HEAD and form.instead is not None:
+        if form.shape.name == HEAD.name and form.instead is not None:
             grown = len(form.lines) - form.instead.count
-            moved = [_moved(each, grown) for each in self.pieces if each.filled.shape is not HEAD]
+            moved = [_moved(each, grown) for each in self.pieces if each.filled.shape is not form.shape]
             text, stay = renewed(text, self.shop, moved)
             if stay:
                 said = tr("{count} SHAPES WERE CHANGED BY HAND AND STAY AS THEY ARE").format(count=stay)

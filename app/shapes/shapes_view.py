@@ -15,7 +15,7 @@ from app.screen.entry_panel import KeyPad, draw_entry
 from app.screen.look import CENTRE, LEFT, RIGHT, Look, Painter
 from app.screen.panel import Panel, Shown
 from app.shapes.shape_form import COLUMNS, Cell, ShapeForm
-from app.shapes.shapes_model import FORMS, Shapes
+from app.shapes.shapes_model import Shapes
 from app.shapes.sketch_view import SketchPanel
 from core.shapes.contour import row_word
 
@@ -224,7 +224,7 @@ class ShapesView(QWidget):
             for each in model.listed
         ]
         self.rows.heading = tr(
-            "SHAPES  ·  THOSE OF THIS PROGRAM BY LINE" if table is FORMS else "CALCULATORS AND TEMPLATES"
+            "SHAPES  ·  THOSE OF THIS PROGRAM BY LINE" if model.of_shapes else "CALCULATORS AND TEMPLATES"
         )
         self.rows.rows, self.rows.marked, self.rows.column = (*shapes, *there), model.marked, 0
         place = model.marked

@@ -2,14 +2,37 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from core.shapes.contour import Row, points, write_contour
 from core.shapes.number_words import plain, rounded
 from core.shapes.shape_setting import Setting
+
+
+class Along(NamedTuple):
+    """A contour that is turned: roughed in passes of ``rough`` (0: not), then along it once.
+
+    ``beside`` is the radius beside the metal where it ends, ``offset`` the number of the nose compensation,
+    0 for none, ``label`` a number for the contour where the language names it.
+    """
+
+    rows: Sequence[Row]
+    beside: float
+    inside: bool
+    feed: float
+    rough: float = 0.0
+    leave: float = 0.0
+    rough_feed: float = 0.0
+    offset: float = 0.0
+    label: float = 0.0
 
 
 class Code:
     """Lines in the modes of a program. X is given as a radius; what is in force is not written again."""
 
     loops = True  # a group of lines is repeated by LS … LF
+    edge = 1.0  # the cutting edge of the tools, where the language has several a tool
 
     def __init__(self, setting: Setting) -> None:
         self.setting = setting
@@ -42,6 +65,10 @@ class Code:
         return ("" if x is None else self.x(x)) + ("" if z is None else self.z(z))
 
     # --- moves
+
+    def noted(self, comment: str) -> list[str]:
+        """The lines, the first with this comment."""
+        return [f"{self.lines[0]}({comment})", *self.lines[1:]]
 
     def begin(self, tool: float, rpm: float, x: float, z: float | None, turns: str = "M03") -> None:
         """Tool, spindle, and rapids to ``x`` at the clear Z and from there to ``z``."""
@@ -76,6 +103,11 @@ class Code:
         """A feed alone on its line, for the moves behind it."""
         self.write(self.fed(feed) or f"F{plain(feed, 6)}")
 
+    def line(self, x: float | None, z: float | None, chamfer: float, radius: float) -> None:
+        """A line of a contour, with the corner to the next."""
+        corner = self.z(chamfer, "C") if chamfer else self.z(radius, "R") if radius else ""
+        self.write(self.fed(0.0) + self.point(x, z) + corner)
+
     def arc(self, x: float, z: float, radius: float, *, convex: bool) -> None:
         """An arc from the last point, convex as the shoulder of a shaft or concave as a fillet."""
         self.write(f"{'G02' if convex else 'G03'}{self.point(x, z)}{self.z(radius, 'R')}")
@@ -89,6 +121,44 @@ class Code:
         """Along Z to where tools change."""
         self.rapid(z=self.setting.clear)
 
+    # --- along a contour, holes
+
+    def along(self, way: Along) -> None:
+        """Roughing by G75 where a depth of a pass is said, then the contour, compensated where asked for."""
+        there = points(way.rows)
+        first = there[0]
+        if way.rough:
+            self.set_feed(way.rough_feed)
+            self.write(f"G75{self.z(way.rough, 'I')}{self.z(way.leave, 'U')}F{_feed(way.rough_feed)}")
+            self.write(self.point(first[1], first[0]))
+            write_contour(self, way.rows)
+            self.write("RF")
+            self.rapid(x=first[1])
+        if way.offset:
+            self.set_feed(way.feed)
+            self.write("G42" if way.inside else "G41", f"{self.z(first[0])}D{way.offset:.0f}")
+        else:
+            self.cut(z=first[0], feed=way.feed)
+        write_contour(self, way.rows)
+        if abs(way.beside - there[-1][1]) > 1e-9:
+            self.cut(x=way.beside)
+
+    def let_go(self, offset: float) -> None:
+        """Compensation off, where a contour was compensated by this offset."""
+        if offset:
+            self.write("G40")
+
+    def drill(self, end: float, peck: float, feed: float, start: float) -> None:
+        """From where the tool stands to ``end``, in pecks of so much or in one go; begun ``start`` deep."""
+        word = f"F{plain(feed, 6)}"
+        self.write("G95")
+        if peck:
+            back = self.z(self.setting.near / 2.0, "R") if start else ""
+            self.write(f"G83{self.z(end)}{self.z(peck, 'K')}{word}{back}")
+        else:
+            self.write(f"G81{self.z(end)}{word}")
+        self.forget()
+
     # --- spindle
 
     def surface_speed(self, surface: float, most: float) -> None:
@@ -98,3 +168,7 @@ class Code:
     def constant_speed(self) -> None:
         """Back to rpm, before another tool."""
         self.write("G97")
+
+
+def _feed(value: float) -> str:
+    return f"{value:.6f}".rstrip("0").replace("0.", ".", 1) if value < 1 else f"{value:g}"

@@ -7,13 +7,19 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
-from core.shapes.code_lines import Code
+from core.language.source import Dialect
 from core.shapes.shape_fields import Refusal
 from core.shapes.shape_setting import Setting
 
+if TYPE_CHECKING:
+    from core.shapes.code_lines import Code
+
 _WORD = re.compile(r"(G02|G03|[XZCR])(-?\d*\.?\d*)")
 _LINE = re.compile(r"(?:G02|G03)?(?:[XZCR]-?(?:\d+\.?\d*|\.\d+))+")
+_S_LINE = re.compile(r"(?:G[123](?!\d))?(?:(?:[XZF]|CHR=|RND=|CR=)-?(?:\d+\.?\d*|\.\d+))+")
+_S_WORD = re.compile(r"(X|Z|CHR=|RND=|CR=)(-?\d+\.?\d*|-?\.\d+)")
 _OFF = 0.0005  # inch or less: what the control takes between a chord and two radii
 _SAME = 1e-9
 
@@ -63,14 +69,13 @@ def write_contour(code: Code, rows: Sequence[Row]) -> None:
         if row.arc:
             code.arc(here[1], here[0], abs(row.arc), convex=row.arc > 0)
         elif x is not None or z is not None:
-            corner = (
-                code.z(row.chamfer, "C") if row.chamfer else code.z(row.radius, "R") if row.radius else ""
-            )
-            code.write(code.fed(0.0) + code.point(x, z) + corner)
+            code.line(x, z, row.chamfer, row.radius)
 
 
 def read_contour(lines: Iterable[str], setting: Setting) -> tuple[Row, ...] | None:
     """The rows that such lines came from; None where a line holds something else."""
+    if setting.dialect is Dialect.SINUMERIK:
+        return _read_sinumerik(lines, setting)
     rows = []
     scale = 1.0 if setting.diameter else 2.0
     for line in lines:
@@ -81,6 +86,21 @@ def read_contour(lines: Iterable[str], setting: Setting) -> tuple[Row, ...] | No
         x = None if x is None else x * scale
         arc = r if "G02" in words else -r if "G03" in words else 0.0
         rows.append(Row(x, z, words.get("C", 0.0), 0.0 if arc else r, arc))
+    return tuple(rows)
+
+
+def _read_sinumerik(lines: Iterable[str], setting: Setting) -> tuple[Row, ...] | None:
+    """As they are written there: G3 leads about a convex arc, X behind the axis being drawn upwards."""
+    rows = []
+    scale = 1.0 if setting.diameter else 2.0
+    for line in lines:
+        if not _S_LINE.fullmatch(line):
+            return None
+        words = {letter: float(value) for letter, value in _S_WORD.findall(line)}
+        x, r = words.get("X"), words.get("CR=", 0.0)
+        arc = r if line.startswith("G3") else -r if line.startswith("G2") else 0.0
+        x = None if x is None else x * scale
+        rows.append(Row(x, words.get("Z"), words.get("CHR=", 0.0), words.get("RND=", 0.0), arc))
     return tuple(rows)
 
 

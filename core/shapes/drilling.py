@@ -7,7 +7,6 @@ from collections.abc import Iterator
 from core.part.tool_shape import ToolKind
 from core.shapes.code_lines import Code
 from core.shapes.cutting_data import Work
-from core.shapes.number_words import plain
 from core.shapes.shape import Filled, Shape
 from core.shapes.shape_fields import Field, Kind, Refusal, Value, Values, number
 from core.shapes.shape_setting import Setting
@@ -31,15 +30,7 @@ def _peck(values: Values, _setting: Setting) -> Value | None:
 def _drill(filled: Filled, setting: Setting, code: Code) -> None:
     start = setting.near / 2.0 - filled.n("START")
     code.begin(filled.n("T"), filled.n("RPM"), 0.0, start)
-    feed = f"F{plain(filled.n('FEED'), 6)}"
-    end, peck = code.z(-filled.n("DEEP")), filled.n("PECK")
-    code.write("G95")
-    if peck:
-        back = code.z(setting.near / 2.0, "R") if filled.n("START") else ""
-        code.write(f"G83{end}{code.z(peck, 'K')}{feed}{back}")
-    else:
-        code.write(f"G81{end}{feed}")
-    code.forget()
+    code.drill(-filled.n("DEEP"), filled.n("PECK"), filled.n("FEED"), filled.n("START"))
     code.away()
 
 

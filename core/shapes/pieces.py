@@ -10,6 +10,7 @@ import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
+from core.language.source import Dialect
 from core.shapes.contour import Row, read_contour
 from core.shapes.program_head import MM, RADIUS
 from core.shapes.shape import TOOL_WORD, Filled, Shape, filled, read_comment
@@ -17,12 +18,25 @@ from core.shapes.shape_fields import LENGTHS, Kind, Value, Values
 from core.shapes.shape_setting import Setting, Shop
 from core.shapes.shape_table import named
 
-_COMMENT = re.compile(r"\(([^()]*)\)\s*$")
+_COMMENT = {
+    Dialect.OMNITURN: re.compile(r"\(([^()]*)\)\s*$"),
+    Dialect.SINUMERIK: re.compile(r";([^;]*)$"),
+}
 _MODES = re.compile(r"G7([0-3])(?!\d)")
+_S_MODES = re.compile(r"(G700?(?!\d)|G710?(?!\d)|DIAMON|DIAMOF)")
+_BLOCK_NUMBER = re.compile(r"N\d+(?=[A-Z])")
 _TOOL = re.compile(r"(?:^|[^A-Z])T(\d+)")
-_SUB = re.compile(r"}(\d+)")
-_END = re.compile(r"\s*(?:M30|M02|M99|})")
-_WORD = re.compile(r"([A-Z~]+)([-+]?(?:\d+\.?\d*|\.\d+))?")
+_SUB = {
+    Dialect.OMNITURN: re.compile(r"}(\d+)"),
+    Dialect.SINUMERIK: re.compile(r"^CONTOUR_(\d+):"),
+}
+_END = {
+    Dialect.OMNITURN: re.compile(r"\s*(?:M30|M02|M99|})"),
+    Dialect.SINUMERIK: re.compile(r"\s*(?:N\d+\s*)?(?:M30|M0?2|M17|RET)\b", re.IGNORECASE),
+}
+_LABEL = re.compile(r"CONTOUR_\d+(?:_END)?:")
+_FIRST_CUT = re.compile(r"G1X-?[.\d]+Z-?[.\d]+F[.\d]+")
+_WORD = re.compile(r"([A-Z~_=:,(\"]+)([-+]?(?:\d+\.?\d*|\.\d+))?")
 _SCALED = LENGTHS | {Kind.FEED, Kind.RATE, Kind.SURFACE}
 _FEET = {True: 0.3048, False: 1.0 / 0.3048}  # by metric: ft/min and m/min
 _MOST_CHANGES = 4  # figures changed by hand that are taken over
@@ -49,12 +63,30 @@ class Piece:
         return self.first + self.count
 
 
-def code_of(line: str) -> str:
-    """A line without its comment and blanks, in capitals; a line of plane switching as it is."""
+def code_of(line: str, dialect: Dialect = Dialect.OMNITURN) -> str:
+    """A line without its comment and blanks, in capitals; a line of plane switching as it is.
+
+    Of SINUMERIK also without its block number.
+    """
     bare = line.strip()
+    if dialect is Dialect.SINUMERIK:
+        return _BLOCK_NUMBER.sub("", bare.partition(";")[0].upper().replace(" ", ""), count=1)
     if bare.startswith("("):
         return bare.upper().replace(" ", "")
-    return _COMMENT.sub("", bare).upper().replace(" ", "")
+    return _COMMENT[dialect].sub("", bare).upper().replace(" ", "")
+
+
+def ends_program(line: str, dialect: Dialect) -> bool:
+    """Whether a line ends a program or a subroutine."""
+    return _END[dialect].match(line) is not None and not line.lstrip().startswith("}")
+
+
+def begun(lines: Sequence[str], dialect: Dialect) -> bool:
+    """Whether a program says already how its lengths count: the lines of a head, or of another hand."""
+    if dialect is Dialect.OMNITURN:
+        return any(line.upper().startswith(("G90", "G91")) for line in lines[:1])
+    codes = [code for line in lines if (code := code_of(line, dialect))]
+    return any(not code.startswith("%") and not _END[dialect].match(code) for code in codes)
 
 
 # --- what is in force at a line
@@ -65,23 +97,27 @@ def setting_at(lines: Sequence[str], at: int, shop: Shop, new: Setting | None = 
     now = replace(new or Setting(), shop=shop)
     for line in lines[:at]:
         now = _after(line, now)
-    used = {int(number) for line in lines for number in _SUB.findall(code_of(line))}
+    used = {int(n) for line in lines for n in _SUB[now.dialect].findall(code_of(line, now.dialect))}
     free = next(number for number in range(1, len(used) + 2) if number not in used)
     return replace(now, free_sub=free)
 
 
 def _after(line: str, now: Setting) -> Setting:
-    code = code_of(line)
+    code = code_of(line, now.dialect)
     if code.startswith("("):
         return now
-    for mode in _MODES.findall(code):
+    if now.dialect is Dialect.SINUMERIK:
+        for mode in _S_MODES.findall(code):
+            diameter = mode == "DIAMON" if mode.startswith("D") else now.diameter
+            now = replace(now, diameter=diameter, metric=now.metric if mode[0] == "D" else mode[:3] == "G71")
+    for mode in _MODES.findall(code) if now.dialect is Dialect.OMNITURN else ():
         words = {"metric": mode == "1"} if mode in "01" else {"diameter": mode == "2"}
         now = replace(now, **words)
     for tool in _TOOL.findall(code):
         now = replace(now, used=now.used | {int(tool)})
     if code.startswith(("}", "M99")):
         now = replace(now, called=code.startswith("}"))
-    head = _head_of(line)
+    head = _head_of(line, now.dialect)
     return now if head is None or head[0].name != "HEAD" else _with_head(head[1], now)
 
 
@@ -97,19 +133,19 @@ def _with_head(values: Values, now: Setting) -> Setting:
     )
 
 
-def _head_of(line: str) -> tuple[Shape, dict[str, Value]] | None:
+def _head_of(line: str, dialect: Dialect) -> tuple[Shape, dict[str, Value]] | None:
     """The shape whose comment a line carries, with its fields; None where it carries none."""
-    found = _COMMENT.search(line)
-    if found is None or line.lstrip().startswith("("):
+    found = _COMMENT[dialect].search(line)
+    if found is None or line.lstrip().startswith(("(", ";")):
         return None
-    known = named(found[1].split())
+    known = named(found[1].split(), dialect)
     if known is None:
         return None
     shape, words = known
     values = read_comment(shape, words)
     if not words or values is None:
         return None
-    tool = _TOOL.search(code_of(line))
+    tool = _TOOL.search(code_of(line, dialect))
     if shape.field(TOOL_WORD) is not None:
         if tool is None:
             return None
@@ -125,7 +161,7 @@ def pieces(lines: Sequence[str], shop: Shop, new: Setting | None = None) -> list
     found: list[Piece] = []
     now, at = replace(new or Setting(), shop=shop), 0
     while at < len(lines):
-        head = _head_of(lines[at])
+        head = _head_of(lines[at], now.dialect)
         if head is None:
             now, at = _after(lines[at], now), at + 1
             continue
@@ -142,9 +178,10 @@ def _piece(lines: Sequence[str], at: int, head: tuple[Shape, dict[str, Value]], 
     if shape.name == "HEAD":
         setting = _with_head(values, setting)
     reach = at + 1
-    while reach < len(lines) and not _END.match(lines[reach]) and _head_of(lines[reach]) is None:
+    end, dialect = _END[setting.dialect], setting.dialect
+    while reach < len(lines) and not end.match(lines[reach]) and _head_of(lines[reach], dialect) is None:
         reach += 1
-    there = [code_of(line) for line in lines[at:reach]]
+    there = [code_of(line, dialect) for line in lines[at:reach]]
     best: Piece | None = None
     for rows in _contours(shape, there, setting):
         one = filled(shape, values, setting, rows)
@@ -178,7 +215,7 @@ def codes(one: Filled, setting: Setting) -> list[str]:
     if one.refusals(setting) and _incomplete(one):
         return []
     try:
-        return [code_of(line) for line in one.lines(setting)]
+        return [code_of(line, setting.dialect) for line in one.lines(setting)]
     except (ArithmeticError, ValueError, IndexError):
         return []  # a comment may say anything
 
@@ -192,6 +229,10 @@ def _contours(shape: Shape, there: list[str], setting: Setting) -> Iterator[tupl
     if not shape.contour:
         yield ()
         return
+    if setting.dialect is Dialect.SINUMERIK:
+        yield from _sinumerik_contours(there, setting)
+        yield ()
+        return
     first = next((n for n, line in enumerate(there) if line.startswith("G75")), None)
     if first is not None and "RF" in there[first:]:
         rows = read_contour(there[first + 1 : there.index("RF", first)], setting)
@@ -200,6 +241,17 @@ def _contours(shape: Shape, there: list[str], setting: Setting) -> Iterator[tupl
     else:
         yield from _bare_contours(there, setting)
     yield ()
+
+
+def _sinumerik_contours(there: list[str], setting: Setting) -> Iterator[tuple[Row, ...]]:
+    """Between two labels; without roughing from the first cut on to the one beside the part, or before it."""
+    labels = [n for n, line in enumerate(there) if _LABEL.fullmatch(line)]
+    begin = next((n for n, line in enumerate(there) if _FIRST_CUT.fullmatch(line)), len(there))
+    end = next((n for n in range(begin, len(there)) if there[n].startswith(("G0", "G40"))), len(there))
+    for last in labels[1:2] or (end - 1, end):
+        rows = read_contour(there[begin:last], setting)
+        if rows:
+            yield rows
 
 
 def _bare_contours(there: list[str], setting: Setting) -> Iterator[tuple[Row, ...]]:
@@ -296,7 +348,8 @@ def with_shape(
     new = one.lines(setting)
     at = instead.first if instead is not None else min(at, len(text))
     text[at : instead.behind if instead is not None else at] = new
-    if not any(re.match(r"\s*/?M(30|02)", line) for line in text):
+    ends = r"\s*/?M(30|02)" if setting.dialect is Dialect.OMNITURN else r"\s*(N\d+\s*)?M(30|0?2|17)\b"
+    if not any(re.match(ends, line) for line in text):
         text.append("M30")
     behind = at + len(new)
     tail = one.shape.ends(one)
@@ -334,6 +387,7 @@ def renewed(lines: Sequence[str], shop: Shop, before: Sequence[Piece]) -> tuple[
     and stay as they are."""
     text, stay = list(lines), 0
     shift = 0
+    new = Setting(dialect=before[0].setting.dialect) if before else None
     for piece in before:
         if piece.filled.shape.name == "HEAD":
             continue
@@ -341,8 +395,8 @@ def renewed(lines: Sequence[str], shop: Shop, before: Sequence[Piece]) -> tuple[
             stay += 1
             continue
         first = piece.first + shift
-        setting = setting_at(text, first, shop)
-        new = in_unit_of(piece.filled, piece.setting, setting).lines(setting)
-        text[first : first + piece.count] = new
-        shift += len(new) - piece.count
+        setting = setting_at(text, first, shop, new)
+        again = in_unit_of(piece.filled, piece.setting, setting).lines(setting)
+        text[first : first + piece.count] = again
+        shift += len(again) - piece.count
     return text, stay

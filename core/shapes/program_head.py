@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from core.shapes.code_lines import Code
 from core.shapes.cutting_data import MATERIALS
 from core.shapes.number_words import plain
@@ -61,3 +63,16 @@ HEAD = Shape(
     _cut,
     _sketch,
 )
+
+
+def _sinumerik(filled: Filled, _setting: Setting, code: Code) -> None:
+    unit = "G710" if _metric(filled.values) else "G700"
+    code.write(f"G54 G18 G90 G95 {unit} {'DIAMON' if filled.t('WORDS') == DIAMETER else 'DIAMOF'}")
+    if filled.t("COOLANT") == _YES:
+        code.write("M8")
+
+
+SINUMERIK_HEAD = replace(
+    HEAD, cut=_sinumerik, fields=tuple(each for each in HEAD.fields if each.word != "RAPID")
+)
+"""The same for a control that knows its rapid: zero offset, plane, unit of F too."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 
+from core.language.source import Dialect
 from core.part.tool_shape import ToolKind
 from core.shapes.code_lines import Code
 from core.shapes.contour import Row
@@ -16,6 +17,7 @@ from core.shapes.number_words import (
 )
 from core.shapes.shape_fields import LENGTHS, WORDS, Field, Kind, Refusal, Value, Values
 from core.shapes.shape_setting import Setting
+from core.shapes.sinumerik_lines import SinumerikCode
 from core.shapes.sketch import Sketch
 
 
@@ -90,11 +92,9 @@ class Filled:
 
     def lines(self, setting: Setting) -> list[str]:
         """The lines with their comment; without a complete set of fields they mean nothing."""
-        code = Code(setting)
+        code = SinumerikCode(setting) if setting.dialect is Dialect.SINUMERIK else Code(setting)
         self.shape.cut(self, setting, code)
-        if not self.shape.noted:
-            return code.lines
-        return [f"{code.lines[0]}({self.comment(setting)})", *code.lines[1:]]
+        return code.noted(self.comment(setting)) if self.shape.noted else code.lines
 
     def comment(self, setting: Setting) -> str:
         """What the comment carries: the name, and value and word of each field that says something."""

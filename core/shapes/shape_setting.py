@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from core.language.source import Dialect
 from core.part.tool_shape import ToolShape
 
 _NEAR = {False: 0.1, True: 2.5}  # by metric: how near a rapid comes to the part
@@ -26,7 +27,7 @@ class Setting:
     """Lengths in the unit of the program. ``clear`` is Z where tools change, ``bar`` the bar's diameter.
 
     ``called``: the shape stands in a subroutine, ``used`` are the tools before it,
-    ``free_sub`` the first number that no subroutine of the program has.
+    ``free_sub`` the first number that no subroutine of the program has, or no labelled contour of SINUMERIK.
     """
 
     metric: bool = False
@@ -38,6 +39,7 @@ class Setting:
     used: frozenset[int] = frozenset()
     free_sub: int = 1
     shop: Shop = field(default_factory=Shop)
+    dialect: Dialect = Dialect.OMNITURN
 
     @property
     def near(self) -> float:

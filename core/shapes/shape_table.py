@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
+from core.language.source import Dialect
 from core.shapes.bar_work import LOOP
 from core.shapes.calculators import SPEED, THREADS, TRIANGLE
 from core.shapes.drilling import DRILL
 from core.shapes.grooving import GROOVE
 from core.shapes.live_tools import CROSS, FLATS, SLOT
 from core.shapes.parting import PART_OFF
-from core.shapes.program_head import HEAD
+from core.shapes.program_head import HEAD, SINUMERIK_HEAD
 from core.shapes.shape import Shape
+from core.shapes.shape_fields import Field, Kind, Value, Values, number
+from core.shapes.shape_setting import Setting
 from core.shapes.tapping import TAP
 from core.shapes.templates import BAR_FEED, ROUGH, START, THREADING, TOOL_CHANGE
-from core.shapes.threading import THREAD
+from core.shapes.threading import SINUMERIK_THREAD, THREAD
 from core.shapes.turning import BORE, EDGE, FACE, TAPER, TURN
 
 # H, E and Space stop the machine on every page: they open nothing.
@@ -46,13 +51,49 @@ HELPERS: dict[str, Shape] = {
 }
 """Calculators and templates: forms that write lines without a comment."""
 
-_BY_NAME = {shape.name: shape for shape in SHAPES.values()}
+
+def _next_label(_values: Values, setting: Setting) -> Value | None:
+    return float(setting.free_sub)
 
 
-def named(words: list[str]) -> tuple[Shape, list[str]] | None:
+_LABEL = Field(
+    "LABEL",
+    "NUMBER OF THE CONTOUR",
+    Kind.COUNT,
+    _next_label,
+    most=9999,
+    only=lambda v: number(v, "ROUGH") > 0,
+)
+
+
+def _labelled(shape: Shape) -> Shape:
+    """A contour that CYCLE95 finds by its labels."""
+    return replace(shape, fields=(*shape.fields, _LABEL))
+
+
+SINUMERIK_SHAPES: dict[str, Shape] = {
+    "N": SINUMERIK_HEAD,
+    "F": FACE,
+    "T": _labelled(TURN),
+    "A": _labelled(TAPER),
+    "K": EDGE,
+    "G": GROOVE,
+    "R": SINUMERIK_THREAD,
+    "D": DRILL,
+    "B": _labelled(BORE),
+    "P": PART_OFF,
+}
+
+SHAPES_OF = {Dialect.OMNITURN: SHAPES, Dialect.SINUMERIK: SINUMERIK_SHAPES}
+"""By the language of the program."""
+
+_BY_NAME = {dialect: {shape.name: shape for shape in table.values()} for dialect, table in SHAPES_OF.items()}
+
+
+def named(words: list[str], dialect: Dialect = Dialect.OMNITURN) -> tuple[Shape, list[str]] | None:
     """The shape whose name begins these words, and the words behind it; None where none does."""
     for count in (2, 1):
-        found = _BY_NAME.get(" ".join(words[:count]))
+        found = _BY_NAME[dialect].get(" ".join(words[:count]))
         if found is not None and len(words) >= count:
             return found, words[count:]
     return None

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 from functools import partial
 
+from core.language.source import Dialect
 from core.part.tool_shape import ToolKind
 from core.shapes.code_lines import Code
 from core.shapes.cutting_data import Work, rpm
@@ -13,6 +15,7 @@ from core.shapes.number_words import plain
 from core.shapes.shape import Filled, Shape
 from core.shapes.shape_fields import Field, Kind, Proposal, Refusal, Value, Values, number, text
 from core.shapes.shape_setting import Setting
+from core.shapes.sinumerik_lines import figure
 from core.shapes.sketch import Dim, Sketch, cut, part, sketch
 from core.shapes.thread_limits import Limits, classes, in_unit, limits, pipe_length
 from core.shapes.thread_series import TAPERED, Series, size_of
@@ -138,6 +141,25 @@ def filled_depth(filled: Filled) -> float:
     return abs(filled.n("CREST") - filled.n("ROOT")) / 2.0
 
 
+def _cycle97(filled: Filled, _setting: Setting, code: Code) -> None:
+    """CYCLE97 in passes of equal chip. It stops where the thread ends, so it needs a relief there."""
+    inside, lead = filled.t("SIDE") == INSIDE, filled.n("PITCH") * max(1.0, filled.n("STARTS"))
+    begin, end = -filled.n("AT"), -(filled.n("AT") + filled.n("LONG"))
+    outwards = -1.0 if inside else 1.0
+    crest = filled.n("CREST")
+    far = crest + outwards * filled.n("TAPER") * filled.n("LONG")
+    turns = "M04" if filled.t("HAND") == LEFT else "M03"
+    code.begin(filled.n("T"), filled.n("RPM"), max(crest, far) / 2.0 if not inside else 0.0, None, turns)
+    ends = (figure(v) for v in (begin, end, crest, far, filled.n("RUNUP"), 0.0))
+    depth, angle, passes = (figure(v) for v in (filled_depth(filled), filled.n("INFEED"), filled.n("PASSES")))
+    kind, starts = "4" if inside else "3", figure(max(1.0, filled.n("STARTS")))
+    words = (figure(lead, 6), "", *ends, depth, "0", angle, "0", passes, "0", kind, starts)
+    code.rapid(z=begin + filled.n("RUNUP"))
+    code.write(f"CYCLE97({', '.join(words)})")
+    code.forget()
+    code.away()
+
+
 def _thread(filled: Filled, setting: Setting, code: Code) -> None:
     inside = filled.t("SIDE") == INSIDE
     outwards = -1.0 if inside else 1.0
@@ -203,8 +225,9 @@ def _checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
     if filled_depth(filled) > 1.02 * sharp:
         words = f"{filled_depth(filled):.4f} deep: flanks of a pitch of {pitch:.5g} meet at {sharp:.4f}"
         yield Refusal("ROOT", f"{words}. Look at both diameters.")
-    yield from _lead_checks(filled, setting)
-    if filled.t("PULL") == NO:
+    if setting.dialect is Dialect.OMNITURN:
+        yield from _lead_checks(filled, setting)
+    if filled.t("PULL") == NO or setting.dialect is Dialect.SINUMERIK:
         yield from _relief(filled)
     yield from _by_sheet(filled, setting)
     yield from too_fast(filled, setting)
@@ -241,6 +264,8 @@ def _relief(filled: Filled) -> Iterator[Refusal]:
     relief = filled.n("RELIEF")
     if relief <= 0.0:
         text_ = "Thread relief missing: where the tool stops it cuts a ring. Say its width, or pull out."
+        if filled.t("PULL") != NO:  # of a language in which no pass pulls out
+            text_ = "Thread relief missing: where the tool stops it cuts a ring. Say its width."
         yield Refusal("RELIEF", text_)
     elif relief < 1.5 * lead:
         yield Refusal(
@@ -335,3 +360,15 @@ THREAD = Shape(
     _sketch,
     _size_checks,
 )
+
+
+def _of_cycle97(each: Field) -> Field:
+    return replace(each, only=lambda _values: True) if each.word == "RELIEF" else each
+
+
+SINUMERIK_THREAD = replace(
+    THREAD,
+    cut=_cycle97,
+    fields=tuple(_of_cycle97(each) for each in THREAD.fields if each.word != "PULL"),
+)
+"""The same by CYCLE97, which does not pull out while it goes on."""

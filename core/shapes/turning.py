@@ -7,8 +7,8 @@ from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
 from core.part.tool_shape import ToolKind
-from core.shapes.code_lines import Code
-from core.shapes.contour import Row, contour_refusals, outline, points, row_word, write_contour
+from core.shapes.code_lines import Along, Code
+from core.shapes.contour import Row, contour_refusals, outline, points, row_word
 from core.shapes.cutting_data import Work
 from core.shapes.shape import Filled, Shape
 from core.shapes.shape_fields import Field, Kind, Refusal, Value, Values, number, size, text
@@ -42,6 +42,7 @@ _COMP = Field("COMP", "NOSE COMPENSATION D", Kind.OFFSET, 0.0, zero=True, most=3
 
 def begin_spindle(filled: Filled, setting: Setting, code: Code, x: float, z: float | None) -> None:
     """Tool, spindle and the way to the part; constant surface speed where it is asked for."""
+    code.edge = filled.n("COMP") or 1.0
     code.begin(filled.n("T"), filled.n("RPM"), x, z)
     if filled.n("SURF"):
         code.surface_speed(filled.n("SURF"), min(setting.shop.max_rpm, filled.n("RPM")))
@@ -58,35 +59,19 @@ def end_spindle(filled: Filled, code: Code) -> None:
 
 
 def cut_contour(filled: Filled, setting: Setting, code: Code, rows: Sequence[Row], *, inside: bool) -> None:
-    """Roughing by G75 where a depth of a pass is said, then the contour, compensated where asked for."""
+    """Tool and spindle, roughing where a depth of a pass is said, the contour, and back."""
     there = points(rows)
     beside = _beside(filled, setting, there, inside=inside)
-    first = there[0]
-    near = first[0] + setting.near
     rough, comp = filled.n("ROUGH"), filled.n("COMP")
-    begin_spindle(filled, setting, code, beside if rough else first[1], near)
-    if rough:
-        code.set_feed(filled.n("RFEED"))
-        words = f"{code.z(rough, 'I')}{code.z(filled.n('LEAVE'), 'U')}"
-        code.write(f"G75{words}F{_feed(filled.n('RFEED'))}", code.point(first[1], first[0]))
-        write_contour(code, rows)
-        code.write("RF")
-        code.rapid(x=first[1])
-    if comp:
-        code.set_feed(filled.n("FEED"))
-        code.write("G42" if inside else "G41", f"{code.z(first[0])}D{comp:.0f}")
-    else:
-        code.cut(z=first[0], feed=filled.n("FEED"))
-    write_contour(code, rows)
-    if abs(beside - there[-1][1]) > 1e-9:
-        code.cut(x=beside)
+    begin_spindle(filled, setting, code, beside if rough else there[0][1], there[0][0] + setting.near)
+    code.along(
+        Along(
+            rows, beside, inside, filled.n("FEED"), rough, filled.n("LEAVE"), filled.n("RFEED"), comp,
+            filled.n("LABEL"),
+        )
+    )  # fmt: skip
     end_spindle(filled, code)
-    if comp:
-        code.write("G40")
-
-
-def _feed(value: float) -> str:
-    return f"{value:.6f}".rstrip("0").replace("0.", ".", 1) if value < 1 else f"{value:g}"
+    code.let_go(comp)
 
 
 def _beside(filled: Filled, setting: Setting, there: Sequence[tuple[float, float]], *, inside: bool) -> float:

@@ -74,7 +74,7 @@ APART = frozenset(
             "run_without_screen.py",
         ),
         *("desk/command_errors.py", "desk/toml_file.py", "offsets/offsets_file.py", "screen/display.py"),
-        "screen/pdf_pages.py",
+        *("screen/pdf_pages.py", "shapes/sinumerik_lines.py"),
         *(
             "klartext_book.py",
             "klartext_cycle_book.py",

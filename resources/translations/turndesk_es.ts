@@ -12390,6 +12390,11 @@
     </message>
     <message>
       <location filename="app/shapes/shapes_model.py" />
+      <source>A DRAWING IS WRITTEN IN OMNITURN: OPEN IT BESIDE A PROGRAM OF THAT LANGUAGE</source>
+      <translation>UN DIBUJO SE ESCRIBE EN OMNITURN: ÁBRALO JUNTO A UN PROGRAMA DE ESE LENGUAJE</translation>
+    </message>
+    <message>
+      <location filename="app/shapes/shapes_model.py" />
       <source>A LETTER OPENS A SHAPE, RIGHT LEADS TO THOSE OF THIS PROGRAM; F10: TO THE TEXT</source>
       <translation>UNA LETRA ABRE UNA FORMA, DERECHA LLEVA A LAS DE ESTE PROGRAMA; F10: AL TEXTO</translation>
     </message>
@@ -12397,6 +12402,11 @@
       <location filename="app/shapes/shapes_model.py" />
       <source>A PROGRAM BEGINS WITH ITS HEAD: PRESS N, THEN WRITE IT</source>
       <translation>UN PROGRAMA EMPIEZA POR SU CABECERA: PULSE N Y ESCRÍBALA</translation>
+    </message>
+    <message>
+      <location filename="app/shapes/shapes_model.py" />
+      <source>CALCULATORS AND TEMPLATES WRITE OMNITURN: THIS PROGRAM SPEAKS ANOTHER LANGUAGE</source>
+      <translation>CALCULADORAS Y PLANTILLAS ESCRIBEN OMNITURN: ESTE PROGRAMA HABLA OTRO LENGUAJE</translation>
     </message>
     <message>
       <location filename="app/shapes/shapes_model.py" />
@@ -12425,8 +12435,8 @@
     </message>
     <message>
       <location filename="app/shapes/shapes_model.py" />
-      <source>SHAPES ARE WRITTEN IN OMNITURN: THIS PROGRAM SPEAKS ANOTHER LANGUAGE</source>
-      <translation>LAS FORMAS SE ESCRIBEN EN OMNITURN: ESTE PROGRAMA HABLA OTRO LENGUAJE</translation>
+      <source>SHAPES ARE WRITTEN IN OMNITURN OR SINUMERIK: THIS PROGRAM SPEAKS ANOTHER LANGUAGE</source>
+      <translation>LAS FORMAS SE ESCRIBEN EN OMNITURN O SINUMERIK: ESTE PROGRAMA HABLA OTRO LENGUAJE</translation>
     </message>
     <message>
       <location filename="app/shapes/shapes_model.py" />
@@ -28519,6 +28529,11 @@
       <translation>%1 no está dicho: escríbalo.</translation>
     </message>
     <message>
+      <location filename="core/shapes/shape_table.py" />
+      <source>NUMBER OF THE CONTOUR</source>
+      <translation>NÚMERO DEL CONTORNO</translation>
+    </message>
+    <message>
       <location filename="core/shapes/tapping.py" />
       <source>%1 has a pitch of %2 by its sheet</source>
       <translation>%1 tiene un paso de %2 según su ficha</translation>
@@ -28702,6 +28717,11 @@
       <location filename="core/shapes/threading.py" />
       <source>Thread relief missing: where the tool stops it cuts a ring. Say its width, or pull out.</source>
       <translation>Falta la salida de rosca: donde para la herramienta corta un anillo. Diga su ancho, o que salga sin parar.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/threading.py" />
+      <source>Thread relief missing: where the tool stops it cuts a ring. Say its width.</source>
+      <translation>Falta la salida de rosca: donde para la herramienta corta un anillo. Diga su ancho.</translation>
     </message>
     <message>
       <location filename="core/shapes/threading.py" />
