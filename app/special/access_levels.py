@@ -121,7 +121,7 @@ class AccessLevels(SpecialFunction):
 
     def keys(self) -> Mapping[str, Key]:
         """Those of the people, as far as there are levels."""
-        keys = {"F3": Key("ADD", self.add), "F5": Key("PEOPLE" if self.table else "TABLE", self._turn)}
+        keys = {"F3": Key("NEW", self.add), "F5": Key("PEOPLE" if self.table else "TABLE", self._turn)}
         if self.access.people.on:
             keys |= {
                 "F2": Key("SIGN OUT", self.sign_out),

@@ -2246,7 +2246,7 @@
     <message>
       <location filename="" />
       <source>Position of X, Z or C in the program's system, X as DIAMON says; $P_EP[X] is the same here.</source>
-      <translation>Posición de X, Z o C en el sistema del programa, X según DIAMON; $P_EP[X] es lo mismo aquí.</translation>
+      <translation>Posición de X, Z o C en el sistema del programa, X como dice DIAMON; $P_EP[X] es aquí lo mismo.</translation>
     </message>
     <message>
       <location filename="" />
@@ -4476,7 +4476,7 @@
     <message>
       <location filename="app/desk/access_reset.py" />
       <source>PRESS THE E-STOP FIRST: LEVELS ARE RESET WHILE IT STAYS PRESSED FOR 10 MINUTES</source>
-      <translation>PULSE ANTES LA PARADA DE EMERGENCIA: LOS NIVELES SE BORRAN SI SIGUE PULSADA 10 MINUTOS</translation>
+      <translation>PULSE ANTES EL PARO DE EMERGENCIA: LOS NIVELES SE BORRAN SI SIGUE PULSADO 10 MINUTOS</translation>
     </message>
     <message>
       <location filename="app/desk/access_reset.py" />
@@ -4491,7 +4491,7 @@
     <message>
       <location filename="app/desk/access_reset.py" />
       <source>service reset begun: the E-stop has to stay pressed for 10 min</source>
-      <translation>borrado de servicio empezado: la parada de emergencia debe seguir pulsada 10 min</translation>
+      <translation>borrado de servicio empezado: el paro de emergencia debe seguir pulsado 10 min</translation>
     </message>
     <message>
       <location filename="app/desk/access_reset.py" />
@@ -12506,7 +12506,7 @@
     <message>
       <location filename="app/special/access_levels.py" />
       <source>ALL PINS ARE TAKEN AWAY WHEN THE TIME IS OVER; RELEASING THE E-STOP OR A PIN ENDS IT</source>
-      <translation>AL ACABAR EL TIEMPO SE BORRAN TODOS LOS PIN; SOLTAR LA PARADA O UN PIN LO ACABA</translation>
+      <translation>AL ACABAR EL TIEMPO SE BORRAN TODOS LOS PIN; SOLTAR EL PARO O UN PIN LO ACABA</translation>
     </message>
     <message>
       <location filename="app/special/access_levels.py" />
@@ -12521,7 +12521,7 @@
     <message>
       <location filename="app/special/access_levels.py" />
       <source>E-stop, feed hold, Reset and drives off are behind no level.</source>
-      <translation>Parada de emergencia, parada de avance, Reset y quitar accionamientos no dependen de ningún nivel.</translation>
+      <translation>Paro de emergencia, retención de avance, Reset y servos apagados no dependen de ningún nivel.</translation>
     </message>
     <message>
       <location filename="app/special/access_levels.py" />
@@ -29021,7 +29021,7 @@
     <message>
       <location filename="core/store/database.py" />
       <source>malformed database schema</source>
-      <translation>esquema de la base de datos dañado</translation>
+      <translation>malformed database schema</translation>
     </message>
     <message>
       <location filename="core/store/database.py" />
@@ -29166,7 +29166,7 @@
     <message>
       <location filename="core/store/offset_tables.py" />
       <source>entry %1 of the history of offsets is damaged; the offsets themselves are looked at by their own sums. Restore a backup for the history</source>
-      <translation>la entrada %1 del historial de correctores está dañada; los correctores se revisan por sus propias sumas. Restaure una copia para el historial</translation>
+      <translation>la entrada %1 de la historia de correctores está dañada; los correctores mismos se vigilan por sus propias sumas. Restaure una copia para la historia</translation>
     </message>
     <message>
       <location filename="core/store/offset_tables.py" />
