@@ -16,6 +16,7 @@ from core.language.source import Dialect
 from core.store.store import Store
 from core.store.store_errors import StoreError
 from core.store.store_file import has_store
+from core.store.store_rows import Kind
 
 FOLDER = "demo"  # within the data folder
 _WHY = "offsets of the sample programs"
@@ -50,6 +51,10 @@ def _seed(folder: Path) -> None:
     try:
         with Store.open(folder) as store:
             store.import_all({}, tools, secondary, _WHY, zero).result()
+            for number, row in tools.items():
+                if row.x == 0.0 and row.z > 0.0:  # a length: the file has mills' tools so
+                    values = {"length": row.z, "radius": row.nose_radius}
+                    store.set_offset(Kind.MILL_TOOL, number, _WHY, values).result()
             store.set_setting(SCREEN, {"first_job": True}).result()
     except StoreError as error:
         raise CommandError(f"the demo has no store: {error}") from error

@@ -40,6 +40,13 @@ def test_its_offsets_are_those_of_the_samples_and_may_be_changed(home: Path) -> 
     assert not (home / "turndesk.db").exists()  # nothing of it in the store of the machine
 
 
+def test_the_tool_table_of_a_mill_has_what_its_samples_use(home: Path) -> None:
+    """It showed 0 for tools whose length counted."""
+    with Store.open(open_demo("bc-table-mill")) as store:
+        lengths = {number: (row.length, round(row.radius, 3)) for number, row in store.mill_tools().items()}
+    assert lengths == {6: (3.5 * INCH, 2.5), 8: (4.0 * INCH, 4.25), 20: (3.0 * INCH, 6.0)}
+
+
 def test_what_was_changed_in_it_stays(home: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     with Store.open(open_demo(None)) as store:
         store.set_offset(Kind.TOOL, 1, values={"x": 3.0}, why="test", who="test").result()
