@@ -147,6 +147,8 @@ def begun(stage: Server, home: Path, seed: int) -> Iterator[Looker]:
         stdout=subprocess.PIPE,
         text=True,
     )
+    while popen.poll() is None and not (home / "status.json").exists():
+        time.sleep(1.0)
     time.sleep(COMES)
     try:
         yield Looker(stage, home, popen, seed)

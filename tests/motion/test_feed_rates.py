@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from core.geometry.machine_travel import Travel
 from core.geometry.surface_speed import surface_rpm
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.modal_state import Modal
@@ -124,3 +125,41 @@ def test_arrays_and_numbers_agree(radius: float) -> None:
 def test_an_arc_at_feed_per_minute_is_not_split() -> None:
     block = replace(arc((20, 50), (60, 10), (20, 10)), css=SURFACE, rpm=500.0)
     assert len(build_path([block], LIMITS)) == 1
+
+
+def test_nothing_slow_is_taken_for_nothing() -> None:
+    """.4 mm/s, and .5 mm a turn at .6 rpm, which is .005 mm/s: both above zero, and run as they are."""
+    assert build_path([line((0, 0), (0, 5), 0.4)], LIMITS).pieces.rate == pytest.approx([0.4])
+    block = replace(line((0, 0), (0, 0.1), 0.5), per_rev=True, rpm=0.6)
+    assert build_path([block], LIMITS).pieces.rate == pytest.approx([0.005])
+
+
+def test_close_to_the_axis_is_not_on_it() -> None:
+    """From r .9 to .5 without an upper limit: the axis is not crossed, and nothing is refused.
+
+    At r .9 and .5 mm the speed is S/(2·pi·r); at .1 mm a turn the feed grows as 1/r.
+    """
+    modal = Modal(css_max=None)
+    path = build_path([turning((0.9, 0), (0.5, 0), modal=modal)], LIMITS, rpm_max=math.inf)
+    first, last = path.pieces.rate[0], path.pieces.rate[-1]
+    assert first == pytest.approx(0.1 * SURFACE / (2.0 * math.pi * 0.9), rel=0.03)
+    assert last == pytest.approx(0.1 * SURFACE / (2.0 * math.pi * 0.5), rel=0.03)
+    assert path.pieces.start[:, 0].min() >= 0.5
+    assert np.all(path.pieces.length > 0.0)
+
+
+def test_blocks_that_tell_of_all_axes_and_others_do_not_mix() -> None:
+    whole = line((0, 0), (0, 5), n=4)
+    travel = Travel((0.0, 0.0, 0.0), (0.0, 5.0, 0.0), 5.0)
+    with pytest.raises(MotionError, match="Block 4 tells of all axes, another behind it does not"):
+        read_blocks([replace(whole, travel=travel), line((0, 5), (0, 6), n=5)], 3000.0)
+
+
+def test_the_axis_is_that_of_the_program() -> None:
+    """Slides at 25 to 15 mm with the axis at 20: r 5 to -5, through it. With the axis at home: r 25 to 15."""
+    modal = Modal(css_max=None)
+    through = turning((5, 0), (-5, 0), modal=modal, offset_x=20.0)
+    with pytest.raises(MotionError, match="no upper limit"):
+        build_path([through], LIMITS, rpm_max=math.inf)
+    beside = turning((25, 0), (15, 0), modal=modal, offset_x=-20.0)
+    assert build_path([beside], LIMITS, rpm_max=math.inf).length == pytest.approx(10.0)

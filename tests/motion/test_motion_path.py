@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from core.motion.axis_limits import MotionError
+from core.motion.chord_smoothing import ends_in_chord
 from core.motion.motion_path import PathBuilder
 from core.motion.motion_plan import plan
 from tests.motion.moves import LIMITS, arc, line, polyline
@@ -87,3 +88,8 @@ def test_a_full_arc_between_lines_is_met_exactly() -> None:
     assert path.point(path.s)[:, :2] == pytest.approx(
         np.array([[0, 0], [0, 10], [0, 10], [0, 20.0]]), abs=1e-9
     )
+
+
+def test_a_path_without_pieces_ends_in_no_chord() -> None:
+    pieces = build_path([line((0, 0), (0, 5))], LIMITS).pieces
+    assert not ends_in_chord(pieces[:0], LIMITS)

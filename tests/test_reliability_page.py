@@ -1,0 +1,32 @@
+"""The page of what was measured is what its figures say, and is written without any of them."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from tests.benchmarks.footprint import RESULTS
+from tests.benchmarks.reliability_page import page
+
+
+def test_the_page_is_that_of_the_figures() -> None:
+    written = Path(__file__).parents[1] / "docs" / "reliability.md"
+    assert written.read_text() == page(), "python -m tests.benchmarks.reliability_page > docs/reliability.md"
+
+
+def test_what_was_never_measured_is_said(tmp_path: Path) -> None:
+    assert page(tmp_path).count("Not measured yet.") == 5
+
+
+def test_a_count_that_does_not_agree_is_told(tmp_path: Path) -> None:
+    figures = json.loads((RESULTS / "night_shift.json").read_text())
+    (tmp_path / "night_shift.json").write_text(json.dumps({**figures, "disagree": ["store: 7 of 9"]}))
+    assert "cycles: store: 7 of 9." in page(tmp_path)
+
+
+def test_a_half_written_result_is_no_page(tmp_path: Path) -> None:
+    (tmp_path / "branches.json").write_text("{")
+    with pytest.raises(json.JSONDecodeError):
+        page(tmp_path)
