@@ -56,7 +56,7 @@ def _write_all(store: Store, folder: Path) -> int:
     (folder / PROGRAMS).mkdir(parents=True)
     names = [row.name for row in store.programs()]
     for name in names:
-        (folder / PROGRAMS / name).write_bytes(store.load_program(name))
+        (folder / PROGRAMS / _file_name(name)).write_bytes(store.load_program(name))
     (folder / OFFSETS).write_text("\n".join(_offset_lines(store)) + "\n", encoding="utf-8")
     _write_table(folder / EVENTS, EventRow._fields, reversed(store.events(limit=_ALL)))
     _write_table(folder / RUNS, _run_columns(), store.runs())
@@ -65,6 +65,15 @@ def _write_all(store: Store, folder: Path) -> int:
             rows = connection.execute(f"SELECT * FROM {table}")
             _write_table(folder / name, (column[0] for column in rows.description), rows)
     return len(names)
+
+
+def _file_name(name: object) -> str:
+    """Of a program. Raises StoreError for a name that would lead out of the folder, or is none: a store that
+    was changed from outside.
+    """
+    if isinstance(name, str) and name and Path(name).name == name and "\0" not in name:
+        return name
+    raise StoreError(f"the store has a program under the name {name!r}, which is none; restore a backup")
 
 
 def _offset_lines(store: Store) -> Iterator[str]:

@@ -10,6 +10,7 @@ import pytest
 
 from core.store import backup
 from core.store.store import Store, StoreError
+from core.store.store_export import export
 from core.store.store_file import FILE_NAME
 from core.store.store_rows import Kind, ToolRow
 
@@ -70,3 +71,14 @@ def test_a_name_with_a_line_end_stays_in_its_sentence(kept: Path) -> None:
     with Store.open(kept) as store:
         [first, *_] = store.damaged()
         assert first.startswith("the part count of a b is not as it was saved")
+
+
+@pytest.mark.parametrize("name", ["../pin.nc", "/tmp/pin.nc", b"\xff\x00", "pin\0.nc", ""])
+def test_a_program_whose_name_leads_elsewhere_is_exported_nowhere(
+    kept: Path, tmp_path: Path, name: object
+) -> None:
+    spoil(kept, "UPDATE programs SET name = ?", name)
+    with Store.open(kept) as store, pytest.raises(StoreError, match="which is none; restore a backup"):
+        export(store, tmp_path / "out")
+    assert not (tmp_path / "out").exists()
+    assert list(tmp_path.rglob("pin*")) == []
