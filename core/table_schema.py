@@ -86,7 +86,7 @@ class Finding(NamedTuple):
 
     def __str__(self) -> str:
         where = f"{self.path} = {self.value}" if self.value else self.path
-        return f"{where}: {self.expected}"
+        return " ".join(f"{where}: {self.expected}".splitlines())  # a key of TOML may hold a line end
 
 
 class MachineFileError(Exception):

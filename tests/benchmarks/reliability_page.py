@@ -21,6 +21,7 @@ _WORDS = {
     "log_bytes": "log, kB", "folder_bytes": "data folder, kB",
 }  # fmt: skip
 WANTED = 92.0  # per cent of branches
+SETTLED = 20.0  # min, by which every page was open and the ring of the scope is full
 TOLD = 85.0  # per cent of mutants that are not the same program
 _HEAD = """\
 # What holds for years, measured
@@ -40,13 +41,13 @@ def page(folder: Path = RESULTS) -> str:
         ("mutants", "Mutation", _mutants),
         ("branches", "Branches", _branches),
     ):
-        path = folder / f"{name}.json"
         parts.append(f"## {title}\n")
-        if not path.exists():
+        kept = sorted(folder.glob(f"{name}*.json"))
+        if not kept:
             parts.append("Not measured yet.\n")
-            continue
-        result = json.loads(path.read_text())
-        parts += [*write(result, folder), f"*{result['date']}, {result['machine']}.*\n"]
+        for path in kept:
+            result = json.loads(path.read_text())
+            parts += [*write(result, folder), f"*{result['date']}, {result['machine']}.*\n"]
     return "\n".join(parts)
 
 
@@ -106,10 +107,15 @@ def _screen(result: Result, _folder: Path) -> Iterator[str]:
         f"Alarms: {_list(result['alarms'])}.\n"
     )
     yield _footprints(result["marks"], "min")
-    grown = result["in an hour"]
+    if minutes < SETTLED:
+        return
+    names = sorted(result["marks"], key=float)
+    middle, last = names[len(names) // 2], names[-1]
+    grown = result["marks"][last]["rss_mib"] - result["marks"][middle]["rss_mib"]
+    hours = (float(last) - float(middle)) / 60.0
     yield (
-        f"Behind the first quarter it grows by {grown['rss_mib']:g} MiB, {grown['files']:g} files and "
-        f"{grown['threads']:g} threads an hour{'' if minutes >= 60 else ' (extrapolated)'}.\n"
+        f"In the second half, when every page has been open, it grows by {grown:.1f} MiB: "
+        f"{grown / hours:.0f} MiB an hour{'' if minutes >= 60 else ', extrapolated'}.\n"
     )
 
 

@@ -136,3 +136,9 @@ def test_the_spindle_bears_its_bearings_its_speeding_up_and_the_cut() -> None:
     assert taken(sim)[-1][SPINDLE_LOAD] == pytest.approx(share + 30.0)
     play(sim, clock, 1.0)
     assert taken(sim)[-1][SPINDLE_LOAD] == pytest.approx(share)
+
+
+def test_the_rate_is_that_of_the_models_grid() -> None:
+    sim, _ = simulation()
+    assert sim.ports.samples is not None
+    assert sim.ports.samples.rate == pytest.approx(1000.0)  # every millisecond

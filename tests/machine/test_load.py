@@ -219,3 +219,10 @@ def test_missing_file_and_wrong_encoding(tmp_path: Path) -> None:
     (tmp_path / "latin.toml").write_bytes(b'name = "\xff"')
     with pytest.raises(MachineFileError, match="UTF-8"):
         load_machine(tmp_path / "latin.toml")
+
+
+def test_a_key_with_a_line_end_stays_in_its_sentence() -> None:
+    with pytest.raises(MachineFileError) as told:
+        parse_machine('["a\\nb"]\nx = 1\n', "x.toml")
+    assert "[a b]: unknown table" in str(told.value)
+    assert "\n" not in str(told.value)
