@@ -75,11 +75,13 @@ def _output_lamp(snapshot: Snapshot, lamp: Lamp) -> Lamp:
 
 
 def _table_lamps(snapshot: Snapshot) -> tuple[Lamp, ...]:
-    """Of a mill: whether moves count in a tilted plane, and whether the table stands anywhere but at 0."""
+    """Of a mill: whether moves count in a tilted plane, and whether table or head stand anywhere but at 0."""
     tilted = snapshot.swivel is not None and snapshot.swivel.system.tilted
     rotary = zip(snapshot.axes, snapshot.actual, strict=True)
     turned = any(abs(math.remainder(at, 360.0)) > AT_ZERO for name, at in rotary if name in "ABC")
-    return Lamp("TILTED PLANE", lit=tilted), Lamp("TABLE TURNED", lit=turned)
+    rotaries = snapshot.swivel.system.kinematics.rotaries if snapshot.swivel is not None else ()
+    heads = bool(rotaries) and not any(axis.table for axis in rotaries)
+    return Lamp("TILTED PLANE", lit=tilted), Lamp("HEAD TURNED" if heads else "TABLE TURNED", lit=turned)
 
 
 def _spindle_lamp(snapshot: Snapshot) -> Lamp:

@@ -5440,6 +5440,11 @@
     </message>
     <message>
       <location filename="app/desk/readouts.py" />
+      <source>HEAD TURNED</source>
+      <translation>CABEZAL GIRADO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/readouts.py" />
       <source>INCH</source>
       <translation>PULGADAS</translation>
     </message>
@@ -29332,6 +29337,11 @@
       <location filename="core/store/store_export.py" />
       <source>[zero.%1]  # mm and degrees</source>
       <translation>[zero.%1]  # mm and degrees</translation>
+    </message>
+    <message>
+      <location filename="core/store/store_export.py" />
+      <source>the store has a program under the name %1, which is none; restore a backup</source>
+      <translation type="unfinished" />
     </message>
     <message>
       <location filename="core/store/store_rows.py" />

@@ -10,7 +10,7 @@ import pytest
 from app.compose.kinematics_chain import kinematics_of
 from app.compose.machine_files import shipped_machine
 from app.desk.machine_status import status_of
-from app.desk.readouts import Readout, lamps_of
+from app.desk.readouts import Lamp, Readout, lamps_of
 from app.path.path_picture import picture_of
 from app.working_plane.plane_drawing import ASPECTS, Camera, Figure, camera_for, figure
 from app.working_plane.plane_instant import Instant, at_line, plane_words, running
@@ -97,6 +97,15 @@ def test_lamps_tell_of_plane_and_table(chamfers: tuple[Scene, list[Block]]) -> N
     home = {lamp.word: lamp.lit for lamp in lamps_of(snapshot_at(chamfers[1][-1]))}
     assert (home["TILTED PLANE"], home["TABLE TURNED"]) == (False, False)
     assert "COLLET OPEN" not in home
+
+
+def test_where_no_table_turns_the_lamp_tells_of_the_head() -> None:
+    fork = kinematics_of(shipped_machine("fork-head-mill"))
+    assert fork is not None
+    ran = run("L A+20 R0 FMAX\nL A+0 R0 FMAX", fork)
+    turned, home = (block for block in ran.blocks if block.moves)
+    assert Lamp("HEAD TURNED", lit=True) in lamps_of(snapshot_at(turned))
+    assert Lamp("HEAD TURNED", lit=False) in lamps_of(snapshot_at(home))
 
 
 # --- the scene -------------------------------------------------------------------------------------------
