@@ -2246,7 +2246,7 @@
     <message>
       <location filename="" />
       <source>Position of X, Z or C in the program's system, X as DIAMON says; $P_EP[X] is the same here.</source>
-      <translation>Posición de X, Z o C en el sistema del programa, X según DIAMON; $P_EP[X] es aquí lo mismo.</translation>
+      <translation>Posición de X, Z o C en el sistema del programa, X según DIAMON; $P_EP[X] es lo mismo aquí.</translation>
     </message>
     <message>
       <location filename="" />
