@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import NamedTuple
 
-from core.shapes.contour import Row, points, write_contour
+from core.shapes.contour import SAME, Row, points
 from core.shapes.number_words import plain, rounded
 from core.shapes.shape_setting import Setting
 
@@ -131,7 +132,7 @@ class Code:
             self.set_feed(way.rough_feed)
             self.write(f"G75{self.z(way.rough, 'I')}{self.z(way.leave, 'U')}F{_feed(way.rough_feed)}")
             self.write(self.point(first[1], first[0]))
-            write_contour(self, way.rows)
+            self.contour(way.rows)
             self.write("RF")
             self.rapid(x=first[1])
         if way.offset:
@@ -139,9 +140,19 @@ class Code:
             self.write("G42" if way.inside else "G41", f"{self.z(first[0])}D{way.offset:.0f}")
         else:
             self.cut(z=first[0], feed=way.feed)
-        write_contour(self, way.rows)
+        self.contour(way.rows)
         if abs(way.beside - there[-1][1]) > 1e-9:
             self.cut(x=way.beside)
+
+    def contour(self, rows: Sequence[Row]) -> None:
+        """The lines from the first point on, which the tool has reached already."""
+        for (_, before), (row, here) in pairwise(zip(rows, points(rows), strict=True)):
+            x = here[1] if row.x is not None and (row.arc or abs(here[1] - before[1]) > SAME) else None
+            z = here[0] if row.z is not None and (row.arc or abs(here[0] - before[0]) > SAME) else None
+            if row.arc:
+                self.arc(here[1], here[0], abs(row.arc), convex=row.arc > 0)
+            elif x is not None or z is not None:
+                self.line(x, z, row.chamfer, row.radius)
 
     def let_go(self, offset: float) -> None:
         """Compensation off, where a contour was compensated by this offset."""

@@ -6,22 +6,17 @@ import math
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
-from typing import TYPE_CHECKING
 
 from core.language.source import Dialect
 from core.shapes.shape_fields import Refusal
 from core.shapes.shape_setting import Setting
-
-if TYPE_CHECKING:
-    from core.shapes.code_lines import Code
 
 _WORD = re.compile(r"(G02|G03|[XZCR])(-?\d*\.?\d*)")
 _LINE = re.compile(r"(?:G02|G03)?(?:[XZCR]-?(?:\d+\.?\d*|\.\d+))+")
 _S_LINE = re.compile(r"(?:G[123](?!\d))?(?:(?:[XZF]|CHR=|RND=|CR=)-?(?:\d+\.?\d*|\.\d+))+")
 _S_WORD = re.compile(r"(X|Z|CHR=|RND=|CR=)(-?\d+\.?\d*|-?\.\d+)")
 _OFF = 0.0005  # inch or less: what the control takes between a chord and two radii
-_SAME = 1e-9
+SAME = 1e-9
 
 Point = tuple[float, float]  # Z and radius
 
@@ -59,17 +54,6 @@ def points(rows: Iterable[Row]) -> list[Point]:
         z = z if row.z is None else row.z
         found.append((z, x))
     return found
-
-
-def write_contour(code: Code, rows: Sequence[Row]) -> None:
-    """The lines from the first point on, which the tool has reached already."""
-    for (_, before), (row, here) in pairwise(zip(rows, points(rows), strict=True)):
-        x = here[1] if row.x is not None and (row.arc or abs(here[1] - before[1]) > _SAME) else None
-        z = here[0] if row.z is not None and (row.arc or abs(here[0] - before[0]) > _SAME) else None
-        if row.arc:
-            code.arc(here[1], here[0], abs(row.arc), convex=row.arc > 0)
-        elif x is not None or z is not None:
-            code.line(x, z, row.chamfer, row.radius)
 
 
 def read_contour(lines: Iterable[str], setting: Setting) -> tuple[Row, ...] | None:
@@ -120,14 +104,14 @@ def contour_refusals(rows: Sequence[Row]) -> Iterator[Refusal]:
         yield from _row(row, number, begin, end)
     for number, row in enumerate(rows[1:], 2):
         yield from _corner(rows, there, number, row)
-    if any(r < -_SAME for _, r in there):
-        number = next(n for n, (_, r) in enumerate(there, 1) if r < -_SAME)
+    if any(r < -SAME for _, r in there):
+        number = next(n for n, (_, r) in enumerate(there, 1) if r < -SAME)
         yield Refusal(row_word(number), f"Point {number} lies beyond the axis: X is a diameter, 0 or more.")
 
 
 def _row(row: Row, number: int, begin: Point, end: Point) -> Iterator[Refusal]:
     chord = math.dist(begin, end)
-    if chord < _SAME:
+    if chord < SAME:
         yield Refusal(row_word(number), f"Point {number} is where the one before is: type another X or Z.")
     elif row.arc and chord > 2.0 * abs(row.arc) + _OFF:
         yield Refusal(
@@ -152,7 +136,7 @@ def _corner(rows: Sequence[Row], there: Sequence[Point], number: int, row: Row) 
         room = min(
             math.dist(there[number - 2], there[number - 1]), math.dist(*there[number - 1 : number + 1])
         )
-        if back > room + _SAME:
+        if back > room + SAME:
             yield Refusal(
                 row_word(number),
                 f"The corner of point {number} takes {back:.4f} of a line of {room:.4f}: make it smaller.",
@@ -186,7 +170,7 @@ def outline(rows: Sequence[Row]) -> list[Point]:
         size = row.chamfer or row.radius
         if row.arc:
             drawn += _arc(there[number - 1], here, row.arc)
-        elif size > 0 and number + 1 < len(rows) and math.dist(there[number - 1], here) > _SAME:
+        elif size > 0 and number + 1 < len(rows) and math.dist(there[number - 1], here) > SAME:
             drawn += _cut_corner(row, there[number - 1], here, there[number + 1])
         else:
             drawn.append(here)
@@ -219,7 +203,7 @@ def _arc(a: Point, b: Point, radius: float) -> list[Point]:
     """From ``a`` to ``b`` with X down the page of the control: G02 there is counter-clockwise with X up."""
     chord = math.dist(a, b)
     r = max(abs(radius), chord / 2.0)
-    if chord < _SAME:
+    if chord < SAME:
         return [b]
     high = math.sqrt(max(r * r - chord * chord / 4.0, 0.0))
     middle = (a[0] + b[0]) / 2.0, (a[1] + b[1]) / 2.0

@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 
 from core.shapes.code_lines import Along, Code
-from core.shapes.contour import points, write_contour
+from core.shapes.contour import points
 from core.shapes.number_words import plain
 from core.shapes.shape_setting import Setting
 
@@ -119,7 +119,7 @@ class SinumerikCode(Code):
             self.write(f"{name}:")
         self._motion = ""
         self._move("G1", self.point(x, z), feed or f"F{figure(way.feed, 6)}")
-        write_contour(self, way.rows)
+        self.contour(way.rows)
         if way.rough:
             self.write(f"{name}_END:")
         off = "G40" if way.offset else ""

@@ -109,6 +109,12 @@ COVERED = {
        for option in ("--list", "--unit", "--layer", "--axis", "--contour", "--front", "--zero", "--shift",
                       "--side", "--gap", "--metric", "--material", "--bar", "--face", "--hole", "--rough",
                       "--tool", "--groove-tool", "--comp", "--tools", "--machine", "--out", "--json")},
+    **{(f"share {action}", option): "tests/cli/test_share.py"
+       for action in ("begin", "status", "publish", "compare", "take", "keep")
+       for option in ("--machine", "--json")},
+    ("share publish", "--claim"): "tests/cli/test_share.py",
+    ("share compare", "--id"): "tests/cli/test_share.py",
+    ("share take", "--id"): "tests/cli/test_share.py",
     ("setup save", "--machine"): "tests/cli/test_setup.py",
     ("setup load", "--check"): "tests/cli/test_setup.py",
     ("setup desktop", "--autostart"): "tests/cli/test_setup.py",
@@ -160,6 +166,9 @@ def test_an_option_before_a_command_acts_or_is_refused(
         "shift",
         "table",
         "reset",
+        "begin",
+        "status",
+        "publish",
     }
     words = rest.get(name, [] if name.rpartition(" ")[2] in bare else [str(tmp_path / "part.nc")])
     (tmp_path / "part.nc").write_text(PART)
