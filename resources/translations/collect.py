@@ -35,6 +35,7 @@ COMPOSED = (
     "gauge_wire.py",
     "journal.py",
     "screen_desk.py",
+    "sharing_desk.py",
     "simulated_backend.py",
     "desk_functions.py",
     "stored_offsets.py",
@@ -54,11 +55,12 @@ ROOMS = (
         "app/programs",
         "app/quality",
     ),
-    *("app/scope", "app/screen", "app/searchto", "app/shapes", "app/special", "app/transfer"),
+    *("app/scope", "app/screen", "app/searchto", "app/shapes", "app/sharing"),
+    *("app/special", "app/transfer"),
     "app/working_plane",
     *("core/alarms", "core/executor", "core/store", "core/interpreter"),
     *("core/language", "core/proving", "core/geometry", "core/motion", "core/part", COMPOSING),
-    *("core/drawings", "core/quality", "core/records", "core/shapes", "core/access"),
+    *("core/drawings", "core/quality", "core/records", "core/shapes", "core/sharing", "core/access"),
 )
 # Scripts and tables that no screen shows, and what the console is told where there is no screen.
 APART = frozenset(
@@ -74,6 +76,7 @@ APART = frozenset(
             "run_without_screen.py",
         ),
         *("desk/command_errors.py", "desk/toml_file.py", "offsets/offsets_file.py", "screen/display.py"),
+        *("sharing/git_command.py", "shared_git.py", "shared_database.py", "sharing/version_record.py"),
         *("screen/pdf_pages.py", "shapes/sinumerik_lines.py"),
         *(
             "klartext_book.py",

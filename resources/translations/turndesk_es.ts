@@ -4384,6 +4384,21 @@
       <translation>{what} TERMINÓ: GUARDE LA BITÁCORA, CIERRE TURNDESK Y ÁBRALO OTRA VEZ</translation>
     </message>
     <message>
+      <location filename="app/compose/sharing_desk.py" />
+      <source>%1 cannot be used: %2</source>
+      <translation>%1 no se puede usar: %2</translation>
+    </message>
+    <message>
+      <location filename="app/compose/sharing_desk.py" />
+      <source>NOTHING IS SHARED: {why}</source>
+      <translation>NO SE COMPARTE NADA: {why}</translation>
+    </message>
+    <message>
+      <location filename="app/compose/sharing_desk.py" />
+      <source>{name} WAS CHANGED ON {desk}: F1, X SHOWS WHAT</source>
+      <translation>{name} SE CAMBIÓ EN {desk}: F1, X MUESTRA QUÉ</translation>
+    </message>
+    <message>
       <location filename="app/compose/stored_offsets.py" />
       <source>THE OFFSETS COME FROM A FILE (--offsets) AND ARE READ ONLY: CHANGE THE FILE, OR START WITHOUT IT</source>
       <translation>LAS COMPENSACIONES VIENEN DE UN ARCHIVO (--offsets) Y SON DE SÓLO LECTURA: CAMBIE EL ARCHIVO, O ARRANQUE SIN ÉL</translation>
@@ -12482,6 +12497,151 @@
       <location filename="app/shapes/shapes_view.py" />
       <source>SHAPES  ·  THOSE OF THIS PROGRAM BY LINE</source>
       <translation>FORMAS  ·  LAS DE ESTE PROGRAMA POR LÍNEA</translation>
+    </message>
+    <message>
+      <location filename="app/sharing/program_files.py" />
+      <source>another program here has this name in other letters, large or small: rename one</source>
+      <translation>otro programa de aquí tiene este nombre con otras mayúsculas: cambie el nombre de uno</translation>
+    </message>
+    <message>
+      <location filename="app/sharing/program_files.py" />
+      <source>it is larger than %1 MB</source>
+      <translation>es mayor de %1 MB</translation>
+    </message>
+    <message>
+      <location filename="app/sharing/sharing.py" />
+      <source>%1 is that version already</source>
+      <translation>%1 ya es esa versión</translation>
+    </message>
+    <message>
+      <location filename="app/sharing/sharing.py" />
+      <source>shared by %1</source>
+      <translation>compartido por %1</translation>
+    </message>
+    <message>
+      <location filename="app/sharing/sharing.py" />
+      <source>taken from %1</source>
+      <translation>tomado de %1</translation>
+    </message>
+    <message>
+      <location filename="app/sharing/sharing.py" />
+      <source>the text of %1 is not as it was saved; save it again</source>
+      <translation>el texto de %1 no está como se guardó; guárdelo otra vez</translation>
+    </message>
+    <message>
+      <location filename="app/sharing/sharing.py" />
+      <source>there is nothing to settle: no other desk has changed it too</source>
+      <translation>no hay nada que decidir: ningún otro puesto lo ha cambiado también</translation>
+    </message>
+    <message>
+      <location filename="app/sharing/sharing_model.py" />
+      <source>CHANGED HERE AND ELSEWHERE</source>
+      <translation>CAMBIADO AQUÍ Y EN OTRO PUESTO</translation>
+    </message>
+    <message>
+      <location filename="app/sharing/sharing_model.py" />
+      <source>F2 TAKES THE MARKED VERSION, F3 KEEPS WHAT IS HERE; NOTHING IS TAKEN UNASKED; ESC FOR AUTOMATIC</source>
+      <translation>F2 TOMA LA VERSIÓN MARCADA, F3 CONSERVA LA DE AQUÍ; NADA SE TOMA SIN PEDIRLO; ESC: AUTOMÁTICO</translation>
+    </message>
+    <message>
+      <location filename="app/sharing/sharing_model.py" />
+      <source>LOOKING</source>
+      <translation>MIRANDO</translation>
+    </message>
+    <message>
+      <location filename="app/sharing/sharing_model.py" />
+      <source>MARK A PROGRAM FIRST</source>
+      <translation>MARQUE PRIMERO UN PROGRAMA</translation>
+    </message>
+    <message>
+      <location filename="app/sharing/sharing_model.py" />
+      <source>NEWER ELSEWHERE</source>
+      <translation>MÁS NUEVO EN OTRO PUESTO</translation>
+    </message>
+    <message>
+      <location filename="app/sharing/sharing_model.py" />
+      <source>NO OTHER DESK HAS A NEWER VERSION</source>
+      <translation>NINGÚN OTRO PUESTO TIENE UNA VERSIÓN MÁS NUEVA</translation>
+    </message>
+    <message>
+      <location filename="app/sharing/sharing_model.py" />
+      <source>NO PLACE IS NAMED: [sharing] OF THE MACHINE FILE HAS A FOLDER, A GIT REMOTE OR A DATABASE</source>
+      <translation>NO SE HA INDICADO UN LUGAR: [sharing] DEL ARCHIVO DE MÁQUINA INDICA UNA CARPETA, UN GIT O UNA BASE DE DATOS</translation>
+    </message>
+    <message>
+      <location filename="app/sharing/sharing_model.py" />
+      <source>NO PROGRAM IS SHARED YET: WHAT LIES IN THE PROGRAM FOLDER IS PUBLISHED WITH THE NEXT LOOK</source>
+      <translation>AÚN NO SE COMPARTE NINGÚN PROGRAMA: LO QUE HAY EN LA CARPETA DE PROGRAMAS SE PUBLICA EN LA PRÓXIMA VUELTA</translation>
+    </message>
+    <message>
+      <location filename="app/sharing/sharing_model.py" />
+      <source>NOT HERE</source>
+      <translation>NO ESTÁ AQUÍ</translation>
+    </message>
+    <message>
+      <location filename="app/sharing/sharing_model.py" />
+      <source>ON {desks}</source>
+      <translation>EN {desks}</translation>
+    </message>
+    <message>
+      <location filename="app/sharing/sharing_model.py" />
+      <source>PRESS Y TO KEEP {name} AS IT IS HERE (THE OTHERS STAY VERSIONS), ESC TO LEAVE IT</source>
+      <translation>OPRIMA Y PARA CONSERVAR {name} COMO ESTÁ AQUÍ (LAS OTRAS QUEDAN COMO VERSIONES), ESC PARA DEJARLO</translation>
+    </message>
+    <message>
+      <location filename="app/sharing/sharing_model.py" />
+      <source>PRESS Y TO TAKE {name} AS {desk} HAS IT (WHAT IS HERE STAYS A VERSION), ESC TO LEAVE IT</source>
+      <translation>OPRIMA Y PARA TOMAR {name} COMO LO TIENE {desk} (LO DE AQUÍ QUEDA COMO VERSIÓN), ESC PARA DEJARLO</translation>
+    </message>
+    <message>
+      <location filename="app/sharing/sharing_model.py" />
+      <source>TAKE</source>
+      <translation>TOMAR</translation>
+    </message>
+    <message>
+      <location filename="app/sharing/sharing_model.py" />
+      <source>THE NEWEST</source>
+      <translation>EL MÁS NUEVO</translation>
+    </message>
+    <message>
+      <location filename="app/sharing/sharing_model.py" />
+      <source>THE SAME TEXT AS HERE</source>
+      <translation>EL MISMO TEXTO QUE AQUÍ</translation>
+    </message>
+    <message>
+      <location filename="app/sharing/sharing_model.py" />
+      <source>THERE IS NOTHING TO SETTLE: NO OTHER DESK HAS CHANGED IT TOO</source>
+      <translation>NO HAY NADA QUE DECIDIR: NINGÚN OTRO PUESTO LO HA CAMBIADO TAMBIÉN</translation>
+    </message>
+    <message>
+      <location filename="app/sharing/sharing_model.py" />
+      <source>VERSION</source>
+      <translation>VERSIÓN</translation>
+    </message>
+    <message>
+      <location filename="app/sharing/sharing_model.py" />
+      <source>WHAT TAKING THE MARKED VERSION CHANGES</source>
+      <translation>LO QUE CAMBIA AL TOMAR LA VERSIÓN MARCADA</translation>
+    </message>
+    <message>
+      <location filename="app/sharing/sharing_model.py" />
+      <source>{count} WAIT</source>
+      <translation>{count} EN ESPERA</translation>
+    </message>
+    <message>
+      <location filename="app/sharing/sharing_model.py" />
+      <source>{name} IS AS {desk} HAS IT NOW</source>
+      <translation>{name} ESTÁ AHORA COMO EN {desk}</translation>
+    </message>
+    <message>
+      <location filename="app/sharing/sharing_model.py" />
+      <source>{name} STANDS AS IT IS HERE</source>
+      <translation>{name} QUEDA COMO ESTÁ AQUÍ</translation>
+    </message>
+    <message>
+      <location filename="app/sharing/sharing_view.py" />
+      <source>ELSEWHERE</source>
+      <translation>EN OTROS PUESTOS</translation>
     </message>
     <message>
       <location filename="app/special/access_levels.py" />
@@ -28884,6 +29044,76 @@
       <translation>S%1 es más que las %2 rpm de este husillo: escriba %3 o menos.</translation>
     </message>
     <message>
+      <location filename="core/sharing/shared_folder.py" />
+      <source>%1 is damaged</source>
+      <translation>%1 está dañado</translation>
+    </message>
+    <message>
+      <location filename="core/sharing/shared_place.py" />
+      <source>the database %1</source>
+      <translation>la base de datos %1</translation>
+    </message>
+    <message>
+      <location filename="core/sharing/shared_place.py" />
+      <source>the folder %1</source>
+      <translation>la carpeta %1</translation>
+    </message>
+    <message>
+      <location filename="core/sharing/shared_place.py" />
+      <source>the git repository %1</source>
+      <translation>el repositorio git %1</translation>
+    </message>
+    <message>
+      <location filename="core/sharing/sharing_errors.py" />
+      <source>[sharing] postgresql wants psycopg, which is not installed; install turndesk[postgresql]</source>
+      <translation>[sharing] postgresql necesita psycopg, que no está instalado; instale turndesk[postgresql]</translation>
+    </message>
+    <message>
+      <location filename="core/sharing/sharing_errors.py" />
+      <source>the command git is not on this computer; install git</source>
+      <translation>esta computadora no tiene el comando git; instale git</translation>
+    </message>
+    <message>
+      <location filename="core/sharing/sharing_errors.py" />
+      <source>the disk of {place} is full; make room there</source>
+      <translation>el disco de {place} está lleno; libere espacio allí</translation>
+    </message>
+    <message>
+      <location filename="core/sharing/sharing_errors.py" />
+      <source>{place} does not answer ({why}); this desk works on and shares when it does again</source>
+      <translation>{place} no responde ({why}); este puesto sigue trabajando y comparte cuando responda</translation>
+    </message>
+    <message>
+      <location filename="core/sharing/sharing_errors.py" />
+      <source>{place} holds no shared programs; is it mounted, is its name right? Where it is new: turndesk share begin</source>
+      <translation>{place} no tiene programas compartidos; ¿está montado, es correcto su nombre? Si es nuevo: turndesk share begin</translation>
+    </message>
+    <message>
+      <location filename="core/sharing/sharing_errors.py" />
+      <source>{place} is not laid out as shared programs are ({why}); name another place</source>
+      <translation>{place} no está dispuesto como los programas compartidos ({why}); indique otro lugar</translation>
+    </message>
+    <message>
+      <location filename="core/sharing/sharing_errors.py" />
+      <source>{place} is not there ({why}); is it mounted, is its name right?</source>
+      <translation>{place} no está ({why}); ¿está montado, es correcto su nombre?</translation>
+    </message>
+    <message>
+      <location filename="core/sharing/sharing_errors.py" />
+      <source>{place} may not be used so by this user ({why}); ask whoever looks after it for the right</source>
+      <translation>este usuario no puede usar así {place} ({why}); pida el permiso a quien lo administra</translation>
+    </message>
+    <message>
+      <location filename="core/sharing/sharing_errors.py" />
+      <source>{place} was laid out by a newer TurnDesk (format {why}); update the one on this desk</source>
+      <translation>{place} fue dispuesto por un TurnDesk más nuevo (formato {why}); actualice el de este puesto</translation>
+    </message>
+    <message>
+      <location filename="core/sharing/sharing_errors.py" />
+      <source>{place}: another desk is called {why} too; give this one its own name (desk in [sharing]), or, where that computer is gone: turndesk share publish --claim</source>
+      <translation>{place}: otro puesto también se llama {why}; dé a este su propio nombre (desk en [sharing]) o, si aquella computadora ya no existe: turndesk share publish --claim</translation>
+    </message>
+    <message>
       <location filename="core/store/backup.py" />
       <source>%1 cannot be restored: %2; nothing was changed. Take another backup</source>
       <translation>%1 no se puede restaurar: %2; no se cambió nada. Use otro respaldo</translation>
@@ -29026,7 +29256,7 @@
     <message>
       <location filename="core/store/database.py" />
       <source>malformed database schema</source>
-      <translation>malformed database schema</translation>
+      <translation>esquema de la base de datos dañado</translation>
     </message>
     <message>
       <location filename="core/store/database.py" />
@@ -29171,7 +29401,7 @@
     <message>
       <location filename="core/store/offset_tables.py" />
       <source>entry %1 of the history of offsets is damaged; the offsets themselves are looked at by their own sums. Restore a backup for the history</source>
-      <translation>la entrada %1 de la historia de correctores está dañada; los correctores mismos se vigilan por sus propias sumas. Restaure una copia para la historia</translation>
+      <translation>la entrada %1 del historial de correctores está dañada; los correctores se revisan por sus propias sumas. Restaure una copia para el historial</translation>
     </message>
     <message>
       <location filename="core/store/offset_tables.py" />
@@ -29341,7 +29571,7 @@
     <message>
       <location filename="core/store/store_export.py" />
       <source>the store has a program under the name %1, which is none; restore a backup</source>
-      <translation type="unfinished" />
+      <translation>el almacén tiene un programa con el nombre %1, que no es ninguno; restaure una copia</translation>
     </message>
     <message>
       <location filename="core/store/store_rows.py" />
