@@ -29571,7 +29571,7 @@
     <message>
       <location filename="core/store/store_export.py" />
       <source>the store has a program under the name %1, which is none; restore a backup</source>
-      <translation>el almacén tiene un programa con el nombre %1, que no es ninguno; restaure una copia</translation>
+      <translation>el almacén tiene un programa con el nombre %1, que no es un nombre; restaure una copia de seguridad</translation>
     </message>
     <message>
       <location filename="core/store/store_rows.py" />
