@@ -185,7 +185,7 @@ def test_the_interrupted_program_keeps_its_name_and_its_file(
     files = desk.attached(ProgramList)
     assert files is not None
     files.opened()
-    files.worker.settle(10)
+    files.worker.settle(60.0)
     files.look()
     files.choose([program.name for program in files.listed].index("PIN.NC"))
     if question == "rename":

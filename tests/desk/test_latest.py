@@ -9,7 +9,7 @@ import pytest
 
 from app.desk.latest import AbandonedError, Latest, Request, Watch
 
-LIMIT = 10.0
+LIMIT = 60.0
 
 
 @pytest.fixture

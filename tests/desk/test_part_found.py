@@ -27,7 +27,7 @@ from core.machine.machine_model import ClampingModel, Machine
 from core.part.tool_shape import ToolKind, ToolShape
 from core.proving import part_history
 
-LIMIT = 20.0
+LIMIT = 60.0
 SHAFT = "G90G94F100\nM03S1500\nT1\nX.6Z.05\nX.4\nG95F.008Z-.5\nX.45Z-.6\nX.55\nG94F100Z.05\nM30\n"
 SLIP = SHAFT.replace("M30", "X.3\nG00Z-.3\nX.55\nM30")  # the G00 of line 11 goes into metal
 TURNING = ToolShape(ToolKind.TURNING, tip=3, insert="DCMT11T304")

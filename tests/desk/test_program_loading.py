@@ -20,7 +20,7 @@ from core.interpreter.job_setup import Setup
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Source
 
-LIMIT = 5.0  # seconds after which a test that waits for the worker has failed
+LIMIT = 60.0  # seconds after which a test that waits for the worker has failed
 BAD = Diagnostic(7, 1, Severity.ERROR, "arc-radius", "The arc's radius is too small.")
 
 

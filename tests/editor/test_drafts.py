@@ -11,7 +11,7 @@ from app.editor.editor import Editor, Stage
 from tests.editor.shop import GOOD, Memory, editor_in
 
 TYPED = GOOD.replace("Z-.5", "Z-.75")
-LIMIT = 20.0
+LIMIT = 60.0
 Start = Callable[[], Editor]
 
 

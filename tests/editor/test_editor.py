@@ -31,7 +31,7 @@ def editor(tmp_path: Path, memory: Memory, left: list[LeftProgram]) -> Iterator[
 
 
 def settle(editor: Editor) -> None:
-    editor.worker.settle(10)
+    editor.worker.settle(60.0)
 
 
 def own(editor: Editor, name: str, text: str = GOOD) -> Path:

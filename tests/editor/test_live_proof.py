@@ -25,7 +25,7 @@ def checker() -> Iterator[LiveProof]:
 
 
 def settled(checker: LiveProof) -> Findings:
-    checker.worker.settle(10)
+    checker.worker.settle(60.0)
     return checker.now
 
 

@@ -21,7 +21,7 @@ from core.interpreter.job_setup import Setup
 from core.language.source import Source
 from core.store.store import Store
 
-LIMIT = 5.0
+LIMIT = 60.0
 
 
 @dataclass

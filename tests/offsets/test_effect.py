@@ -18,7 +18,7 @@ from core.interpreter.job_setup import SecondaryOffset, ToolOffset
 from core.language.source import Source
 
 INCH = 25.4
-LIMIT = 10.0
+LIMIT = 60.0
 PROGRAM = (
     "G90G94F300\nM03S1000\nT1\nX.5Z.1\nG01F5Z-1\nX.6Z-1D1\nZ-1.2\nX1Z1G00D0\nT2\nX.3Z.1\nG01F5Z-.5\nM30\n"
 )

@@ -51,7 +51,7 @@ def player(clock: Clock) -> Iterator[PartPlayer]:
 
 
 def settled(player: PartPlayer) -> PartPlayer:
-    player.settle(20.0)
+    player.settle(60.0)
     return player
 
 

@@ -36,7 +36,7 @@ NONE, SHIFT = Qt.KeyboardModifier.NoModifier, Qt.KeyboardModifier.ShiftModifier
 INCH = 25.4
 TICK = 0.01
 NEAR = 0.0005  # inch: what a slide in position may be off, and more than any wrong figure here would be
-PATIENCE = 20_000  # ms for workers that read, prove and draw
+PATIENCE = 60_000  # ms for workers that read, prove and draw
 
 
 @dataclass

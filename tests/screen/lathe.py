@@ -15,7 +15,7 @@ from core.executor.snapshot import Snapshot, State
 from tests.screen.pictures import Stage
 
 Key = Qt.Key
-LIMIT = 20.0
+LIMIT = 60.0
 
 
 @dataclass
@@ -80,7 +80,7 @@ class Operator:
         """Type a line of MDI and have it proved."""
         self.type(text)
         self.key(Key.Key_Return)
-        self.mdi.line.worker.settle(5.0)
+        self.mdi.line.worker.settle(60.0)
         self.pause(0.02)
 
     def run(self, text: str) -> None:

@@ -23,7 +23,7 @@ from drivers.lookalikes.grblhal_firmware import Firmware
 from tests.screen.hands import Key
 from tests.screen.yes import yes
 
-LIMIT = 30_000  # ms of a loaded computer
+LIMIT = 60_000  # ms of a loaded computer
 PROGRAM = "G90G94\nM03S600\nM08\nG01X.4Z-.4F30\nX0.Z0.\nM30\n"
 
 

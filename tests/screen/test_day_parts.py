@@ -170,10 +170,10 @@ def search(day: Day, text: str, line: str) -> None:
         day.key(Key.Key_Return)
     assert str(model.cursor.line) == line
     day.key(Key.Key_Return)
-    model.finder.worker.settle(10.0)
+    model.finder.worker.settle(60.0)
     day.run(0.05)
     day.key(Key.Key_F10)
-    model.finder.worker.settle(10.0)
+    model.finder.worker.settle(60.0)
     day.run(0.05)
 
 
@@ -231,7 +231,7 @@ def mdi(day: Day, line: str) -> None:
     assert isinstance(page, MdiPage)
     day.type(line)
     day.key(Key.Key_Return)
-    day.desk.attached(MdiModel).line.worker.settle(5.0)
+    day.desk.attached(MdiModel).line.worker.settle(60.0)
     day.run(0.05)
     day.palms()
     day.reaches(State.IDLE)

@@ -81,7 +81,7 @@ def test_a_line_of_mdi_under_way_is_held_and_the_page_stays(day: Day) -> None:
     opened(day, Key.Key_F4, page_table.MDI)
     day.type("G90G94F5X1")
     day.key(Key.Key_Return)
-    day.desk.attached(MdiModel).line.worker.settle(5.0)
+    day.desk.attached(MdiModel).line.worker.settle(60.0)
     day.run(0.05)
     day.palms()
     day.reaches(State.RUN)

@@ -61,7 +61,7 @@ def test_what_is_wrong_is_marked_where_it_is_and_mended(at_mdi: Operator) -> Non
     at_mdi.key(Key.Key_Backspace)
     assert page_of(at_mdi).line.found == ()
     at_mdi.key(Key.Key_Return)
-    at_mdi.mdi.line.worker.settle(5.0)
+    at_mdi.mdi.line.worker.settle(60.0)
     assert at_mdi.prompt() == "TO RUN THE LINE PRESS BOTH PALM BUTTONS (F11 + F12); ESC TAKES IT BACK"
 
 
@@ -212,7 +212,7 @@ def test_a_line_is_typed_by_a_finger_alone(at_mdi: Operator) -> None:
         box, press = keys[key]
         assert min(box.width(), box.height()) >= 42  # 9 mm
         press()
-    at_mdi.mdi.line.worker.settle(5.0)
+    at_mdi.mdi.line.worker.settle(60.0)
     at_mdi.pause(0.05)
     assert page_of(at_mdi).line.ready
     at_mdi.palms()

@@ -192,14 +192,14 @@ def test_the_editor_shows_the_plane_of_the_cursors_line(mill: Mill, qtbot: QtBot
     assert mill.window.frame is not None
     page = mill.window.frame.page
     assert isinstance(page, EditorPage)
-    qtbot.waitUntil(lambda: page.field.blockCount() > 40 and page.space.isVisible(), timeout=20_000)
+    qtbot.waitUntil(lambda: page.field.blockCount() > 40 and page.space.isVisible(), timeout=60_000)
     assert not page.head.with_shapes  # they are lines of OmniTurn
     plane = line_of("PLANE POINTS")
     for _ in range(plane - page.field.line):
         mill.key(Key.Key_Down)
     assert page.field.line == plane
     wanted = f"TILTED PLANE OF LINE {plane}:  A+59.999  C+90.000"
-    qtbot.waitUntil(lambda: page.space.words.startswith(wanted), timeout=20_000)
+    qtbot.waitUntil(lambda: page.space.words.startswith(wanted), timeout=60_000)
 
 
 def test_searchto_shows_table_and_plane_of_the_line(mill: Mill, qtbot: QtBot) -> None:
@@ -218,7 +218,7 @@ def test_searchto_shows_table_and_plane_of_the_line(mill: Mill, qtbot: QtBot) ->
         mill.window.refresh()
         return page.model.plan is not None
 
-    qtbot.waitUntil(found, timeout=20_000)
+    qtbot.waitUntil(found, timeout=60_000)
     assert page.space.words.startswith(f"TILTED PLANE OF LINE {line - 1}:  A+30.000  C+180.000")
     shown = page.space.instant
     assert shown is not None

@@ -67,7 +67,7 @@ def steps(ahead: PagesAhead, idle: Desk) -> int:
             return count
         idle.clock.now += 2 * APART
         ahead.step()
-        ahead._worker.settle(10.0)
+        ahead._worker.settle(60.0)
     raise AssertionError("it never ends")
 
 
@@ -121,7 +121,7 @@ def test_frames_between_two_slices_have_nothing_of_it(idle: Desk, monkeypatch: p
     idle.clock.now += 2 * APART  # type: ignore[attr-defined]
     for _ in range(SLICES):
         ahead.step()
-        ahead._worker.settle(10.0)
+        ahead._worker.settle(60.0)
     assert asked.slices == 3, "at one instant there is one slice: the modules were asked for"
     ahead.close()
 

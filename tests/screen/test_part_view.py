@@ -49,9 +49,9 @@ def shown(view: PathView, program: str) -> QImage:
 
 def settled(view: PathView) -> QImage:
     assert view.player is not None
-    view.player.settle(20.0)
+    view.player.settle(60.0)
     view.advance()
-    view.player.settle(20.0)
+    view.player.settle(60.0)
     view.advance()
     return view.grab().toImage()
 

@@ -45,14 +45,14 @@ def estop_and_recover(operator: Operator) -> None:
 def found(operator: Operator) -> SearchtoPage:
     """Enter, and wait for the worker."""
     operator.key(Key.Key_Return)
-    model_of(operator).finder.worker.settle(10.0)
+    model_of(operator).finder.worker.settle(60.0)
     operator.pause(0.05)
     return page_of(operator)
 
 
 def confirmed(operator: Operator) -> None:
     operator.key(Key.Key_F10)
-    model_of(operator).finder.worker.settle(10.0)
+    model_of(operator).finder.worker.settle(60.0)
     operator.pause(0.05)
     assert model_of(operator).stage is SearchtoStage.READY
 
@@ -132,7 +132,7 @@ def test_a_line_that_is_not_good_offers_its_neighbours(operator: Operator) -> No
     operator.key(Key.Key_F10)
     assert operator.prompt() == "CHOOSE A GOOD LINE FIRST"
     operator.key(Key.Key_F9)
-    model_of(operator).finder.worker.settle(10.0)
+    model_of(operator).finder.worker.settle(60.0)
     assert page_of(operator).state.shown.title == f"STATE AT LINE {after.line}"
 
 
@@ -283,16 +283,16 @@ def test_the_pass_of_a_loop_is_chosen_by_keys_and_by_fingers(operator: Operator)
     rows = {row.label: row.wanted for row in page.state.shown.rows}
     assert rows["X Ø"] == "0.37500"  # .54 and .055 in, .02 out and .02 in again, in each pass
     operator.key(Key.Key_Right)
-    model_of(operator).finder.worker.settle(10.0)
+    model_of(operator).finder.worker.settle(60.0)
     assert page_of(operator).state.shown.passes == "PASS 4 OF 5"
     page.state.grab()  # draws, so that a finger finds its place
     assert page.state.touch(QPointF(page.state.width() * 0.1, page.state.height() - 25))
-    model_of(operator).finder.worker.settle(10.0)
+    model_of(operator).finder.worker.settle(60.0)
     assert page_of(operator).state.shown.passes == "PASS 3 OF 5"
     operator.key(Key.Key_Left, Key.Key_Left)
-    model_of(operator).finder.worker.settle(10.0)
+    model_of(operator).finder.worker.settle(60.0)
     operator.key(Key.Key_Left, Key.Key_Left)
-    model_of(operator).finder.worker.settle(10.0)
+    model_of(operator).finder.worker.settle(60.0)
     assert page_of(operator).state.shown.passes == "PASS 1 OF 5"
 
 
@@ -302,7 +302,7 @@ def test_only_the_way_out_is_taken_and_the_page_stays(operator: Operator) -> Non
     operator.pause(0.2)
     estop_and_recover(operator)
     operator.key(Key.Key_F6, Key.Key_F4)
-    model_of(operator).finder.worker.settle(10.0)
+    model_of(operator).finder.worker.settle(60.0)
     page = page_of(operator)
     assert operator.prompt() == "LOOK AT THE WAY OUT OF THE PART; F10 CONFIRMS IT"
     assert [leg.label for leg in page.path.legs] == ["", "1 X", "2 Z", "3 Z"]
@@ -326,7 +326,7 @@ def test_only_the_way_out_is_taken_and_the_page_stays(operator: Operator) -> Non
     assert operator.shot.starts is Starts.RESTART
     assert operator.shot.interrupted_line == 18
     operator.key(Key.Key_F4)
-    model_of(operator).finder.worker.settle(10.0)
+    model_of(operator).finder.worker.settle(60.0)
     assert operator.prompt() == "T1 STANDS CLEAR OF THE PART ALREADY"
 
 
@@ -361,9 +361,9 @@ def test_the_stock_is_shown_as_the_line_finds_it(operator: Operator) -> None:
     plan = model_of(operator).plan
     assert plan is not None
     page_of(operator)
-    player.settle(30.0)
+    player.settle(60.0)
     page_of(operator)
-    player.settle(30.0)
+    player.settle(60.0)
     assert player.played is not None
     assert player.played.instant.block == plan.found.checkpoint.blocks
     assert 0 < plan.found.checkpoint.blocks < len(operator.stage.desk.session.now.picture.line)

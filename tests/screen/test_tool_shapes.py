@@ -23,7 +23,7 @@ from tests.screen.hands import Hands, Key
 from tests.screen.test_offsets import FINGER
 from tests.screen.yes import yes
 
-LIMIT = 5.0
+LIMIT = 60.0
 
 
 @pytest.fixture

@@ -26,7 +26,7 @@ from tests.screen.yes import yes
 
 DEFAULT = DncModel("/dev/ttyUSB0", 9600, 7, "E", 1, "xonxoff", "%", "\r\n")
 CAME = Received(b"O77\nM30\n", "O77.nc", 2, "ab" * 32, False, 3, (), 1.5)
-WAIT = 20.0
+WAIT = 60.0
 
 
 @dataclass(frozen=True)

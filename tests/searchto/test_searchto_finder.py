@@ -16,7 +16,7 @@ from core.language.source import Source
 from tests.interpreter.programs import setup
 
 LINES = ("G90G94F300", "X1Z1(FACE)", "Z0", "X.5", "z.5(face again)", "M30")
-LIMIT = 10.0
+LIMIT = 60.0
 
 
 def typed(text: str, line: int = 1) -> LineCursor:

@@ -40,7 +40,7 @@ class Programmer:
         self.strokes += 2
         self.shapes.fetch = lambda: self.shop
         said = self.shapes.open("x.nc", text, line)
-        self.shapes.worker.settle(10.0)
+        self.shapes.worker.settle(60.0)
         return said
 
     def strike(self, keys: str) -> Programmer:

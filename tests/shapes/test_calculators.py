@@ -101,7 +101,7 @@ def test_passes_of_a_thread() -> None:
 def written(keys: str, text: str = "") -> str:
     shapes = Shapes(shop=Shop())
     assert shapes.open("x.nc", text, len(text.splitlines()), HELPERS) == ""
-    shapes.worker.settle(30.0)
+    shapes.worker.settle(60.0)
     for key in keys:
         assert shapes.typed(key), (key, shapes.prompt())
     shapes.write()

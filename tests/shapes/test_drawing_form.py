@@ -29,7 +29,7 @@ class Desk:
 
     def open(self, text: str = "") -> DrawingForm:
         assert self.shapes.open("x.nc", text, 1) == ""
-        self.shapes.worker.settle(30.0)
+        self.shapes.worker.settle(60.0)
         while self.shapes.form is not None:  # that of the piece at the cursor
             self.shapes.escape()
         self.strike("x")
@@ -43,8 +43,8 @@ class Desk:
         self.settle()
 
     def settle(self) -> None:
-        self.shapes.planning.settle(30.0)
-        self.shapes.trying.settle(30.0)
+        self.shapes.planning.settle(60.0)
+        self.shapes.trying.settle(60.0)
 
 
 @pytest.fixture

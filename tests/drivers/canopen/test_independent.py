@@ -61,7 +61,7 @@ def shop() -> Iterator[tuple[CanopenDevices, BaseNode402]]:
     network.sync.stop()
     network.disconnect()
     ended.set()
-    thread.join(20.0)
+    thread.join(60.0)
     peers.close()
 
 

@@ -36,7 +36,7 @@ def served() -> Iterator[tuple[socket.socket, Simulation, threading.Thread]]:
     thread.start()
     yield ours, sim, thread
     ours.close()
-    thread.join(20.0)
+    thread.join(60.0)
     theirs.close()
     assert not thread.is_alive()
 
@@ -57,7 +57,7 @@ def test_the_loop_answers_and_ends_with_its_control(
     ports.axes.enable(True)
     assert ports.axes.sample().enabled
     ours.close()
-    thread.join(20.0)
+    thread.join(60.0)
     assert not thread.is_alive()
     assert_off(sim)
 
@@ -69,7 +69,7 @@ def test_garbage_from_the_control_counts_as_its_end(
     ports = feeder_ports(Line(SocketLink(ours), RealClock()))
     ports.axes.enable(True)
     ours.sendall(b"\xff" * 64)
-    thread.join(20.0)
+    thread.join(60.0)
     assert not thread.is_alive()
     assert_off(sim)
     assert "feeder process has ended" in ports.axes.sample().fault

@@ -112,7 +112,7 @@ def test_versions_are_in_the_store(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     editor.create()
     for text in (GOOD, GOOD, GOOD + "(2)\n"):
         editor.save(text)
-        editor.worker.settle(10)
+        editor.worker.settle(60.0)
     editor.leave(GOOD + "(2)\n", to_desk=True)
     assert editor.stage is Stage.CLOSED
     assert desk.session.settled(20).name == "new.nc"

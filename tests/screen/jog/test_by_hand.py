@@ -30,7 +30,7 @@ def palms(jog: JogBench) -> None:
 
 def proved(jog: JogBench) -> None:
     """The worker has proved what was chosen, and the screen has seen it."""
-    jog.page.model.hand.line.worker.settle(5.0)
+    jog.page.model.hand.line.worker.settle(60.0)
     jog.run(0.1)
 
 

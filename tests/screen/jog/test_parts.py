@@ -89,7 +89,7 @@ def test_a_correction_at_a_stop_counts_in_the_next_part_of_the_repeat(jog: JogBe
     jog.run(0.05)
     assert jog.prompt == "T1 SAVED; IT COUNTS FROM THE NEXT PART"
     assert jog.shot.cycle_repeat
-    jog.desk.rebuilding.renewing.worker.settle(30)
+    jog.desk.rebuilding.renewing.worker.settle(60.0)
     jog.key(Key.Key_F1)
     jog.key(Key.Key_F2)
     start(jog)
