@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from app.compose.machine_setup import setup_for
 from app.desk.command_errors import CommandError
 from app.desk.data_folder import data_folder
-from app.offsets.mill_offsets import MillOffsets, with_mill
+from app.offsets.mill_offsets import MillOffsets, rows_of, with_mill
 from app.offsets.offsets_in_force import PRESET, preset_of, secondary_offsets, tool_offsets
 from core.interpreter.job_setup import SecondaryOffset, Setup, ToolOffset, ZeroOffset
 from core.store.store_file import has_store
@@ -124,7 +124,8 @@ def read_offsets(path: Path) -> Offsets:
     """Those of an offsets file, by value. Raises CommandError naming every mistake."""
     from app.offsets.offsets_file import read_rows
 
-    return _of_rows(*read_rows(path))
+    tools, secondary, zero = read_rows(path)
+    return _of_rows(tools, secondary, zero)._replace(mill=MillOffsets(rows_of(tools)))
 
 
 def chosen_offsets(path: str | None) -> Callable[[], Offsets]:
@@ -141,7 +142,7 @@ def book_of(offsets: Callable[[], Offsets], journal: Journal | None) -> OffsetBo
         return journal.book()
     from app.offsets.offset_book import OffsetBook
 
-    tools, secondary, zero, _ = offsets()
+    tools, secondary, zero, mill = offsets()
     return OffsetBook(
         locked=OF_A_FILE,
         tools={
@@ -150,6 +151,9 @@ def book_of(offsets: Callable[[], Offsets], journal: Journal | None) -> OffsetBo
         },
         secondary={n: SecondaryRow(row.x, row.z, row.r) for n, row in secondary.items()},
         zero={n: ZeroRow(row.x, row.z, row.c) for n, row in zero.items()},
+        mill_tools=dict(mill.tools),
+        presets=dict(mill.presets),
+        preset=mill.preset,
     )
 
 

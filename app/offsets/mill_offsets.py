@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 
 from core.geometry.rotary_axes import DatumPreset
 from core.interpreter.job_setup import MillTool, Setup, ToolOffset
-from core.store.store_rows import MillRow, PresetRow
+from core.store.store_rows import MillRow, PresetRow, ToolRow
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,6 +22,7 @@ class MillOffsets:
 def with_mill(setup: Setup, offsets: MillOffsets) -> Setup:
     """The circumstances with the tables of a mill; those of a lathe are left alone.
 
+    Only what the tool table shows counts: rows of a lathe's offsets, which a store may have too, do not.
     ``setup.kinematics`` must be as the machine file has it.
     """
     machine = setup.kinematics
@@ -32,13 +33,18 @@ def with_mill(setup: Setup, offsets: MillOffsets) -> Setup:
     active = offsets.preset if offsets.preset in presets else 0
     return replace(
         setup,
-        tools={**setup.tools, **{number: _offset(row) for number, row in offsets.tools.items()}},
+        tools={number: _offset(row) for number, row in offsets.tools.items()},
         tool_names={row.name.upper(): number for number, row in offsets.tools.items() if row.name},
         mill_tools={number: _row(row) for number, row in offsets.tools.items()},
         presets=presets,
         preset=active,
         kinematics=machine.with_preset(presets[active]),
     )
+
+
+def rows_of(tools: Mapping[int, ToolRow]) -> dict[int, MillRow]:
+    """Tools of an offsets file as rows of a mill's table: Z is the length, the remark the name."""
+    return {number: MillRow(row.remark, row.z + row.wear_z, row.nose_radius) for number, row in tools.items()}
 
 
 def preset_of(row: PresetRow) -> DatumPreset:

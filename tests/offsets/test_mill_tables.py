@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
 from app.compose.kinematics_chain import kinematics_of
 from app.compose.machine_files import named_machine
 from app.compose.machine_setup import setup_for
+from app.compose.stored_offsets import book_of, read_offsets, setup_with
 from app.desk.machine_status import Tone
 from app.offsets.cell_table import CellTable
 from app.offsets.mill_lives import MillLives
@@ -17,6 +19,7 @@ from app.offsets.mill_tools import MillTools
 from app.offsets.mill_touch import MillTouch
 from app.offsets.presets import Presets
 from core.executor.snapshot import State
+from core.interpreter.job_setup import ToolOffset
 from core.quality.tool_life import ToolLife
 from core.store.store_rows import Kind, MillRow, PresetRow
 from tests.offsets.conftest import LIMIT, Room
@@ -306,6 +309,24 @@ def test_tables_become_lengths_names_and_the_preset_in_force() -> None:
     assert made.kinematics is not None
     assert (made.kinematics.origin, made.kinematics.basic_rotation) == ((1.0, 2.0, 3.0), 15.0)
     assert made.presets[0].origin == (230.0, 210.0, -350.0)  # of the machine file
+
+
+def test_what_the_tool_table_does_not_show_does_not_count() -> None:
+    """A store may have rows of a lathe: their Z counted as lengths while the tool table showed 0."""
+    plain = setup_for(named_machine("ac-table-mill"), tools={20: ToolOffset(z=76.2)}, secondary={})
+    made = with_mill(plain, MillOffsets({5: MillRow(length=80.0)}))
+    assert {number: tool.z for number, tool in made.tools.items()} == {5: 80.0}
+
+
+def test_tools_of_an_offsets_file_stand_in_the_tool_table(tmp_path: Path) -> None:
+    file = tmp_path / "tools.toml"
+    file.write_text('[tool.20]\nz = 3.0\nnose_radius = 0.25\nwear_z = -0.01\nremark = "Mill"\n')
+    offsets = read_offsets(file)
+    book = book_of(lambda: offsets, None)
+    shown, counts = book.mill_tools[20], setup_with(named_machine("ac-table-mill"), offsets).tools[20]
+    assert (shown.name, shown.length, shown.radius) == ("Mill", pytest.approx(75.946), pytest.approx(6.35))
+    assert (counts.z, counts.nose_radius) == (shown.length, shown.radius)
+    assert "READ ONLY" in book.change(Kind.MILL_TOOL, 20, {"length": 1.0}, "typed")
 
 
 def test_a_lathe_and_a_preset_that_has_gone_are_left_as_they_were() -> None:
