@@ -11,6 +11,7 @@ from app.desk.readouts import rotary_angle, system_words
 if TYPE_CHECKING:
     from app.working_plane.plane_scene import Scene
     from core.executor.snapshot import Snapshot
+    from core.geometry.rotary_axes import Kinematics
     from core.interpreter.working_plane import Swivel
 
 _AXES = ("A", "B", "C")
@@ -43,6 +44,15 @@ def at_line(scene: Scene, line: int) -> Instant:
     zero = scene.kinematics.zero
     axes |= {name: zero[name] + (target if tilted else at) for name, at, target in shown if at is not None}
     return Instant(axes, swivel)
+
+
+def title_of(kinematics: Kinematics) -> str:
+    """What is seen of the machine beside the plane: its table, its head, or both."""
+    heads = any(not axis.table for axis in kinematics.rotaries)
+    if not heads:
+        return "TABLE AND PLANE"
+    both = any(axis.table for axis in kinematics.rotaries)
+    return "HEAD, TABLE AND PLANE" if both else "HEAD AND PLANE"
 
 
 def plane_words(swivel: Swivel | None) -> str:

@@ -78,7 +78,9 @@ class WorkingPlaneView(Panel):
         self._scene, self._instant = scene, None
         if scene is not None:
             from app.working_plane.plane_drawing import camera_for
+            from app.working_plane.plane_instant import title_of
 
+            self.title = title_of(scene.kinematics)
             self._camera = replace(camera_for(scene), aspect=aspect)
         self.update()
 

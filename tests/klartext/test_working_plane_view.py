@@ -13,7 +13,7 @@ from app.desk.machine_status import status_of
 from app.desk.readouts import Lamp, Readout, lamps_of
 from app.path.path_picture import picture_of
 from app.working_plane.plane_drawing import ASPECTS, Camera, Figure, camera_for, figure
-from app.working_plane.plane_instant import Instant, at_line, plane_words, running
+from app.working_plane.plane_instant import Instant, at_line, plane_words, running, title_of
 from app.working_plane.plane_scene import Ink, Scene
 from core.executor.snapshot import Snapshot
 from core.interpreter.elementary_blocks import Block
@@ -106,6 +106,16 @@ def test_where_no_table_turns_the_lamp_tells_of_the_head() -> None:
     turned, home = (block for block in ran.blocks if block.moves)
     assert Lamp("HEAD TURNED", lit=True) in lamps_of(snapshot_at(turned))
     assert Lamp("HEAD TURNED", lit=False) in lamps_of(snapshot_at(home))
+
+
+@pytest.mark.parametrize(("machine", "title"), [
+    ("fork-head-mill", "HEAD AND PLANE"), ("ac-table-mill", "TABLE AND PLANE"),
+    ("head-table-mill", "HEAD, TABLE AND PLANE"),
+])  # fmt: skip
+def test_the_view_is_called_by_what_turns(machine: str, title: str) -> None:
+    kinematics = kinematics_of(shipped_machine(machine))
+    assert kinematics is not None
+    assert title_of(kinematics) == title
 
 
 # --- the scene -------------------------------------------------------------------------------------------
