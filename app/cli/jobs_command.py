@@ -118,7 +118,7 @@ def _clear(store: Store, args: argparse.Namespace) -> str:
     from core.store import job_queue
 
     count = store.write(lambda c: job_queue.clear(c, everything=args.all)).result()
-    return f"{count} jobs taken out\n"
+    return f"{count} {'job' if count == 1 else 'jobs'} taken out\n"
 
 
 def _at(store: Store, place: int) -> JobRow:

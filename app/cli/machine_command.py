@@ -177,11 +177,15 @@ def accept(file: str, args: argparse.Namespace) -> int:
         by = "" if who == COMMAND_LINE else f" by {who}"
         store.log_event("machine", f"machine file {machine.source} accepted{by}{': ' if said else ''}{said}")
     sys.stdout.write("".join(f"  {change}\n" for change in told or ()))
-    how = (
-        "it was not known here" if told is None else f"{len(told)} changes" if told else "it had not changed"
-    )
+    how = "it was not known here" if told is None else _counted(len(told))
     sys.stdout.write(f"{machine.source} is accepted: {how}\n")
     return EXIT_OK
+
+
+def _counted(changes: int) -> str:
+    if not changes:
+        return "it had not changed"
+    return "1 change" if changes == 1 else f"{changes} changes"
 
 
 # --- mtconnect -------------------------------------------------------------------------------------------

@@ -218,6 +218,8 @@ class EffectDisplay:
             return tr("MAKING THE PART WITH THE OFFSETS BEFORE AND AFTER")
         if not part.differing:
             return tr("NO DIAMETER OR SHOULDER OF THE PART CHANGES; F6 SHOWS THE TABLE")
+        if part.differing == 1:
+            return tr("1 FEATURE OF THE PART CHANGES; F6 SHOWS THE TABLE")
         words = tr("{count} FEATURES OF THE PART CHANGE; F6 SHOWS THE TABLE")
         return words.format(count=part.differing)
 

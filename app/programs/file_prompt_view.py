@@ -11,6 +11,7 @@ from PySide6.QtWidgets import QLineEdit, QWidget
 
 from app.desk.program_folder import ListedProgram, ProgramFolders
 from app.desk.prompt_line import ASK_FILE, NOT_FOUND
+from app.desk.translation import tr
 from app.screen.entry_panel import dress_line
 from app.screen.look import CENTRE, RIGHT, Look, Painter, put
 from app.screen.panel import Panel
@@ -159,7 +160,8 @@ class FilePrompt(Panel):
             self._list(painter)
         keys = "RETURN takes the marked program   ESC keeps the present one   F2 shows the list"
         painter.write(foot, keys, 1.6, "soft", bold=False, fit=False)
-        put(painter, foot, RIGHT, f"{len(self._entries)} programs")
+        count = len(self._entries)
+        put(painter, foot, RIGHT, tr("1 program") if count == 1 else f"{count} programs")
 
     def _list(self, painter: Painter) -> None:
         u = self.look.u

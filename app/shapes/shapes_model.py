@@ -361,7 +361,9 @@ class Shapes:
             grown = len(form.lines) - form.instead.count
             moved = [_moved(each, grown) for each in self.pieces if each.filled.shape is not form.shape]
             text, stay = renewed(text, self.shop, moved)
-            if stay:
+            if stay == 1:
+                said = tr("1 SHAPE WAS CHANGED BY HAND AND STAYS AS IT IS")
+            elif stay:
                 said = tr("{count} SHAPES WERE CHANGED BY HAND AND STAY AS THEY ARE").format(count=stay)
         self.form, self.notice, self.asked = None, said, None
         self._take("\n".join(text) + "\n")

@@ -67,8 +67,12 @@ class SetupSheet:
     @property
     def verdict(self) -> str:
         """What the proof has found, as it counts at the machine; empty: nothing that matters."""
+        if self.errors == 1:
+            return tr("1 ERROR: this program will not run as it stands")
         if self.errors:
             return tr("{count} ERRORS: this program will not run as it stands").format(count=self.errors)
+        if self.warnings == 1:
+            return tr("1 WARNING: look at it before the first part")
         if self.warnings:
             return tr("{count} WARNINGS: look at them before the first part").format(count=self.warnings)
         return ""

@@ -68,9 +68,11 @@ def received_sheet(received: Received, name: str) -> Sheet:
     """What came, whether it is whole, and what proving found."""
     code = tr("7 BITS, EVEN PARITY, FOUND OUT") if received.seven else tr("AS SET")
     errors = len(received.findings)
-    result = tr("{count} ERRORS").format(count=errors) if errors else tr("NO ERROR")
+    some = tr("1 ERROR") if errors == 1 else tr("{count} ERRORS").format(count=errors)
+    result = some if errors else tr("NO ERROR")
+    lines = tr("1 LINE") if received.lines == 1 else tr("{count} LINES").format(count=received.lines)
     rows = (
-        Row((tr("WHOLE"), tr("{count} LINES").format(count=received.lines)), True, Tone.RUN),
+        Row((tr("WHOLE"), lines), True, Tone.RUN),
         Row((tr("PROVED"), result), True, Tone.ALARM if errors else Tone.RUN),
         Row((tr("CALLS ITSELF"), received.name or "—")),
         Row((tr("SHA-256"), received.digest[:32] + " …")),

@@ -7765,6 +7765,11 @@
     </message>
     <message>
       <location filename="app/offsets/offset_effect.py" />
+      <source>1 FEATURE OF THE PART CHANGES; F6 SHOWS THE TABLE</source>
+      <translation>CAMBIA 1 MEDIDA DE LA PIEZA; F6 MUESTRA LA TABLA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_effect.py" />
       <source>DRAWING THE PATH BEFORE AND AFTER</source>
       <translation>DIBUJANDO LA TRAYECTORIA ANTES Y DESPUÉS</translation>
     </message>
@@ -9037,6 +9042,11 @@
       <location filename="app/programs/file_prompt_view.py" />
       <source>%1 programs</source>
       <translation>%1 programas</translation>
+    </message>
+    <message>
+      <location filename="app/programs/file_prompt_view.py" />
+      <source>1 program</source>
+      <translation>1 programa</translation>
     </message>
     <message>
       <location filename="app/programs/file_prompt_view.py" />
@@ -12410,6 +12420,11 @@
     </message>
     <message>
       <location filename="app/shapes/shapes_model.py" />
+      <source>1 SHAPE WAS CHANGED BY HAND AND STAYS AS IT IS</source>
+      <translation>1 FORMA SE CAMBIÓ A MANO Y QUEDA COMO ESTÁ</translation>
+    </message>
+    <message>
+      <location filename="app/shapes/shapes_model.py" />
       <source>A DRAWING IS WRITTEN IN OMNITURN: OPEN IT BESIDE A PROGRAM OF THAT LANGUAGE</source>
       <translation>UN DIBUJO SE ESCRIBE EN OMNITURN: ÁBRALO JUNTO A UN PROGRAMA DE ESE LENGUAJE</translation>
     </message>
@@ -13555,6 +13570,16 @@
     </message>
     <message>
       <location filename="app/special/setup_sheet.py" />
+      <source>1 ERROR: this program will not run as it stands</source>
+      <translation>1 ERROR: este programa no puede ejecutarse así</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet.py" />
+      <source>1 WARNING: look at it before the first part</source>
+      <translation>1 AVISO: véalo antes de la primera pieza</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet.py" />
       <source>CHUCK</source>
       <translation>PLATO</translation>
     </message>
@@ -13915,6 +13940,16 @@
     </message>
     <message>
       <location filename="app/transfer/serial_transfer.py" />
+      <source>1 ERROR</source>
+      <translation>1 ERROR</translation>
+    </message>
+    <message>
+      <location filename="app/transfer/serial_transfer.py" />
+      <source>1 LINE</source>
+      <translation>1 LÍNEA</translation>
+    </message>
+    <message>
+      <location filename="app/transfer/serial_transfer.py" />
       <source>7 BITS, EVEN PARITY, FOUND OUT</source>
       <translation>7 BITS, PARIDAD PAR, DETECTADO</translation>
     </message>
@@ -14144,7 +14179,17 @@
       <translation>DERECHA</translation>
     </message>
     <message>
-      <location filename="app/working_plane/working_plane_view.py" />
+      <location filename="app/working_plane/plane_instant.py" />
+      <source>HEAD AND PLANE</source>
+      <translation>CABEZAL Y PLANO</translation>
+    </message>
+    <message>
+      <location filename="app/working_plane/plane_instant.py" />
+      <source>HEAD, TABLE AND PLANE</source>
+      <translation>CABEZAL, MESA Y PLANO</translation>
+    </message>
+    <message>
+      <location filename="app/working_plane/plane_instant.py" />
       <source>TABLE AND PLANE</source>
       <translation>MESA Y PLANO</translation>
     </message>

@@ -43,11 +43,11 @@ def test_added_listed_moved_removed_cleared(turndesk: Turndesk, home: Path) -> N
         "added": told[0]["added"],
     }  # fmt: skip
     assert turndesk("jobs", "remove", 3).out == "pin.nc is taken out, 0 of 3 parts made\n"
-    assert turndesk("jobs", "clear").out == "1 jobs taken out\n"
+    assert turndesk("jobs", "clear").out == "1 job taken out\n"
     assert [each["program"] for each in json.loads(turndesk("jobs", "list", "--json").out)["jobs"]] == [
         "cap.nc"
     ]
-    assert turndesk("jobs", "clear", "--all").out == "1 jobs taken out\n"
+    assert turndesk("jobs", "clear", "--all").out == "1 job taken out\n"
 
 
 @pytest.mark.parametrize(

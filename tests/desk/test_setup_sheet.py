@@ -35,7 +35,13 @@ def test_what_rests_on_something_assumed_is_a_warning_as_on_the_desk(
 ) -> None:
     sheet = sheet_of(SLIP, stock, shapes)
     assert sheet.errors == 0
-    assert sheet.verdict.endswith("WARNINGS: look at them before the first part")
+    one = "1 WARNING: look at it before the first part"
+    some = f"{sheet.warnings} WARNINGS: look at them before the first part"
+    assert sheet.verdict == (one if sheet.warnings == 1 else some)
+
+
+def test_one_warning_is_told_as_one() -> None:
+    assert sheet_of(SLIP).verdict == "1 WARNING: look at it before the first part"
 
 
 def test_an_error_of_what_is_said_is_one() -> None:
