@@ -201,9 +201,27 @@ def test_refused(number: int, q: dict[str, float], names: str) -> None:
     assert names in ran.errors[0].message
 
 
-def test_back_boring_is_refused_because_nothing_orients_the_spindle() -> None:
-    ran = run("CYCL DEF 204 BACK BORING ~\n Q200=2 ~\n Q249=5\nCYCL CALL", tool=TOOL)
+BACK = told("Q200=2 Q249=5 Q250=20 Q251=3.5 Q252=15 Q253=750 Q254=200 Q255=0 Q203=0 Q204=50 Q214=1 Q336=0")
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        "CYCL CALL",
+        "L X+10 Y+20 R0 FMAX M99",
+        "CYCL CALL POS X+10 Y+20 Z+0 FMAX",
+        "PATTERN DEF POS1 (X+10 Y+20 Z+0)\nCYCL CALL PAT FMAX",
+        "CYCL DEF 220 POLAR ~\n Q216=0 ~\n Q217=0 ~\n Q244=80 ~\n Q245=0 ~\n Q246=360 ~\n Q241=6 ~\n Q301=1",
+        "CYCL DEF 221 ROWS ~\n Q225=0 ~\n Q226=0 ~\n Q237=9 ~\n Q238=9 ~\n Q242=2 ~\n Q243=1 ~\n Q224=0",
+    ],
+)
+def test_back_boring_is_refused_however_it_is_called_because_nothing_orients_the_spindle(call: str) -> None:
+    """Its bar goes into the hole beside the centre: with the edge at any other angle it meets the wall."""
+    lines = "".join(f" ~\n  {name}={value:+g}" for name, value in BACK.items())
+    ran = run(f"CYCL DEF 204 BACK BORING{lines}\n{call}", tool=TOOL)
+    assert ran.codes == ["Input value incorrect"]
     assert "orients" in ran.errors[0].message
+    assert min(block.swivel.end[2] for block in ran.blocks if block.swivel) >= 0.0
 
 
 def test_boring_that_frees_its_edge_aside_says_that_nothing_turns_it_there() -> None:

@@ -75,6 +75,19 @@ def test_boring_stops_the_spindle_and_goes_aside() -> None:
     assert found == ["turn 1000", "R 3", "F -7", "stop", "F -7", "R 31", "R 31", "turn 1000"]
 
 
+@pytest.mark.parametrize(
+    ("direction", "aside"), [(1, (-0.2, 0.0)), (2, (0.0, -0.2)), (3, (0.2, 0.0)), (4, (0.0, 0.2))]
+)
+def test_boring_frees_its_edge_in_the_direction_of_q214(direction: int, aside: tuple[float, float]) -> None:
+    """1 and 2 are the negative main and secondary axis, 3 and 4 the positive ones; out beside the centre."""
+    blocks = ran_of(cycle(202, q201=-8, q214=direction, q208=0)).blocks
+    ends = [block.swivel.end for block in blocks if block.line > 4 and block.moves and block.swivel]
+    beside = (10.0 + aside[0], 20.0 + aside[1])
+    assert ends[2] == pytest.approx((*beside, -7.0))
+    assert ends[3] == pytest.approx((*beside, 31.0))
+    assert ends[4] == pytest.approx((10.0, 20.0, 31.0))
+
+
 def test_universal_drilling_breaks_chips_and_takes_less_each_time() -> None:
     """Infeeds 5, 4, 3 from the surface at 1, a chip break of .2 behind each but every second."""
     assert told(cycle(203, q201=-12, q212=1, q205=1, q213=1, q256=0.2, q208=0)) == [
@@ -248,6 +261,7 @@ def test_what_does_nothing_is_told(text: str) -> None:
         (cycle(200, q201=5), "Input value incorrect", "upwards"),
         (cycle(200, q202=2), "Cycle incomplete", "Q201"),
         (cycle(200, q201=-5, q206=0), "Input value incorrect", "Q206"),
+        (cycle(202, q201=-5, q214=5), "Input value incorrect", "Q214"),
         (cycle(207, q201=-5, q239=0), "Input value incorrect", "pitch"),
         (cycle(208, q201=-5, q334=1, q335=6), "Input value incorrect", "hole"),
         (cycle(240, q343=1, q344=-4), "Input value incorrect", "point"),
