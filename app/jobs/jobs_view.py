@@ -78,12 +78,14 @@ class JobsPage(ListPage):
         gap = max(4, round(0.7 * u))
         self.pad.setVisible(self._asked == "count")
         self.letters.setVisible(self._asked == "note")
+        low = max(round(LETTERS * u), self.letters.least)
         high = round(QUEUE * (self.height() - gap))
+        if self._asked == "note":  # the keyboard lies over the setup
+            high = min(high, self.height() - low - gap)
         pad = round(PAD * u) + gap if self._asked == "count" else 0
         wide = self.width() - pad
         self.table.setGeometry(0, 0, wide, high)
         self.setup.setGeometry(0, high + gap, wide, self.height() - high - gap)
         self.pad.setGeometry(wide + gap, 0, max(0, pad - gap), self.height())
-        low = min(round(LETTERS * u), self.height() - high - gap)
         self.letters.setGeometry(0, self.height() - low, self.width(), low)
         self.letters.raise_()

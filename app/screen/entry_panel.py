@@ -106,6 +106,11 @@ class KeyPad(Panel):
         super().__init__(look, parent)
         self._press, self._own = press, own
 
+    @property
+    def least(self) -> int:
+        """Height in which every key takes a finger, pixels."""
+        return self.look.keys_high(len(_KEYS) + 1)
+
     def draw(self, painter: Painter) -> None:
         u = self.look.u
         gap = 0.6 * u

@@ -47,6 +47,11 @@ class LetterPad(Panel):
         self._press, self._rows = press, rows
         self.hide()
 
+    @property
+    def least(self) -> int:
+        """Height in which every key takes a finger, pixels."""
+        return self.look.keys_high(len(self._rows))
+
     def write_into(self, field: QWidget) -> None:
         """A finger on a key leaves a stock field the keyboard, which Qt would give to the window."""
         self.setFocusPolicy(Qt.FocusPolicy.ClickFocus)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from functools import cache, lru_cache
 from importlib.resources import files
 from typing import Self
@@ -73,6 +74,10 @@ class Look:
         """
         high = min(units * self.u, mm * self.mm)
         return max(high, float(FINGER)) if touch else max(high, min(units * self.u, LEAST_ROW))
+
+    def keys_high(self, rows: int) -> int:
+        """Height of so many rows of drawn keys, pixels, each as high as a fingertip."""
+        return math.ceil(rows * FINGER + (rows - 1) * 0.6 * self.u)
 
     def measure(self, dots_per_inch: float) -> None:
         """Take the size of the glass; what a monitor says of itself wrongly is limited to what there is."""

@@ -19,10 +19,11 @@ from app.shapes.shapes_model import Shapes
 from app.shapes.sketch_view import SketchPanel
 from core.shapes.contour import row_word
 
-ROW = 5.2  # units: a finger's height
+ROW = 5.2  # units: at least a finger's height
 _LABEL = 0.56  # of the width
 _SHARE = 0.54  # of the width that the fields take
-_PAD = 26.0  # units: height of the number pad
+_PAD = 26.0  # units: height of the number pad, where fingers do not need more
+_DRAWN = 12.0  # units: a drawing that is lower shows nothing
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,9 +53,14 @@ class RowsPanel(Panel):
         self._seen = -1
 
     @property
+    def _high(self) -> float:
+        """Of a row, pixels."""
+        return self.look.row(ROW, 9.0, touch=True)
+
+    @property
     def count(self) -> int:
         """How many rows fit."""
-        return max(1, int((self.height() / self.look.u - 3.4) / ROW))
+        return max(1, int((self.height() - 3.4 * self.look.u) / self._high))
 
     def wheelEvent(self, event: QWheelEvent) -> None:
         """Three rows a notch."""
@@ -67,9 +73,9 @@ class RowsPanel(Panel):
             self._seen = self.marked
             self.top = min(max(self.top, self.marked - self.count + 2), max(0, self.marked - 1))
         self.top = max(0, min(self.top, len(self.rows) - self.count))
-        room, u = self.inside(), self.look.u
+        room, high = self.inside(), self._high
         for place, line in enumerate(self.rows[self.top : self.top + self.count]):
-            box = QRectF(room.x(), room.y() + place * ROW * u, room.width(), ROW * u)
+            box = QRectF(room.x(), room.y() + place * high, room.width(), high)
             self._row(painter, box, line, self.top + place)
         self._bar(painter, room)
 
@@ -100,7 +106,7 @@ class RowsPanel(Panel):
     def _cells(self, painter: Painter, room: QRectF, line: _Line, number: int, *, marked: bool) -> None:
         """Number and figures of a point."""
         u = self.look.u
-        first = QRectF(room.x(), room.y(), 3.4 * u, room.height())
+        first = QRectF(room.x(), room.y(), 2.4 * u, room.height())
         painter.write(first, line.label, 1.8, line.tone if line.tone == "alarm" else "soft", raw=True)
         wide = (room.width() - first.width()) / len(line.cells)
         for column, figure in enumerate(line.cells):
@@ -120,7 +126,7 @@ class RowsPanel(Panel):
         if len(self.rows) <= self.count:
             return
         u = self.look.u
-        track = QRectF(room.right() - 0.5 * u, room.y(), 0.6 * u, self.count * ROW * u)
+        track = QRectF(room.right() - 0.5 * u, room.y(), 0.6 * u, self.count * self._high)
         painter.fill(track, "key")
         high = track.height() * self.count / len(self.rows)
         painter.fill(
@@ -213,6 +219,7 @@ class ShapesView(QWidget):
             self._show_form(form)
         self.lines.setVisible(not model.padded)
         self.pad.setVisible(model.padded)
+        self.sketch.setVisible(True)  # unless the pad needs its room
         self.lay_out()
 
     def _show_list(self) -> None:
@@ -231,7 +238,7 @@ class ShapesView(QWidget):
         shape = table[keys[place]] if place < len(keys) else model.listed[place - len(keys)].filled.shape
         form = ShapeForm(shape, model.new)
         self.sketch.shown = shape.sketch(form.one), (), "", frozenset()
-        self.lines.trouble, self.lines.lines, self.lines.words = "", (tr(shape.use),), ()
+        self.lines.trouble, self.lines.lines, self.lines.words = "", (), (shape.use,)
 
     def _show_form(self, form: ShapeForm) -> None:
         lines = [_line_of(cell) for cell in form.cells()]
@@ -269,11 +276,18 @@ class ShapesView(QWidget):
         u = self.look.u
         gap, left = max(4, round(0.7 * u)), round(_SHARE * self.width())
         right, x = self.width() - left - gap, left + gap
-        low = round(min(_PAD * u, 0.6 * self.height())) if self.model.padded else round(0.4 * self.height())
+        low = self._pad_height() if self.model.padded else round(0.4 * self.height())
         self.rows.setGeometry(0, 0, left, self.height())
         self.sketch.setGeometry(x, 0, right, self.height() - low - gap)
         for part in (self.lines, self.pad):
             part.setGeometry(x, self.height() - low, right, low)
+
+    def _pad_height(self) -> int:
+        """A finger's keys first; what is left is the drawing's, or the pad's too where it shows nothing."""
+        high = max(self.pad.least, round(min(_PAD * self.look.u, 0.6 * self.height())))
+        drawn = self.height() - high >= _DRAWN * self.look.u
+        self.sketch.setVisible(drawn)
+        return high if drawn else self.height()
 
     def resizeEvent(self, _event: object) -> None:
         """In the new unit."""

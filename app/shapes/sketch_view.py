@@ -11,6 +11,7 @@ from PySide6.QtWidgets import QWidget
 
 from app.screen.look import CENTRE, Look, Painter
 from app.screen.panel import Panel, Shown
+from app.screen.window_layout import FINGER
 from core.shapes.sketch import Dim, Outline, Sketch
 
 _INKS = {
@@ -138,8 +139,16 @@ class SketchPanel(Panel):
         box.moveTop(max(1.0, min(box.y(), self.height() - tall - 1.0)))
         painter.fill(box, "lit" if marked else "panel")
         painter.write(box, figure, _FIGURE, "on_lit" if marked else ink, at=CENTRE, raw=True, fit=False)
-        side = max(0.0, 5.0 * u - wide) / 2.0
-        self.place(box.adjusted(-side, -1.2 * u, side, 1.2 * u), partial(self._touch, word))
+        self.place(self._finger_about(box), partial(self._touch, word))
+
+    def _finger_about(self, box: QRectF) -> QRectF:
+        """A finger's place about a figure, within the panel."""
+        least = max(5.0 * self.look.u, FINGER)
+        side, up = (max(0.0, least - have) / 2.0 for have in (box.width(), box.height()))
+        place = box.adjusted(-side, -up, side, up)
+        place.moveLeft(max(0.0, min(place.x(), self.width() - place.width())))
+        place.moveTop(max(0.0, min(place.y(), self.height() - place.height())))
+        return place
 
 
 def _is_diameter(dim: Dim) -> bool:

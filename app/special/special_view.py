@@ -183,7 +183,8 @@ class SpecialPage(ListPage):
         gap, left = max(4, round(0.7 * u)), round(LIST * u)
         pad = 0 if self.pad.isHidden() else round(PAD * u) + gap
         self.items.setGeometry(0, 0, left, self.height())
-        low = 0 if self.letters.isHidden() else round(LETTERS * u) + gap
+        letters = max(round(LETTERS * u), self.letters.least)
+        low = 0 if self.letters.isHidden() else letters + gap
         right = self.width() - left - gap
         self.table.setGeometry(left + gap, 0, right - pad, self.height() - low)
         self.letters.setGeometry(left + gap, self.height() - low + gap, right, max(0, low - gap))

@@ -10,8 +10,10 @@ from pytestqt.qtbot import QtBot
 
 from app.jobs.job_setup import ProvedJob
 from app.jobs.jobs_model import JobsModel
+from app.jobs.jobs_view import JobsPage
 from app.jobs.jobs_watch import JobsWatch
 from app.screen import page_table
+from app.screen.window_layout import FINGER
 from core.executor.snapshot import State
 from core.store import tool_lives
 from core.store.store_rows import Kind
@@ -171,6 +173,24 @@ def test_moved_noted_removed_and_cleared(day: Day) -> None:
     day.key(Key.Key_F9)
     yes(day.window)
     day.sees(lambda: rows(day) == [("peg.nc\n", "0/2")])
+
+
+def test_a_note_is_typed_by_a_finger_on_the_smallest_screen(day: Day) -> None:
+    day.window.resize(1024, 600)
+    added(day, "peg.nc", "2")
+    day.key(Key.Key_F8)
+    assert day.window.frame is not None
+    page = day.window.frame.page
+    assert isinstance(page, JobsPage)
+    day.sees(page.letters.isVisible)
+    page.grab()
+    assert all(box.height() >= FINGER - 1 for box, _ in page.letters._places)
+    assert page.table.geometry().bottom() < page.letters.geometry().top()  # the question stays in sight
+    letters = {key: press for key, (_, press) in zip("qwertyuiop", page.letters._places[10:20], strict=True)}
+    for key in "prep":
+        letters[key]()
+    page.letters._places[-1][1]()
+    day.sees(lambda: rows(day)[0][0] == "peg.nc\nprep")
 
 
 def test_while_a_program_runs_no_job_comes_on_the_desk(day: Day) -> None:

@@ -7,6 +7,7 @@ from PySide6.QtTest import QTest
 
 from app.editor.editor_view import Mode
 from app.screen.panel import Panel
+from app.screen.window_layout import FINGER
 from core.executor.snapshot import State
 from tests.screen.editor.writer import Writer
 from tests.screen.hands import Key
@@ -136,7 +137,28 @@ def test_letters_that_stop_the_machine_stop_it_here_too(writer: Writer) -> None:
 
 
 def test_another_language_has_no_shapes(writer: Writer) -> None:
-    writer.new("other.mpf")
+    writer.new("other.h")
     writer.key(Key.Key_F3, SHIFT)
     writer.sees(lambda: "ANOTHER LANGUAGE" in writer.editor.prompt())
     assert writer.editor.mode is Mode.TEXT
+
+
+def test_rows_and_keys_fit_a_finger_on_the_smallest_screen(writer: Writer) -> None:
+    writer.window.resize(1024, 600)
+    opened(writer).type("n")
+    view = writer.editor.shapes
+    writer.key(Key.Key_F9)
+    writer.sees(lambda: view.pad.isVisible() and len(view.pad._places) == 20)
+    assert not view.sketch.isVisible()  # under the keys there is no room for it
+    for panel in (view.rows, view.pad):
+        panel.grab()
+        for box, _ in panel._places:
+            assert min(box.width(), box.height()) >= FINGER - 1
+            assert panel.area().contains(box)
+    writer.key(Key.Key_F9)
+    writer.sees(view.sketch.isVisible)
+    view.sketch.grab()
+    assert view.sketch._places
+    for box, _ in view.sketch._places:
+        assert min(box.width(), box.height()) >= FINGER
+        assert view.sketch.area().contains(box)
