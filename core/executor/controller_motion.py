@@ -66,14 +66,11 @@ def parts_of(
         yield BlockPart(_no_faster(op, fastest), block, seconds / n)
 
 
-def _no_faster(op: BlockOp, fastest: float) -> BlockOp:
+def _no_faster(op: RapidOp | LineOp | ArcOp, fastest: float) -> BlockOp:
     """The controller's own limits may be wider than those that were proved."""
-    match op:
-        case RapidOp(rate=rate):
-            return op._replace(rate=min(rate, fastest))
-        case LineOp(feed=feed) | ArcOp(feed=feed):
-            return op._replace(feed=min(feed, fastest))
-    return op
+    if isinstance(op, RapidOp):
+        return op._replace(rate=min(op.rate, fastest))
+    return op._replace(feed=min(op.feed, fastest))
 
 
 def _cuts(block: Block, seconds: float) -> int:
@@ -84,7 +81,7 @@ def _cuts(block: Block, seconds: float) -> int:
     return max(least, min(math.ceil(seconds / LONGEST - 1e-9), math.ceil(block.length / _SHORTEST_PART)))
 
 
-def _op(block: Block, begin: float, end: float, turning: Turning) -> BlockOp:
+def _op(block: Block, begin: float, end: float, turning: Turning) -> RapidOp | LineOp | ArcOp:
     """The part of a block between two fractions of its way."""
     if block.kind is Kind.ARC:
         return _arc(block, begin, end, turning)

@@ -96,9 +96,10 @@ class OutputsWatch:
         if Unknown.OUTPUTS in self._context.unknown or self._context.sample.fault:
             return  # what a fault has switched off is the fault's, which is told in this tick
         if self._program_run.status.state not in CYCLE:
-            self._known_off = frozenset()
+            told, self._known_off = self._known_off, frozenset()
             for each in self._context.outputs.accept():
-                self._context.log("disturbed", f"{each.words} BY ITSELF")
+                if each.name not in told:  # by what has switched it off
+                    self._context.log("disturbed", f"{each.words} BY ITSELF")
             return
         differing = self._context.outputs.differing()
         new = [each for each in differing if each.name not in self._known_off]

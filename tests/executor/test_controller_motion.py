@@ -7,12 +7,15 @@ import math
 
 import pytest
 
-from core.executor.controller_motion import LONGEST, Turning, parts_of
+from core.executor.controller_motion import LONGEST, ControllerMotion, Turning, parts_of
+from core.executor.path_section import Progress
 from core.executor.raised_alarm import AlarmError
+from core.executor.read_ahead import ProgramPass, ReadAhead
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.machine_requirements import first_needs, needs_of
 from core.interpreter.modal_state import Modal
-from core.ports import ArcOp, LineOp, RapidOp, ThreadOp
+from core.ports import ArcOp, BlockOp, LineOp, RapidOp, ThreadOp
+from tests.executor.played_controller import PlayedController, context_of, turn_feed_pot
 
 FULL = Turning(1.0, 3500.0)
 
@@ -110,3 +113,227 @@ def test_needs_are_told_once_with_their_first_line() -> None:
         ("pull-out", 6),
         ("surface-speed", 7),
     ]
+
+
+# --- handed over, piece by piece ----------------------------------------------------------------------------
+
+
+PULL_OUT = block(Kind.RAPID, n=2, z0=-9.0, x=5.0, z=-9.0, feed=40.0)
+THREAD = block(Kind.THREAD, z=-9.0, feed=1.5, per_rev=True, rpm=600.0)
+CUT = block(Kind.FEED, x=3.0, z=-4.0)  # 5 mm at 10 mm/s: three pieces of a sixth of a second
+NEXT = block(Kind.FEED, n=2, x0=3.0, z0=-4.0, x=3.0, z=-5.0, line=8)  # 1 mm, a tenth of a second: one
+
+
+def motion_of(
+    controller: PlayedController, *blocks: Block, feed: float = 1.0, single: bool = False
+) -> ControllerMotion:
+    """A path section that has begun."""
+    context = context_of(controller)
+    turn_feed_pot(context, feed)
+    context.switches.single_block = single
+    motion = ControllerMotion(context, controller)
+    motion.begin(list(blocks))
+    return motion
+
+
+def nothing_read() -> ReadAhead:
+    return ReadAhead(ProgramPass(iter(()), list), context_of(None).machine)
+
+
+def ends(ops: list[BlockOp]) -> list[float]:
+    return [op.z for op in ops]
+
+
+def test_without_a_path_section_there_is_nothing_to_do() -> None:
+    controller = PlayedController()
+    motion = ControllerMotion(context_of(controller), controller)
+    assert motion.progress(nothing_read()) is Progress.DONE
+    assert (motion.block, motion.following, motion.moving) == (None, None, False)
+    motion.forget()
+    assert controller.asked == []
+
+
+def test_a_controller_that_takes_no_more_gets_the_rest_later() -> None:
+    controller = PlayedController(room=1)
+    motion = motion_of(controller, CUT)
+    assert ends(controller.ops) == [pytest.approx(2 - 4 / 3)]
+    controller.room = 9
+    assert motion.progress(nothing_read()) is Progress.MOVING
+    assert ends(controller.ops) == pytest.approx([2 - 4 / 3, 2 - 8 / 3, -2.0])
+    controller.finish()
+    assert motion.progress(nothing_read()) is Progress.DONE
+
+
+@pytest.mark.parametrize(("ahead", "feed", "pieces"), [(0.1, 1.0, 2), (0.3, 1.0, 3), (0.3, 0.5, 2)])
+def test_it_gets_no_more_than_it_may_run_on_alone(ahead: float, feed: float, pieces: int) -> None:
+    """Behind the piece that it moves: none, a sixth, two sixths of a second; twice that at half the feed."""
+    controller = PlayedController(ahead=ahead)
+    motion_of(controller, CUT, feed=feed)
+    assert len(controller.ops) == pieces
+
+
+def test_at_override_0_nothing_is_handed_over_until_it_is_turned_up() -> None:
+    controller = PlayedController()
+    context = context_of(controller)
+    turn_feed_pot(context, 0.0)
+    motion = ControllerMotion(context, controller)
+    motion.begin([CUT])
+    assert (controller.asked, controller.ops) == (["hold"], [])
+    assert motion.progress(nothing_read()) is Progress.STILL
+    motion.go_on(None)
+    assert (controller.asked, controller.ops) == (["hold"], [])
+    turn_feed_pot(context, 1.0)
+    motion.progress(nothing_read())
+    assert controller.asked == ["hold", "resume"]
+    assert len(controller.ops) == 3
+
+
+def test_a_thread_knows_no_override_of_0() -> None:
+    controller = PlayedController()
+    motion_of(controller, THREAD, PULL_OUT, feed=0.0)
+    assert controller.asked == []
+    assert isinstance(controller.ops[0], ThreadOp)
+
+
+def test_a_hold_that_the_controller_makes_by_itself_is_told() -> None:
+    controller = PlayedController()
+    motion = motion_of(controller, CUT)
+    controller.held = True
+    assert motion.progress(nothing_read()) is Progress.HELD
+    assert not motion.moving
+    motion.go_on(None)
+    assert controller.asked == ["resume"]
+
+
+def test_a_hold_reaches_a_line_and_leaves_a_thread_to_end() -> None:
+    controller = PlayedController(room=1)
+    line = motion_of(controller, CUT)
+    controller.room = 9
+    line.hold()
+    line.keep_up()
+    assert (controller.asked, len(controller.ops)) == (["hold"], 1)
+    controller = PlayedController(room=1)
+    thread = motion_of(controller, THREAD, PULL_OUT)
+    controller.room = 2
+    thread.hold()
+    thread.keep_up()
+    assert controller.asked == []
+    assert controller.ops[1:] == [RapidOp(6.0, -7.0, 40.0)]
+
+
+@pytest.mark.parametrize("hindrance", ["", "the controller is being reset"])
+def test_a_thread_without_its_spindle_draws_x_back_or_says_why_not(hindrance: str) -> None:
+    """From where the slides stand, home, to the X at which the pull-out would have ended."""
+    controller = PlayedController(hindrance=hindrance)
+    motion = motion_of(controller, THREAD, PULL_OUT)
+    controller.ops.clear()
+    motion.retract(THREAD)
+    assert controller.asked == ["abort"]
+    if hindrance:
+        with pytest.raises(AlarmError, match="spindle"):
+            motion.retracted()
+        return
+    motion.retracted()
+    assert controller.ops == [RapidOp(6.0, 0.0, THREAD.modal.rapid_rate)]
+
+
+def test_what_is_forgotten_is_forgotten_by_the_controller_too() -> None:
+    controller = PlayedController()
+    motion = motion_of(controller, CUT)
+    motion.forget()
+    assert controller.asked == ["abort"]
+    assert not motion.active
+    assert motion.complete
+
+
+def test_single_block_hands_over_one_block_and_the_next_when_it_goes_on() -> None:
+    controller = PlayedController()
+    motion = motion_of(controller, CUT, NEXT, single=True)
+    assert len(controller.ops) == 3
+    controller.finish()
+    assert motion.progress(nothing_read()) is Progress.BLOCK_END
+    assert (motion.block, motion.following) == (CUT, NEXT)
+    motion.go_on(None)
+    assert ends(controller.ops)[3:] == [-3.0]
+
+
+def test_single_block_turned_on_under_way_ends_behind_what_the_controller_has() -> None:
+    controller = PlayedController(room=3)
+    context = context_of(controller)
+    motion = ControllerMotion(context, controller)
+    motion.begin([CUT, NEXT])
+    context.switches.single_block, controller.room = True, 9
+    motion.progress(nothing_read())
+    assert len(controller.ops) == 3
+
+
+def test_what_was_read_meanwhile_goes_out_behind_the_rest() -> None:
+    controller = PlayedController()
+    motion = motion_of(controller, CUT)
+    feed = ReadAhead(ProgramPass(iter([NEXT]), list), context_of(None).machine)
+    feed.pending.append(NEXT)
+    motion.progress(feed)
+    assert not feed.pending
+    assert ends(controller.ops)[3:] == [-3.0]
+
+
+def test_a_control_that_was_away_does_not_go_on_by_itself() -> None:
+    controller = PlayedController(room=1)
+    context = context_of(controller)
+    motion = ControllerMotion(context, controller)
+    motion.begin([CUT])
+    assert motion.starving == math.inf
+    context.now += 1.1
+    controller.room = 9
+    motion.progress(nothing_read())
+    assert motion.starving == -math.inf
+    assert len(controller.ops) == 1
+
+
+def test_an_arc_is_no_faster_than_its_acceleration_allows() -> None:
+    """Radius .1 mm: the square root of .8 of 3048 mm/s² times .1 mm is 15.6154 mm/s."""
+    controller = PlayedController()
+    motion_of(controller, block(Kind.ARC, x=0.1, z=-0.1, cx=0.1, cz=0.0, feed=20.0))
+    assert {round(op.feed, 4) for op in controller.ops if isinstance(op, ArcOp)} == {15.6154}
+    controller = PlayedController(fast=3.0)
+    motion_of(controller, block(Kind.ARC, x=0.1, z=-0.1, cx=0.1, cz=0.0, feed=20.0))
+    assert {op.feed for op in controller.ops if isinstance(op, ArcOp)} == {3.0}
+
+
+# --- constant surface speed of a spindle whose steps count from its last S ----------------------------------
+
+
+def surface(n: int = 1, rpm: float = 600.0) -> Block:
+    """At radius 10, 200π mm/s: ten turns a second, of .1 mm."""
+    at = {"x0": 10.0, "x": 10.0, "z": -0.1, "feed": 0.1, "per_rev": True, "css": 200 * math.pi}
+    return block(Kind.FEED, n=n, rpm=rpm, modal=Modal(css_min=0.0), **at)
+
+
+@pytest.mark.parametrize(("reach", "feed"), [(2000.0, 1.0), (300.0, 0.5)])
+def test_nothing_moves_until_the_spindle_is_laid_out_for_its_surface_speed(reach: float, feed: float) -> None:
+    """Seen in four looks, of which the start is the first; then by the speed that the spindle comes to."""
+    controller = PlayedController(reach=0.0)
+    motion = motion_of(controller, surface())
+    motion.progress(nothing_read())
+    motion.progress(nothing_read())
+    assert controller.ops == []
+    motion.progress(nothing_read())
+    assert controller.ops == []  # looked at often enough, but not laid out
+    controller.reach = reach
+    motion.progress(nothing_read())
+    (op,) = controller.ops
+    assert isinstance(op, LineOp)
+    assert op.feed == pytest.approx(feed)
+
+
+def test_a_surface_speed_is_not_laid_out_before_what_went_before_rests() -> None:
+    controller = PlayedController(reach=2000.0)
+    motion = motion_of(controller, CUT, surface(2))
+    for _ in range(6):
+        motion.progress(nothing_read())
+    assert len(controller.ops) == 3
+    controller.finish()
+    for _ in range(4):
+        assert len(controller.ops) == 3
+        motion.progress(nothing_read())
+    assert len(controller.ops) == 4

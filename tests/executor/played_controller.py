@@ -1,0 +1,103 @@
+"""A controller with a planner of its own, played by hand: it moves nothing, tests say what it has done."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from dataclasses import dataclass, field
+
+from app.compose.machine_files import load_machine
+from app.compose.simulated_backend import simulated
+from core.executor.commanded_outputs import CommandedOutputs
+from core.executor.machine_context import MachineContext
+from core.executor.snapshot import Event
+from core.executor.spindle_control import SpindleControl
+from core.executor.station_signals import StationSignals
+from core.machine.machine_model import Machine
+from core.ports import BlockOp, BlockState
+from drivers.clocks import StepClock
+
+
+@dataclass
+class PlayedController:
+    """``ops`` are the blocks that it was given, ``asked`` what else was asked of it, in order."""
+
+    ahead: float = 100.0
+    reach: float = math.inf
+    room: int = 100  # blocks that it takes in all
+    fast: float = 50.0  # mm/s of its slides
+    caps: frozenset[str] = frozenset()
+    done: int = 0
+    resting: bool = True
+    held: bool = False
+    hindrance: str = ""
+    jogs: bool = True  # there is a way before the limits
+    ops: list[BlockOp] = field(default_factory=list)
+    asked: list[str] = field(default_factory=list)
+    jogged: list[tuple[str, float, float, tuple[float, float] | None]] = field(default_factory=list)
+    steps: list[tuple[str, float, float]] = field(default_factory=list)
+
+    def lay_out(self, highest: float) -> None:
+        """Not used here."""
+
+    def fastest(self, _dx: float, _dz: float) -> float:
+        return self.fast
+
+    def submit(self, op: BlockOp) -> int | None:
+        if len(self.ops) >= self.room:
+            return None
+        self.ops.append(op)
+        self.resting = False
+        return len(self.ops)
+
+    def finish(self) -> None:
+        """All that it has is moved to its end."""
+        self.done, self.resting = len(self.ops), True
+
+    def state(self) -> BlockState:
+        return BlockState(self.done, 0, self.resting, self.held, self.hindrance)
+
+    def hold(self) -> None:
+        self.asked.append("hold")
+
+    def resume(self) -> None:
+        self.asked.append("resume")
+
+    def abort(self) -> None:
+        self.asked.append("abort")
+
+    def override(self, feed: float, rapid: float) -> None:
+        """Not used here."""
+
+    def jog(self, axis: str, velocity: float, lease: float, limits: tuple[float, float] | None) -> bool:
+        self.jogged.append((axis, velocity, lease, limits))
+        return self.jogs
+
+    def jog_to(self, axis: str, target: float, speed: float) -> None:
+        self.steps.append((axis, target, speed))
+
+    def jog_stop(self) -> None:
+        self.asked.append("jog stop")
+
+
+def context_of(controller: PlayedController | None, machine: Machine | None = None) -> MachineContext:
+    """What the executor's parts look at, at time 0, with the slides of the simulated machine at home."""
+    model, clock, events = machine or load_machine(), StepClock(), list[Event]()
+    ports = dataclasses.replace(simulated(model, clock).ports, blocks=controller)
+    return MachineContext(
+        machine=model,
+        ports=ports,
+        on_event=events.append,
+        spindle=SpindleControl(ports.spindle, model.spindle),
+        now=clock.now(),
+        sample=ports.axes.sample(),
+        inputs=dict(ports.io.inputs()),
+        outputs=CommandedOutputs(ports.io, model.outputs),
+    )
+
+
+def turn_feed_pot(context: MachineContext, feed: float) -> None:
+    """The pot of the feed stands at this fraction."""
+    context.signals = StationSignals(
+        estop=False, start=False, hold=False, feed=feed, spindle=1.0, auto=True, trouble=""
+    )

@@ -1,0 +1,196 @@
+"""Jog by a controller's own jog: the same questions, one jog at a time, limits that the controller keeps."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import pytest
+
+from core.executor.jog_line import LIMIT_MARGIN, JogLine
+from core.executor.jogging import BlockJogger, Jogger, jogger_of
+from core.executor.machine_context import MachineContext
+from tests.executor.played_controller import PlayedController, context_of
+
+LEASE = 0.4
+
+
+def jogger_on(controller: PlayedController) -> tuple[BlockJogger, MachineContext]:
+    context = context_of(controller)
+    jogger = jogger_of(context)
+    assert isinstance(jogger, BlockJogger)
+    return jogger, context
+
+
+def test_who_jogs_follows_from_what_the_driver_has() -> None:
+    assert type(jogger_of(context_of(None))) is Jogger
+
+
+@pytest.mark.parametrize(
+    ("controller", "why"),
+    [
+        (PlayedController(hindrance="its modes are being verified"), "its modes are being verified"),
+        (PlayedController(resting=False), "the controller is still moving"),
+        (PlayedController(), ""),
+    ],
+)
+def test_a_controller_that_is_not_ready_does_not_jog(controller: PlayedController, why: str) -> None:
+    jogger, _ = jogger_on(controller)
+    assert jogger.refusal("X", 5.0, LEASE) == why
+    assert jogger.step_refusal("X", 0.1, 5.0) == why
+
+
+def test_it_jogs_along_its_own_axes_only() -> None:
+    jogger, _ = jogger_on(PlayedController())
+    why = "X: the controller jogs along its own axes only"
+    assert jogger.refusal("X", 5.0, LEASE, (1.0, 0.0, 0.0)) == why
+    assert jogger.step_refusal("X", 0.1, 5.0, (1.0, 0.0, 0.0)) == why
+
+
+def test_it_is_told_the_travel_less_a_margin_and_a_lease_of_a_second_at_most() -> None:
+    controller = PlayedController()
+    jogger, context = jogger_on(controller)
+    low, high = context.machine.axis("X").travel or (0.0, 0.0)
+    assert jogger.move("X", -5.0, 7.0)
+    assert controller.jogged == [("X", -5.0, 1.0, (low + LIMIT_MARGIN, high - LIMIT_MARGIN))]
+    assert jogger.axis == "X"
+
+
+def test_an_axis_that_is_not_homed_has_no_travel_and_goes_at_a_tenth() -> None:
+    controller = PlayedController()
+    jogger, context = jogger_on(controller)
+    context.sample = context.sample._replace(homed=(False, False, False))
+    tenth = 0.1 * min(context.machine.axis("X").vmax, context.machine.manual_rapid)
+    assert jogger.move("X", 500.0, LEASE)
+    assert controller.jogged == [("X", pytest.approx(tenth), LEASE, None)]
+
+
+def test_at_the_end_of_the_travel_nothing_is_jogged() -> None:
+    jogger, _ = jogger_on(PlayedController(jogs=False))
+    assert not jogger.move("X", 5.0, LEASE)
+    assert not jogger.toward("X", 1.0, 5.0, LEASE)
+    assert jogger.axis == ""
+
+
+@pytest.mark.parametrize(
+    ("target", "velocity", "limits"), [(2.0, 5.0, (0.0, 2.0)), (-3.0, -5.0, (-3.0, 0.0))]
+)
+def test_towards_a_place_it_goes_no_further(
+    target: float, velocity: float, limits: tuple[float, float]
+) -> None:
+    controller = PlayedController()
+    jogger, _ = jogger_on(controller)
+    assert jogger.toward("Z", target, 5.0, LEASE)
+    assert controller.jogged == [("Z", velocity, LEASE, limits)]
+
+
+def test_a_step_goes_from_where_the_axis_is_sent_to() -> None:
+    controller = PlayedController()
+    jogger, context = jogger_on(controller)
+    context.sample = context.sample._replace(demand=(1.0, 2.0, 0.0))
+    jogger.step("Z", -0.5, 5.0)
+    assert controller.steps == [("Z", 1.5, 5.0)]
+    assert jogger.step_refusal("Z", 0.1, 5.0) == "Z is still moving; wait for the end of its step"
+
+
+def test_what_does_not_jog_is_not_stopped() -> None:
+    controller = PlayedController()
+    jogger, _ = jogger_on(controller)
+    jogger.stop()
+    assert controller.asked == []
+
+
+def test_a_step_that_is_stopped_is_said_to_be_short() -> None:
+    controller = PlayedController()
+    jogger, context = jogger_on(controller)
+    said: list[str] = []
+    context.on_event = lambda event: said.append(event.text)
+    jogger.step("Z", -0.5, 5.0)
+    jogger.stop()
+    assert controller.asked == ["jog stop"]
+    controller.resting = False
+    assert not jogger.over()
+    controller.resting = True
+    assert jogger.over()
+    assert said == ["Z was stopped before the end of its step"]
+
+
+def let_go(controller: PlayedController) -> tuple[BlockJogger, MachineContext]:
+    """X was jogged and let go, and is pressed the other way while it still ends."""
+    jogger, context = jogger_on(controller)
+    jogger.move("X", 5.0, LEASE)
+    controller.resting = False
+    jogger.stop()
+    assert jogger.move("X", -5.0, LEASE)
+    assert len(controller.jogged) == 1
+    return jogger, context
+
+
+def test_a_key_pressed_again_waits_for_the_end_and_has_what_is_left_of_its_lease() -> None:
+    controller = PlayedController()
+    jogger, context = let_go(controller)
+    context.now += 0.3
+    controller.resting = True
+    assert not jogger.over()
+    assert controller.jogged[1][:2] == ("X", -5.0)
+    assert controller.jogged[1][2] == pytest.approx(0.1)
+
+
+@pytest.mark.parametrize("spoilt", ["lease", "hindrance", "let go"])
+def test_a_key_pressed_again_begins_nothing_once_it_does_not_hold(spoilt: str) -> None:
+    controller = PlayedController()
+    jogger, context = let_go(controller)
+    controller.resting = True
+    if spoilt == "lease":
+        context.now += LEASE
+    elif spoilt == "hindrance":
+        controller.hindrance = "it is reset"
+    else:
+        jogger.stop()
+    assert jogger.over()
+    assert len(controller.jogged) == 1
+
+
+# --- along an axis of a tilted plane, by setpoints ----------------------------------------------------------
+
+
+def test_a_lathe_has_no_tilted_plane() -> None:
+    jogger = Jogger(context_of(None))
+    assert jogger.refusal("X", 5.0, LEASE, (1.0, 0.0, 0.0)).startswith("a tilted plane needs X, Y and Z")
+
+
+def three_axes() -> MachineContext:
+    """The lathe with its last axis called Y, which is enough for a direction of three."""
+    context = context_of(None)
+    x, z, c = context.machine.axes
+    context.machine = dataclasses.replace(context.machine, axes=(x, z, dataclasses.replace(c, name="Y")))
+    return context
+
+
+@pytest.mark.parametrize("direction", [(0.6, 0.8, 0.1), (0.0, 0.0, 0.0), (float("nan"), 0.0, 1.0)])
+def test_a_direction_that_is_none_is_refused(direction: tuple[float, float, float]) -> None:
+    why = Jogger(three_axes()).refusal("X", 5.0, LEASE, direction)
+    assert why == "a tilted plane needs X, Y and Z, and a direction of length 1"
+
+
+def test_along_a_tilted_plane_every_axis_is_homed_first() -> None:
+    context = three_axes()
+    assert Jogger(context).refusal("X", 5.0, LEASE, (0.6, 0.8, 0.0)) == ""
+    context.sample = context.sample._replace(homed=(True, False, True))
+    why = Jogger(context).refusal("X", 5.0, LEASE, (0.6, 0.8, 0.0))
+    assert why == "along a tilted plane every axis has to be homed first"
+
+
+def test_a_line_of_three_goes_as_far_as_its_first_end_and_as_hard_as_its_weakest_axis() -> None:
+    """X Y Z in .6, 0 and .8: 8 mm of Z are 10 mm of the line; 800 mm/s² of Z are 1000 along it."""
+    x, z, y = three_axes().machine.axes
+    axes = (
+        dataclasses.replace(x, travel=(-100.0, 100.0), amax=3000.0),
+        dataclasses.replace(z, travel=(-100.0, 8.0 + LIMIT_MARGIN), amax=800.0),
+        dataclasses.replace(y, travel=(0.0, 0.0)),
+    )
+    line = JogLine.along(axes, (0.6, 1e-12, 0.8))
+    assert [(axis.name, share) for _, axis, share in line.moving()] == [("X", 0.6), ("Z", 0.8)]
+    assert line.room((0.0, 0.0, 0.0), 1.0) == pytest.approx(10.0)
+    assert line.amax == pytest.approx(1000.0)
+    assert not line.same(JogLine.of_axis(axes, 0))
+    assert not line.same(None)

@@ -1,0 +1,112 @@
+"""What a feeder has switched off while its control was silent: told, held, not counted; and outputs moved by
+somebody else.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from dataclasses import dataclass, field
+
+import pytest
+
+from core.executor.commands import CycleStart, ForceOutput
+from core.executor.executor import Executor
+from core.executor.snapshot import State
+from core.ports import Trip
+from tests.executor.rig import Rig
+from tests.executor.test_signal_lamps import with_lamps
+
+PART = "G90G94F300\nM03S1000\nM08\nG01F20Z-1\nM30\n"
+
+
+@dataclass
+class PlayedFeeder:
+    """Tells of one trip until it is acknowledged."""
+
+    trip: Trip | None = None
+    acknowledged: list[int] = field(default_factory=list)
+
+    def tripped(self) -> Trip | None:
+        return self.trip
+
+    def acknowledge(self, trip: Trip) -> None:
+        self.acknowledged.append(trip.number)
+        self.trip = None
+
+
+class FedRig(Rig):
+    """The executor behind a feeder."""
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        self.feeder = PlayedFeeder()
+        ports = dataclasses.replace(self.sim.ports, trips=self.feeder)
+        self.executor = Executor(self.machine, ports, self.events.append, self._passes)
+        self.executor.tick()
+
+    def trips(self, *outputs: str, spindle: bool = False, found: bool = False) -> None:
+        """It has heard nothing for a second and a half; the outputs are off at the machine."""
+        for name in outputs:
+            self.sim.ports.io.write(name, False)
+        self.feeder.trip = Trip(7, 1.5, spindle, outputs, found)
+        self.tick()
+        assert self.feeder.acknowledged == [7]
+
+
+def test_at_rest_it_is_told_and_nothing_is_held() -> None:
+    rig = FedRig()
+    rig.ready()
+    rig.post(ForceOutput("coolant", True))
+    rig.trips("coolant")
+    assert rig.said("disturbed") == ["CONTROL WAS SILENT FOR 1.5 S, SWITCHED OFF: COOLANT"]
+    assert rig.state is State.IDLE
+    assert rig.shot.alarms == ()
+
+
+def test_lamps_alone_are_not_worth_a_word() -> None:
+    rig = FedRig(with_lamps())
+    rig.ready()
+    rig.trips("lamp_green")
+    assert rig.said("disturbed") == []
+
+
+@pytest.mark.parametrize(
+    ("found", "words"),
+    [
+        (False, "CONTROL WAS SILENT FOR 1.5 S, SWITCHED OFF: SPINDLE, COOLANT"),
+        (True, "THE MACHINE WAS NOT HEARD FOR 1.5 S, FOUND ON, SWITCHED OFF: SPINDLE, COOLANT"),
+    ],
+)
+def test_a_cut_is_held_and_its_part_does_not_count(found: bool, words: str) -> None:
+    rig = FedRig()
+    rig.start(PART)
+    rig.until_true(lambda shot: shot.actual[1] < -1.0)
+    rig.trips("coolant", spindle=True, found=found)
+    assert rig.said("disturbed") == [words]
+    rig.until(State.HOLD)
+    z = rig.shot.demand[1]
+    rig.run(1.0)
+    outputs: set[str] = set()
+    rig.watch.append(lambda shot: outputs.update(shot.outputs))
+    assert rig.shot.demand[1] == z > -25.4  # of an inch: it has not gone on
+    assert rig.shot.rpm_command == 0.0
+    assert "coolant" not in rig.shot.outputs
+    while rig.state is not State.IDLE:
+        rig.post(CycleStart())  # announced first, then done
+        rig.run(0.9)
+    assert "coolant" in outputs
+    assert len(rig.said("uncounted")) == 1
+    assert rig.said("part") == []
+
+
+@pytest.mark.parametrize("on", [True, False])
+def test_at_rest_an_output_that_somebody_else_moves_is_told_once_and_then_counts(on: bool) -> None:
+    rig = Rig()
+    rig.ready()
+    if not on:
+        rig.post(ForceOutput("coolant", True))
+        rig.run(0.6)
+    rig.sim.ports.io.write("coolant", on)
+    rig.run(1.0)
+    words = "COOLANT HAS COME ON" if on else "COOLANT HAS GONE OFF"
+    assert rig.said("disturbed") == [f"{words} BY ITSELF"]

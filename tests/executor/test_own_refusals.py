@@ -1,0 +1,214 @@
+"""Refusals and answers of the executor's single parts, asked by themselves."""
+
+from __future__ import annotations
+
+import dataclasses
+import logging
+import math
+
+import pytest
+
+from app.compose.machine_files import load_machine
+from core.executor.attempt import ReportedAttempt
+from core.executor.changed_offsets import ChangedOffsets
+from core.executor.drive_test import DriveTester
+from core.executor.drive_test_path import DriveTestPath, Shape
+from core.executor.job import Job, Proof, make_job, outdated
+from core.executor.jogging import Jogger
+from core.executor.path_section import PathSection
+from core.executor.raised_alarm import AlarmError
+from core.executor.read_ahead import check_block
+from core.executor.snapshot import State
+from core.executor.spindle_control import SpindleAngle, SpindleControl, SpindleDemand
+from core.executor.start_conditions import hindrance, lacking
+from core.executor.station_signals import StationSignals
+from core.interpreter.elementary_blocks import Kind
+from core.interpreter.job_setup import Setup
+from core.interpreter.machine_requirements import ARC, THREAD, Need
+from core.interpreter.modal_state import Modal
+from core.language.source import Source
+from core.motion.axis_limits import MotionLimits
+from tests.executor.made import Maker
+from tests.executor.played_controller import PlayedController, context_of
+
+# --- before a start -----------------------------------------------------------------------------------------
+
+
+def test_a_controller_that_may_not_begin_says_why() -> None:
+    context = context_of(PlayedController(hindrance="its modes are being verified"))
+    assert hindrance(context, State.IDLE) == "its modes are being verified"
+
+
+def test_what_a_controller_cannot_do_is_named_with_its_line() -> None:
+    context = context_of(PlayedController(caps=frozenset({ARC})))
+    proof = Proof("", (), needs=(Need(ARC, 3), Need(THREAD, 5)))
+    assert lacking(context, proof).startswith("line 5: this controller cannot do ")
+
+
+def test_what_the_machine_has_not_is_named_with_its_line() -> None:
+    context = context_of(None)
+    context.machine = dataclasses.replace(context.machine, absent=frozenset({"catcher"}))
+    proof = Proof("", (), needs=(Need("output catcher", 4),))
+    assert lacking(context, proof).startswith("line 4: this machine has no ")
+
+
+def job_of(text: str, **changes: object) -> Job:
+    return make_job(Source("PART", text), Setup(**changes))  # type: ignore[arg-type]
+
+
+def test_a_job_that_was_proved_with_another_unit_or_rapid_rate_is_outdated() -> None:
+    job = job_of("G90G94\nX1\nM30\n", last_rapid=50.0)
+    left = Modal(rapid_rate=50.0)
+    assert outdated(job, left) == ""
+    assert outdated(job, Modal(rapid_rate=50.0, metric=True)) == "the control counts in mm now"
+    assert outdated(job, Modal(rapid_rate=60.0)) == "the rapid rate is another one now"
+
+
+def test_nothing_asked_for_bars_no_next_part() -> None:
+    assert ChangedOffsets(context_of(None)).refusal(Modal()) == ""
+
+
+@pytest.mark.parametrize(
+    ("held", "guard", "why"),
+    [(True, False, "feed hold is pressed"), (False, True, "the guard is open"), (False, False, "")],
+)
+def test_no_drive_test_under_feed_hold_or_with_the_guard_open(held: bool, guard: bool, why: str) -> None:
+    context = context_of(None)
+    context.signals = StationSignals(
+        estop=False, start=False, hold=held, feed=1.0, spindle=1.0, auto=True, trouble=""
+    )
+    context.spindle.guard_open = guard
+    path = DriveTestPath("X", Shape.STEP, 1.0)
+    context.sample = context.sample._replace(demand=(50.0, -50.0, 0.0))
+    assert DriveTester(context, Jogger(context)).refusal(path, 0.5) == why
+
+
+# --- inputs by name and terminal ----------------------------------------------------------------------------
+
+
+def test_an_input_goes_by_its_name_and_by_its_terminal_and_no_other_is_on() -> None:
+    context = context_of(None)
+    name, model = next((name, each) for name, each in context.machine.inputs.items() if each.terminal)
+    context.inputs = {name: True}
+    assert context.terminal(name)
+    assert context.terminal(model.terminal)
+    assert not context.terminal("TB99-9")
+    context.inputs = {}
+    assert not context.terminal(model.terminal)
+
+
+# --- a block checked once more before it moves --------------------------------------------------------------
+
+
+def test_a_feed_by_the_turn_of_a_spindle_that_stands_is_refused() -> None:
+    (block,) = Maker().thread(0.0, -1.0, 0.5).blocks
+    with pytest.raises(AlarmError, match="feeds by the revolution") as told:
+        check_block(block, load_machine())
+    assert told.value.code == "spindle-still"
+
+
+def test_c_does_not_move_while_it_turns_as_the_spindle() -> None:
+    machine = dataclasses.replace(load_machine(), c_own_drive=False)
+    (block,) = Maker().feed(0.0, -1.0, 0.5).blocks
+    block = dataclasses.replace(block, c=90.0, modal=Modal(spindle=1), kind=Kind.ROTATE)
+    with pytest.raises(AlarmError, match="moves C while the spindle turns") as told:
+        check_block(block, machine)
+    assert told.value.code == "c-is-spindle"
+
+
+def test_a_section_forgets_no_block_that_it_does_not_hold() -> None:
+    section = PathSection(MotionLimits(), 3500.0)
+    section.add(Maker().feed(0.0, -1.0, 5.0).feed(0.0, -2.0, 5.0).blocks)
+    for n in (None, 7):
+        section.drop_before(n)
+        assert [block.n for block in section.behind(0)] == [1, 2]
+
+
+# --- the spindle --------------------------------------------------------------------------------------------
+
+
+class PlayedLock:
+    """The spindle's drive as C, half changed over as long as ``ready`` is not set."""
+
+    def __init__(self) -> None:
+        self.asked: list[tuple[bool, bool]] = []
+        self.ready = False
+
+    def hold(self, on: bool, orient: bool = False) -> None:
+        self.asked.append((on, orient))
+
+    def held(self) -> bool:
+        return self.ready
+
+
+def locked() -> tuple[SpindleControl, PlayedLock]:
+    context, lock = context_of(None), PlayedLock()
+    return SpindleControl(context.ports.spindle, context.machine.spindle, lock), lock
+
+
+def test_a_spindle_becomes_c_once_and_a_stop_lets_it_go() -> None:
+    spindle, lock = locked()
+    assert not spindle.hold(orient=True)
+    assert lock.asked == [(True, True)]
+    lock.ready = True
+    assert spindle.hold(orient=True)
+    assert spindle.held
+    assert lock.asked == [(True, True)]
+    spindle.break_off()
+    assert lock.asked == [(True, True)]  # what is C already stays it
+    spindle.stop()
+    assert lock.asked[1:] == [(False, False)]
+
+
+def test_a_hold_ends_a_change_over_that_is_under_way() -> None:
+    spindle, lock = locked()
+    spindle.hold(orient=False)
+    spindle.break_off()
+    assert lock.asked == [(True, False), (False, False)]
+
+
+def test_why_a_spindle_is_not_started_is_told_in_the_order_of_what_hurts() -> None:
+    spindle, _ = locked()
+    assert (spindle.start_barred, spindle.why_slow) == ("", "SPINDLE STOPPED")
+    spindle.ask(SpindleDemand(600.0))
+    assert spindle.why_slow == ""
+    spindle.override = 0.0
+    assert spindle.why_slow == "SPINDLE OVERRIDE AT 0"
+    spindle.auto = False
+    assert spindle.why_slow == "SPINDLE SWITCH OFF"
+    spindle.guard_open = True
+    assert spindle.why_slow == "GUARD OPEN"
+    spindle.dropped("THE FEEDER HAS SWITCHED OFF")
+    assert spindle.would_turn == 0.0  # at an override of 0
+    spindle.permit()
+    assert spindle.waits  # barred: nothing is permitted
+
+
+def test_an_encoder_that_counts_nothing_or_stands_carries_no_thread() -> None:
+    angle = SpindleAngle()
+    with pytest.raises(AlarmError, match="counts nothing"):
+        angle.turning_at(1.0)
+    assert math.isnan(angle.turns)
+    for k in range(10):
+        angle.note((0.01 * k, 2.5))
+    with pytest.raises(AlarmError, match="does not turn"):
+        angle.turning_at(0.1)
+    angle.note((0.09, 9.0))  # not later than the last one
+    assert angle.turns == 2.5
+    angle.note(None)
+    assert not angle.known
+
+
+# --- what must not stop the rest ----------------------------------------------------------------------------
+
+
+def test_who_fails_and_fails_to_say_so_is_in_the_log_twice(caplog: pytest.LogCaptureFixture) -> None:
+    def tell(_error: BaseException) -> None:
+        raise OSError("the log is gone")
+
+    with caplog.at_level(logging.ERROR), ReportedAttempt(tell):
+        raise ValueError("a failure that no other test has")
+    assert [record.getMessage() for record in caplog.records] == [
+        "the control has failed, 1",
+        "and could not say so",
+    ]

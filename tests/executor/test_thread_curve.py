@@ -1,0 +1,153 @@
+"""Chains of threads as a curve over the turns of the spindle, and the way of both slides along it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+import pytest
+
+from core.executor.raised_alarm import AlarmError
+from core.executor.spindle_control import SpindleDemand
+from core.executor.thread_curve import curve_of
+from core.executor.thread_path import ThreadPath, ThreadRetract
+from core.interpreter.elementary_blocks import Block, Kind
+from core.interpreter.modal_state import Modal
+from core.motion.axis_limits import MotionLimits
+from core.ports import Segments
+from tests.executor.played_controller import context_of
+
+A = 3048.0
+LIMITS = MotionLimits(vmax=(127.0, 127.0, 1200.0), amax=(A, A, 12000.0))
+
+
+def thread(n: int, z0: float, z: float, lead: float, **words: object) -> Block:
+    """At one turn a second; machine and program coordinates are the same."""
+    values: dict[str, object] = {
+        **{"x0": 5.0, "x": 5.0, "c0": 0.0, "c": 0.0, "offset_x": 0.0, "offset_z": 0.0, "line": n, "text": ""},
+        **{
+            "modal": Modal(metric=True),
+            "kind": Kind.THREAD,
+            "per_rev": True,
+            "rpm": 60.0,
+            "continues": n > 1,
+        },
+    }
+    return Block(**{**values, "n": n, "z0": z0, "z": z, "feed": lead, **words})  # type: ignore[arg-type]
+
+
+def place(way: Segments, t: float) -> tuple[float, float]:
+    """X and Z at a time."""
+    i = max(int(np.searchsorted(way.t, t, side="right")) - 1, 0)
+    u = min(t - float(way.t[i]), float(way.dt[i]))
+    x, z, _ = way.p[i] + (way.v[i] + 0.5 * way.a[i] * u) * u
+    return float(x), float(z)
+
+
+# Four turns of lead 1, then two of lead 2: six turns, 8 mm.
+CHAIN = [thread(1, 0.0, -4.0, 1.0), thread(2, -4.0, -8.0, 2.0)]
+OUT = thread(3, -8.0, -8.0, 40.0, kind=Kind.RAPID, x=9.0, per_rev=False, continues=False)
+
+
+def test_behind_a_joint_z_goes_as_the_next_lead_says() -> None:
+    curve = curve_of(CHAIN, LIMITS)
+    assert curve.length == pytest.approx(6.0)
+    for s, z, lead in ((2.0, -2.0, -1.0), (5.0, -6.0, -2.0)):
+        assert curve.at(s) == pytest.approx((5.0, z, 0.0, lead))
+        assert curve.place(z) == pytest.approx(s)
+    assert curve.acceleration(A, A) == pytest.approx(A / 2)  # Z goes twice as fast as s
+
+
+def test_a_joint_is_rounded_off_as_far_as_half_of_the_acceleration_takes() -> None:
+    """From 1 to 2 mm/s at A/2 takes 2/A s, so 1/A mm of s on each side; in its middle Z is 1/4A behind."""
+    curve = curve_of(CHAIN, LIMITS)
+    assert curve.s[1] == pytest.approx(4.0 - 1.0 / A)
+    assert curve.s[-2] == pytest.approx(4.0 + 1.0 / A)
+    assert curve.at(4.0)[1] == pytest.approx(-4.0 - 0.25 / A, abs=1e-9)
+
+
+def test_a_joint_that_changes_nothing_stays_as_it_is() -> None:
+    same = [thread(1, 0.0, -4.0, 1.0), thread(2, -4.0, -6.0, 1.0)]
+    assert curve_of(same, LIMITS).s.tolist() == [0.0, 4.0, 6.0]
+
+
+def test_a_lead_that_grows_is_followed_turn_by_turn() -> None:
+    """From 1 mm on .5 mm more a turn: (1 + q/4)·q, 1.25 mm in a turn and 3 mm in two; 1.5 on average."""
+    curve = curve_of([thread(1, 0.0, -3.0, 1.5, growth=0.5)], LIMITS)
+    assert len(curve.s) == 33  # sixteen a turn
+    assert curve.length == pytest.approx(2.0)
+    assert curve.at(1.0)[1] == pytest.approx(-1.25)
+    assert curve.at(2.0)[1] == pytest.approx(-3.0)
+
+
+@pytest.mark.parametrize("block", [thread(1, -4.0, -4.0, 1.0), thread(1, 0.0, -4.0, 0.0)])
+def test_a_thread_without_way_or_lead_is_refused(block: Block) -> None:
+    with pytest.raises(AlarmError, match="no length or no lead"):
+        ThreadPath.of([block], LIMITS)
+
+
+def test_the_slides_follow_a_chain_and_leave_it_by_its_rapid() -> None:
+    """At 1 mm/s of s: Z −2 after two seconds, −6 after five, at rest at −8; then X goes out to 9."""
+    path = ThreadPath.of([*CHAIN, OUT], LIMITS)
+    assert (path.lead, path.along, path.out, path.beyond) == (1.0, -1.0, 9.0, 0.0)
+    way, left = path.onwards(0.0, 0.0, 1.0, [])
+    assert place(way, 2.0) == pytest.approx((5.0, -2.0))
+    assert place(way, 5.0) == pytest.approx((5.0, -6.0))
+    assert left == pytest.approx(6.0, abs=0.001)
+    assert place(way, 99.0) == pytest.approx((9.0, -8.0))
+    assert path.place(-6.0, -2.0) == pytest.approx((5.0, 1.0))
+    back = path.drawn_back()
+    assert back is not None
+    assert place(back, 0.0) == pytest.approx((5.0, -8.0))
+    assert place(back, 99.0) == pytest.approx((9.0, -8.0))
+
+
+def test_a_pull_out_in_step_goes_on_by_its_own_way() -> None:
+    """1 mm of Z at a lead of 2 is half a turn of the first lead."""
+    out = thread(3, -8.0, -9.0, 2.0, x=6.0, continues=False)
+    path = ThreadPath.of([*CHAIN, out], LIMITS)
+    assert path.beyond == pytest.approx(0.5)
+    assert path.drawn_back() is None
+    way, left = path.onwards(0.0, 0.0, 1.0, [])
+    assert place(way, left) == pytest.approx((5.0, -8.0))
+    assert place(way, 99.0) == pytest.approx((6.0, -9.0))
+
+
+def test_a_chain_is_stopped_along_itself() -> None:
+    """At s 5 with 1 mm/s; s brakes with A/2: 1/A mm further, of which Z makes two."""
+    path = ThreadPath.of([*CHAIN, OUT], LIMITS)
+    assert place(path.stopping(0.0, 5.0, 1.0), 99.0) == pytest.approx((5.0, -6.0 - 2.0 / A), abs=1e-9)
+
+
+def retract(measured: float, behind: Sequence[Block], **words: object) -> ThreadRetract:
+    """S600 is asked, so much is measured."""
+    spindle = context_of(None).spindle
+    spindle.ask(SpindleDemand(600.0))
+    spindle.command, spindle.measured = 600.0, measured
+    return ThreadRetract.of(thread(1, 0.0, -4.0, 1.0, **words), behind, spindle)
+
+
+@pytest.mark.parametrize(
+    ("measured", "why"),
+    [
+        (-300.0, "the spindle turned the wrong way, at 300 rpm"),
+        (20.0, "the spindle fell to 20 of 600 rpm"),
+    ],
+)
+def test_why_a_thread_was_left_is_told(measured: float, why: str) -> None:
+    lost = retract(measured, [OUT])
+    lost.demand_left((8.0, -2.0, 0.0))  # not out yet
+    with pytest.raises(AlarmError, match=f"{why}: the tool left the thread at Z-2.000"):
+        lost.demand_left((9.0, -2.0, 0.0))
+
+
+def test_a_thread_left_in_its_pull_out_is_told_so_and_inches_are_inches() -> None:
+    with pytest.raises(AlarmError, match="in the pull-out: the thread is cut"):
+        retract(20.0, []).demand_left((5.0, -4.0, 0.0))
+    inch = retract(20.0, [OUT], modal=Modal(metric=False))
+    with pytest.raises(AlarmError, match=r"at Z-0\.1000, behind it"):
+        inch.demand_left((9.0, -2.54, 0.0))
+    way = inch.way_out((5.0, -2.54, 0.0))
+    assert (way.x0, way.z0, way.x, way.z) == (5.0, -2.54, 9.0, -2.54)
+    assert not math.isclose(way.feed, 0.0)
