@@ -10,7 +10,9 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 from app.cli.store_command import opened_store
+from app.cli.who_changes import COMMAND_LINE, add_as_option, who_changes
 from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError
+from core.access.access_table import Act
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
@@ -31,6 +33,8 @@ def add_parser(subparsers: SubParsers) -> None:
     keep = actions.add_parser("keep", help="what is here stands against what was changed elsewhere")
     for action in (compare, take, keep):
         action.add_argument("name", metavar="PROGRAM")
+    for action in (take, keep):
+        add_as_option(action)
     for action in (compare, take):
         action.add_argument("--id", metavar="ID", help="its first letters, as 'status' shows them")
     for action in (begin, status, publish, compare, take, keep):
@@ -50,7 +54,11 @@ def run(args: argparse.Namespace) -> int:
             raise CommandError(
                 "the machine file has no [sharing]; name a folder, a git remote or a database there"
             )
-        return _ACTIONS[args.action](sharing, args)
+        who = who_changes(store, args, Act.PROGRAMS) if args.action in _CHANGING else COMMAND_LINE
+        status = _ACTIONS[args.action](sharing, args)
+        if who != COMMAND_LINE:
+            store.log_event("change", f"program {args.name}: share {args.action}", who=who).result()
+        return status
 
 
 @contextmanager
@@ -146,6 +154,7 @@ _ACTIONS = {
     "take": _take,
     "keep": _keep,
 }
+_CHANGING = frozenset({"take", "keep"})  # which program is the one here
 _READING = frozenset({"begin", "status", "compare"})  # beside a desk that runs
 
 

@@ -83,7 +83,8 @@ class Heard:
         if fresh:
             self._told |= fresh
             who = next(each.desk for each in family.elsewhere if each.id in fresh)
-            self.desk.say(tr("{name} WAS CHANGED ON {desk}: F1, X SHOWS WHAT").format(name=name, desk=who))
+            text = tr("{name} WAS CHANGED ON {desk}: F1, X SHOWS WHAT").format(name=name, desk=who)
+            self.desk.hear(Event(self.desk.snapshot().t, "shared", text))  # said with the next frame
 
 
 def place_of(table: SharingTable, folder: Path) -> SharedPlace:

@@ -249,7 +249,7 @@ class PromptAnswers:
             event = self._heard.popleft()
             if event.kind == "refused" and event.text != snapshot.start_refused:
                 self.say(f"REFUSED: {event.text}")
-            elif event.kind == "disturbed":
+            elif event.kind in {"disturbed", "shared"}:
                 self.say(event.text)
             elif event.kind == "uncounted":
                 self.say(f"NOT COUNTED AS A PART: {event.text}")

@@ -147,6 +147,8 @@ class CopyRenameDelete:
         here, name, question = self.marked_program(), self.entry.text, self.question
         if here is None:
             self.question = ""
+        elif self.desk.refused(Act.PROGRAMS):
+            return  # what is typed stays until somebody has signed in
         elif question == COPY:
             self._change(lambda: copy_program(here.path, self.own, name), "{name} IS THERE NOW")
         else:

@@ -277,6 +277,8 @@ class ImportExport:
         if self.worker.busy:
             self.desk.say(BUSY)
             return
+        if not self.out and self.desk.refused(Act.PROGRAMS):
+            return  # the level with which the chooser was opened may have ended
         self._asked = paths
         self._at = at
         self._done_of = (0, len(paths))

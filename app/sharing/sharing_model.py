@@ -16,6 +16,7 @@ from app.desk.sheet import STEPS, Key, Row, Sheet
 from app.desk.translation import tr
 from app.editor.versions import NoArchive, VersionHistory, lines_of
 from app.sharing.sharing import Shared, Sharing
+from core.access.access_table import Act
 from core.store.shared_versions import Family, SharedVersion, key_of
 from core.store.store_rows import VersionRow
 
@@ -204,6 +205,8 @@ class SharingModel:
         version, here = self.version, self.program
         if version is None or here is None:
             self.desk.say(MARK_ONE if here is None else "NO OTHER DESK HAS A NEWER VERSION")
+        elif self.desk.refused(Act.PROGRAMS):
+            return
         elif why := self._in_use(version.key):
             self.desk.say(why)
         elif here[1].here:
@@ -221,13 +224,16 @@ class SharingModel:
             return
         sharing = self.sharing
         done = tr("{name} IS AS {desk} HAS IT NOW").format(name=version.program, desk=version.desk)
-        self._work(lambda: sharing.take(version), done)
+        change = f"program {version.program} taken as {version.desk} has it"
+        self._work(lambda: sharing.take(version), done, change)
 
     def keep(self) -> None:
         """What is here stands against what was changed elsewhere, after asking."""
         here = self.program
         if here is None or self.shared.states.get(here[0]) != "both":
             self.desk.say("THERE IS NOTHING TO SETTLE: NO OTHER DESK HAS CHANGED IT TOO")
+            return
+        if self.desk.refused(Act.PROGRAMS):
             return
         key, name = here[0], here[1].versions[here[1].here].program
         words = tr("PRESS Y TO KEEP {name} AS IT IS HERE (THE OTHERS STAY VERSIONS), ESC TO LEAVE IT")
@@ -236,15 +242,17 @@ class SharingModel:
     def _keep(self, key: str, name: str) -> None:
         if self.sharing is not None:
             sharing = self.sharing
-            self._work(lambda: sharing.keep(key), tr("{name} STANDS AS IT IS HERE").format(name=name))
+            said = tr("{name} STANDS AS IT IS HERE").format(name=name)
+            self._work(lambda: sharing.keep(key), said, f"program {name} kept as it is here")
 
-    def _work(self, work: Callable[[], object], words: str) -> None:
+    def _work(self, work: Callable[[], object], words: str, change: str) -> None:
         if self.worker.busy:
             self.desk.say(BUSY)
             return
 
         def done(_answer: object) -> None:
             self.desk.done(words)
+            self.desk.access.persistence.note_change(change)
             self.look_now()
 
         self.worker.queue(work, done, self.desk.refuse)

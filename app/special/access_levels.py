@@ -223,6 +223,8 @@ class AccessLevels(SpecialFunction):
             self.draft = None
             raise PinError("those were two different PINs; nothing was kept, enter it anew")
         self.escape()
+        if draft.name != self.access.name and self.desk.refused(Act.PEOPLE):
+            return  # who began it was away too long, or has signed out
         row = PersonRow(draft.name, draft.level, b"", b"")
         said = tr("{name}: {level}, AND THE PIN IS KEPT").format(
             name=data(draft.name), level=tr(draft.level.name)

@@ -261,6 +261,8 @@ class SerialTransfer(SpecialFunction):
 
     def _store(self) -> None:
         assert self.received is not None
+        if self.desk.refused(Act.PROGRAMS):
+            return  # what has come stays until somebody has signed in
         try:
             path = store_new(self.received, self.own, self.entry.text)
         except FileError as error:

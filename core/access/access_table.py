@@ -80,7 +80,11 @@ RULES: dict[Act, Rule] = {
         Level.SETUP, "presets of a mill, and which is in force", "F9, F5 of a mill", "offsets set"
     ),
     Act.PROGRAMS: Rule(
-        Level.SETUP, "saving, copying, renaming, deleting, importing and receiving a program", "F3, F6, F10"
+        Level.SETUP,
+        "saving, copying, renaming, deleting, importing and receiving a program; taking one of another desk, "
+        "or settling that what is here stands",
+        "F3, F6, F10, X",
+        "share take, share keep",
     ),
     Act.STOCK: Rule(Level.SETUP, "stock, stick-out and silenced checks of a program", "B"),
     Act.LIVES: Rule(Level.SETUP, "limits of tool lives, and whether parts stop at them", "W"),

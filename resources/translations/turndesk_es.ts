@@ -12640,6 +12640,16 @@
     </message>
     <message>
       <location filename="app/sharing/sharing_model.py" />
+      <source>program %1 kept as it is here</source>
+      <translation>programa %1 conservado como está aquí</translation>
+    </message>
+    <message>
+      <location filename="app/sharing/sharing_model.py" />
+      <source>program %1 taken as %2 has it</source>
+      <translation>programa %1 tomado como lo tiene %2</translation>
+    </message>
+    <message>
+      <location filename="app/sharing/sharing_model.py" />
       <source>{count} WAIT</source>
       <translation>{count} EN ESPERA</translation>
     </message>

@@ -134,6 +134,17 @@ def test_jobs_are_the_operators_and_have_the_name(say: Say, people: None, home: 
         ]
 
 
+def test_a_shared_program_is_taken_from_setup_on(say: Say, people: None, home: Path, tmp_path: Path) -> None:
+    file, shop = tmp_path / "lathe.toml", tmp_path / "shop"
+    shop.mkdir()
+    file.write_text(resources.machine_file("gt75.toml") + f'\n[sharing]\nfolder = "{shop}"\n')
+    assert say("share", "begin", "--machine", file)[0] == 0
+    status, told = say("share", "take", "peg.nc", "--machine", file)
+    assert (status, "PROGRAMS may be changed from SETUP level on" in told) == (2, True)
+    status, told = say("share", "take", "peg.nc", "--as", "ben", "--machine", file, typed="2580")
+    assert (status, "no desk shares a program peg.nc" in told) == (2, True)
+
+
 def test_stock_is_kept_from_setup_on(say: Say, people: None, tmp_path: Path) -> None:
     (tmp_path / "part.nc").write_text("G90G94F200\nT1\nX.5Z0\nM30\n")
     words = ("prove", tmp_path / "part.nc", "--stock", "bar:1.0", "--keep-stock")

@@ -21,6 +21,8 @@ from app.desk.desk import Desk
 from app.editor.editor import Editor
 from app.programs.program_list import ProgramList
 from app.quality.parts_watch import PartsWatch
+from app.sharing.sharing import Sharing
+from app.sharing.sharing_model import SharingModel
 from app.special.access_levels import AccessLevels
 from app.special.logged_events import FILTERS
 from app.special.machine_file_acceptance import MachineFileAcceptance
@@ -31,6 +33,7 @@ from core.access.access_table import RULES, Act, Level
 from core.access.pins import PinError, WrongPins, check_pin, hashed, is_pin, wait_after
 from core.executor.executor import Executor
 from core.executor.snapshot import State
+from core.sharing.shared_folder import SharedFolder
 from core.store import database
 from core.store.people import PersonRow
 from core.store.store import Store
@@ -215,6 +218,63 @@ def test_what_stops_the_machine_is_behind_no_level(room: Room) -> None:
     room.run()
     assert desk.snapshot().state is State.DISABLED
     assert "LEVEL" not in desk.notice
+
+
+def shared(room: Room, tmp_path: Path) -> SharingModel:
+    """Another desk has published PEG, which this one does not have; it is marked."""
+    (tmp_path / "shop").mkdir()
+    (tmp_path / "other" / "programs").mkdir(parents=True)
+    (tmp_path / "other" / "programs" / "peg.nc").write_text("M30\n")
+    place = SharedFolder(tmp_path / "shop")
+    place.begin()
+    with Store.open(tmp_path / "other") as store:
+        Sharing(place, "LATHE 2", "2" * 32, tmp_path / "other" / "programs", lambda: store).look()
+    own = tmp_path / "home" / "programs"
+    sharing = Sharing(place, "LATHE 1", "1" * 32, own, room.journal.opened)
+    sharing.look()
+    model = SharingModel(room.desk, sharing)
+    for _ in range(3):
+        model.look()
+        model.worker.settle(LIMIT)
+    assert model.version is not None
+    return model
+
+
+def test_taking_a_shared_program_is_no_operators_work(room: Room, tmp_path: Path) -> None:
+    room.enter_people()
+    model, peg = shared(room, tmp_path), tmp_path / "home" / "programs" / "peg.nc"
+    model.take()
+    model.worker.settle(LIMIT)
+    assert "PROGRAMS: SETUP LEVEL" in room.desk.notice
+    assert not peg.exists()
+    room.sign_in("BEN")
+    model.take()
+    model.worker.settle(LIMIT)
+    assert peg.read_text() == "M30\n"
+    assert room.log("change")[-1] == ("program peg.nc taken as LATHE 2 has it", "BEN")
+    model.close()
+
+
+def test_who_has_gone_away_finishes_nothing_by_other_hands(room: Room) -> None:
+    """What was begun in a level is not ended by whoever finds it open when that level has fallen back."""
+    room.enter_people()
+    room.sign_in("ANNA")
+    levels, programs = room.find(AccessLevels), room.desk.attached(ProgramList)
+    assert programs is not None
+    levels.keys()["F3"].action()
+    typed(levels, "eve", "3", "1357")
+    programs.transfer.begin((), None, out=False)
+    room.at += 600.0
+    room.run(1)
+    typed(levels, "1357")
+    assert "PEOPLE AND THEIR PINS: SERVICE LEVEL" in room.desk.notice
+    room.desk.clear()
+    programs.transfer.worker.settle(LIMIT)
+    programs.transfer._carry((HOUSE / "setup.cfg",), HOUSE, replace=True)
+    assert "PROGRAMS: SETUP LEVEL" in room.desk.notice
+    assert not programs.transfer.worker.busy
+    room.settle()
+    assert room.access.people.named("EVE") is None
 
 
 # --- who did it ------------------------------------------------------------------------------------------
