@@ -168,10 +168,16 @@ def _name(survivor: Result) -> str:
 
 
 def _branches(result: Result, _folder: Path) -> Iterator[str]:
-    rows: list[list[object]] = [
-        [room, each["branches"], each["taken"], f"{each['per cent']} %"]
-        for room, each in sorted(result["rooms"].items())
-    ]
+    rows: list[list[object]] = []
+    for room, each in sorted(result["rooms"].items()):
+        rows.append([room, each["branches"], each["taken"], f"{each['per cent']} %"])
+        folders = each.get("folders", {})
+        if len(folders) > 1:
+            rows += [
+                [f"— {name}", count, taken, f"{100.0 * taken / count:.1f} %"]
+                for name, (count, taken) in folders.items()
+                if count
+            ]
     yield f"`bench_branches`: taken by the tests of the room alone; wanted are {WANTED:.0f} %.\n"
     yield _table(["room", "branches", "taken", "share"], rows)
 

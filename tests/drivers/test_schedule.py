@@ -6,11 +6,14 @@ import dataclasses
 
 import pytest
 
+from app.compose.machine_files import load_machine, parse_machine
 from core.ports import DriverError
+from core.table_schema import MachineFileError
 from drivers.clocks import StepClock
+from drivers.lookalikes.plant import Plant
 from drivers.lookalikes.plant_config import PlannedFault
-from drivers.simulated.simulated_machine import Simulation, build_simulation
-from drivers.simulated.simulated_table import FAULTS
+from drivers.simulated.simulated_machine import SimAxes, Simulation, build_simulation
+from drivers.simulated.simulated_table import FAULTS, SimulatedTable
 from tests.drivers.machines import CONFIG, play, ramp, simulation
 
 
@@ -54,3 +57,69 @@ def test_an_unknown_fault_is_refused() -> None:
     config = dataclasses.replace(CONFIG, faults=(PlannedFault(1.0, "rust"),))
     with pytest.raises(DriverError, match="cannot break 'rust'"):
         build_simulation(config, StepClock())
+
+
+# --- their table in the machine file ------------------------------------------------------------------------
+
+
+def table_with(lines: str) -> SimulatedTable:
+    """[sim] of the shipped lathe with these lines. Raises MachineFileError."""
+    text = load_machine().text.replace("[sim]\n", f"[sim]\n{lines}\n", 1)
+    table = parse_machine(text, "lathe.toml").hardware.table(SimulatedTable)
+    assert table is not None
+    return table
+
+
+def test_every_fault_and_tip_of_a_list_is_read_in_its_order() -> None:
+    table = table_with(
+        'faults = [{ at = 12, what = "jam", axis = "Z" }, { at = 1, what = "estop" }]\n'
+        "tips = [{ x = 1.0, z = 2.0 }, { x = -1.0, z = 0.0 }]"
+    )
+    assert table.faults == (PlannedFault(12.0, "jam", "Z"), PlannedFault(1.0, "estop"))
+    assert table.tips == ((25.4, 50.8), (-25.4, 0.0))  # the lathe's file counts in inches
+    assert table_with("").faults == ()
+
+
+@pytest.mark.parametrize(
+    ("lines", "path", "says"),
+    [
+        ("faults = 3", "sim.faults", "a list of tables"),
+        ('faults = { at = 1, what = "estop" }', "sim.faults", "a list of tables"),
+        ('tips = "X"', "sim.tips", "a list of tables"),
+        ('faults = [{ at = 1, what = "jam" }]', "sim.faults.1.axis", "jam happens to an axis: one of X, Z"),
+        (
+            'faults = [{ at = 1, what = "estop", axis = "X" }]',
+            "sim.faults.1.axis",
+            "estop happens to no axis",
+        ),
+        (
+            'faults = [{ at = 1, what = "estop" }, { at = 1, what = "jam", axis = "Q" }]',
+            "sim.faults.2.axis",
+            "jam happens to an axis",
+        ),
+        ('faults = [{ at = 1, axis = "Q" }]', "sim.faults.1.what", ""),  # and of its axis nothing is said
+    ],
+)
+def test_a_fault_that_makes_no_sense_is_refused_where_it_stands(lines: str, path: str, says: str) -> None:
+    with pytest.raises(MachineFileError) as told:
+        table_with(lines)
+    (finding,) = told.value.errors
+    assert finding.path == path
+    assert says in str(finding)
+
+
+# --- what the ports tell ------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("speed", "moving"), [(0.5, True), (-0.02, True), (0.005, False)])
+def test_a_slide_moves_from_a_hundredth_of_a_millimetre_a_second_on(speed: float, moving: bool) -> None:
+    plant = Plant(CONFIG, StepClock())
+    plant.servos[0].v = speed
+    assert SimAxes(plant).sample().moving is moving
+
+
+@pytest.mark.parametrize("measures", [True, False])
+def test_the_load_of_the_spindle_is_told_where_an_input_measures_it(measures: bool) -> None:
+    sim, clock = simulation(dataclasses.replace(CONFIG, measures_load=measures))
+    play(sim, clock, 0.1)
+    assert (sim.ports.station.snapshot().spindle_load is not None) is measures

@@ -1,0 +1,195 @@
+"""Small paths whose limits, plans and setpoints follow with a pencil."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+
+from core.interpreter.elementary_blocks import Block, Kind
+from core.motion.axis_limits import MotionError, MotionLimits
+from core.motion.block_table import table_of
+from core.motion.chord_smoothing import unrounded
+from core.motion.motion_path import PathBuilder
+from core.motion.motion_plan import plan, reachable_forward, settled_joints
+from core.motion.speed_limits import JointDemand, demand_over_intervals
+from core.motion.window_planner import ChunkPlanner
+from tests.motion.moves import LIMITS, A, T, arc, line, polyline
+from tests.motion.paths import build_path
+
+ZIGZAG = polyline([(0.0, z) for z in (0.0, 1.0) * 5 + (0.0,)], 10.0)  # ten lines, each a full reversal
+REVERSAL = 1.0 / 10.0 + 10.0 / A  # s of one of them: its way, and half of speeding up and of slowing down
+
+
+# --- look-ahead ---------------------------------------------------------------------------------------------
+
+
+def test_what_is_reached_grows_from_the_lowest_limit_across_the_rows_of_the_sums() -> None:
+    """1 at the last place of the first row of 256, half of one more each step."""
+    limit = np.full(600, 100.0)
+    limit[255] = 1.0
+    reached = reachable_forward(limit, np.full(599, 0.5))
+    assert reached[254:257].tolist() == [100.0, 1.0, 1.5]
+    assert reached[300] == pytest.approx(1.0 + 45 * 0.5)
+    assert reached[500] == 100.0
+
+
+def test_a_corner_is_not_begun_faster_than_it_allows() -> None:
+    """A right angle takes amax times the interval, 3.048 mm/s."""
+    path = build_path(polyline([(0.0, 0.0), (0.0, 1.0), (1.0, 1.0)], 10.0), LIMITS)
+    assert plan(path, start_s=1.0, start_v=0.0).duration == pytest.approx(REVERSAL)
+    with pytest.raises(MotionError, match=r"8\.000 mm/s is too high for what follows"):
+        plan(path, start_s=1.0, start_v=8.0)
+
+
+def test_a_feed_override_of_0_rests_before_the_first_feed_and_lets_a_rapid_go() -> None:
+    rapid, feed = line((0.0, 0.0), (0.0, 1.0), 10.0, kind=Kind.RAPID), line((0.0, 1.0), (0.0, 2.0), n=2)
+    assert plan(build_path([feed], LIMITS), feed_scale=0.0).duration == 0.0
+    before = plan(build_path([rapid, feed], LIMITS), feed_scale=0.0)
+    assert (before.end_s, before.duration) == (1.0, pytest.approx(REVERSAL))
+
+
+def test_a_stop_that_has_no_room_is_refused() -> None:
+    """From 50 mm/s it takes 2500/2A = .41 mm."""
+    path = build_path([line((0.0, 0.0), (0.0, 0.3))], LIMITS)
+    with pytest.raises(MotionError, match=r"cannot come to rest within the 0\.3000 mm"):
+        plan(path, start_v=50.0, stop=True)
+
+
+# --- what a path may yet become -----------------------------------------------------------------------------
+
+
+def test_joints_that_may_yet_be_moved_are_not_settled() -> None:
+    """The last fifty of a run of chords that goes on; one interval of way before its end would be eight."""
+    builder = PathBuilder(MotionLimits(LIMITS.vmax, LIMITS.amax, T, grain=0.001))
+    builder.add(polyline([(0.0, 0.01 * i) for i in range(201)], 5.0))
+    assert 100 < settled_joints(builder.path()) < 150
+
+
+@pytest.mark.parametrize(
+    ("chord", "before", "first"),
+    [(0.01, 60, 47), (1.0, 60, 59)],  # .127 mm are twelve chords and a part of one; of long lines one is kept
+)
+def test_what_is_dropped_leaves_the_way_of_an_interval_and_a_neighbour(
+    chord: float, before: int, first: int
+) -> None:
+    builder = PathBuilder(LIMITS)
+    builder.add(polyline([(0.0, chord * i) for i in range(101)], 5.0))
+    builder.drop_before(before)
+    assert builder.path().blocks[0] == first
+    assert builder.path().block_span(before) == pytest.approx(((before - 1) * chord, before * chord))
+
+
+@pytest.mark.parametrize("window", [1, 3, 4, 10, 99])
+def test_a_program_in_windows_takes_its_time_once(window: int) -> None:
+    planner = ChunkPlanner(LIMITS, window=window)
+    chunks = [*planner.add(ZIGZAG), *planner.finish()]
+    assert [n for chunk in chunks for n in chunk.n.tolist()] == list(range(1, 11))
+    ends = [t for chunk in chunks for t in chunk.t1.tolist()]
+    assert ends == pytest.approx([REVERSAL * n for n in range(1, 11)])
+    assert planner.t == pytest.approx(10 * REVERSAL)
+    if window < 4:
+        assert len(chunks) > 1
+
+
+# --- setpoints ----------------------------------------------------------------------------------------------
+
+
+def test_a_part_of_a_plan_ends_when_its_last_joint_is_reached() -> None:
+    profile = plan(build_path(ZIGZAG, LIMITS))
+    assert profile.until(3.0).duration == pytest.approx(3 * REVERSAL)
+    assert profile.until(0.0).duration == 0.0
+
+
+def test_outside_its_time_a_plan_has_no_setpoints() -> None:
+    profile = plan(build_path(ZIGZAG, LIMITS))
+    for begin, end in ((0.5, 0.5), (-2.0, -1.0), (9.0, 10.0)):
+        assert len(profile.segments(begin, end)[0]) == 0
+
+
+def test_parts_of_an_arc_join_on_it_and_are_as_short_as_its_jerk_wants() -> None:
+    """R 3 at 300 mm/s: v/R = 100 and v²/R = 30000, so j = 3e6 and h³ = 40.5·2.5e-4/j is .0015 s cubed."""
+    limits = MotionLimits(vmax=(400.0, 400.0, 1200.0), amax=(40000.0, 40000.0, 12000.0), interval=T)
+    path = build_path([arc((0.0, 3.0), (0.0, -3.0), (0.0, 0.0), 300.0)], limits)
+    profile = plan(path)
+    cruise = int(np.flatnonzero(profile.phases.a == 0.0)[0])
+    begin = float(profile.phases.t[cruise])
+    t, dt, p, v, a = profile.segments(begin, begin + 0.015)
+    assert dt == pytest.approx(np.full(10, 0.0015))
+    assert np.hypot(p[:, 0], p[:, 1]) == pytest.approx(np.full(10, 3.0))
+    ends = p + v * dt[:, None] + 0.5 * a * dt[:, None] ** 2
+    assert ends[:-1] == pytest.approx(p[1:], abs=1e-9)
+    assert ends[-1] == pytest.approx(profile.position(t[-1] + dt[-1])[0], abs=1e-9)
+
+
+# --- chords -------------------------------------------------------------------------------------------------
+
+
+def test_chords_of_a_straight_line_stay_where_they_are_however_uneven() -> None:
+    ways = np.cumsum([0.0, *([0.01, 0.03, 0.02, 0.005] * 8)]).tolist()
+    limits = MotionLimits(LIMITS.vmax, LIMITS.amax, T, grain=0.001)
+    pieces = build_path(polyline([(0.0, z) for z in ways]), LIMITS).pieces
+    eased = unrounded(pieces, limits)
+    assert eased.start[:, 1] == pytest.approx(np.array(ways[:-1]), abs=1e-12)
+
+
+BEND = 0.1  # by which X turns at the one bend; at 50 mm/s an interval has five chords of .01 mm
+DIRECTION = (BEND, math.sqrt(1.0 - BEND**2))
+
+
+def bent(turned: tuple[float, float] = DIRECTION) -> list[Block]:
+    """Twenty chords along Z, twenty more along ``turned``."""
+    first = [(0.0, 0.01 * i) for i in range(21)]
+    more = [(0.01 * i * turned[0], 0.2 + 0.01 * i * turned[1]) for i in range(1, 21)]
+    return polyline([*first, *more])
+
+
+def test_an_interval_asks_of_one_bend_what_the_bend_turns() -> None:
+    """v·Δu over an interval of .8 amax: (.8·3048·.001/.1)², whatever the speed."""
+    pieces = build_path(bent(), LIMITS).pieces
+    alone = JointDemand(np.array([19]), np.array([1.0]), np.zeros((1, 3)))
+    asked = demand_over_intervals(pieces, alone, np.array([50.0]), LIMITS, more=False)
+    assert asked.squared == pytest.approx([(0.8 * A * T / BEND) ** 2], rel=1e-6)
+
+
+def test_chords_on_both_sides_of_a_bend_keep_room_for_it() -> None:
+    """A bend about 45 degrees at 1.5 times the feed asks v·Δu over an interval; the rest is along both."""
+    half = 0.5 * math.asin(0.02)
+    before, after = math.pi / 4 - half, math.pi / 4 + half
+    points = [(-0.01 * i * math.sin(before), -0.01 * i * math.cos(before)) for i in range(20, 0, -1)]
+    points += [(0.01 * i * math.sin(after), 0.01 * i * math.cos(after)) for i in range(21)]
+    path = build_path(polyline(points), LIMITS)
+    asked = 1.5 * 50.0 * (math.sin(after) - math.sin(before)) / T
+    assert path.a[19:21] == pytest.approx([(A - asked) / math.sin(after)] * 2)
+    assert path.a[[10, 30]] == pytest.approx([A / math.sin(after)] * 2)
+
+
+# --- rows ---------------------------------------------------------------------------------------------------
+
+
+@dataclass
+class Columns:
+    """Two straight moves as columns."""
+
+    pattern: Block
+    n = np.array([4, 5])
+    x0, z0 = np.array([1.0, 2.0]), np.array([3.0, 4.0])
+    x, z = np.array([2.0, 5.0]), np.array([4.0, 8.0])
+
+    def __len__(self) -> int:
+        return 2
+
+    def __getitem__(self, at: slice) -> Columns:
+        raise NotImplementedError
+
+
+def test_a_row_of_moves_stands_in_the_table_with_its_offsets() -> None:
+    like = line((7.0, 7.0), (8.0, 8.0), 20.0)
+    shifted = Block(**{**{f: getattr(like, f) for f in like.__slots__}, "offset_x": 10.0, "offset_z": 20.0})
+    table = table_of([Columns(shifted)], 3500.0)
+    assert table.n.tolist() == [4.0, 5.0]
+    assert table.start[:, :2].tolist() == [[11.0, 23.0], [12.0, 24.0]]
+    assert table.end[:, :2].tolist() == [[12.0, 24.0], [15.0, 28.0]]
+    assert table.feed.tolist() == [20.0, 20.0]
