@@ -59,9 +59,9 @@ class HeadLine(Panel):
         key = QRectF(self.width() - KEYS * u, 0, KEYS * u, high)
         self.key(painter, key, tr("KEYBOARD"), 1.9, self._keys, ink="accent", margin=1.0)
         if self.with_shapes:
-            key.translate(-(KEYS + 0.6) * u, 0)
+            key = key.translated(-(KEYS + 0.6) * u, 0)  # a place of its own: the one before is kept
             self.key(painter, key, tr("SHAPES ⇧F3"), 1.9, self._shapes, ink="accent", margin=1.0)
-        key.translate(-(KEYS + 0.6) * u, 0)
+        key = key.translated(-(KEYS + 0.6) * u, 0)
         self.key(painter, key, tr("SUMS ⇧F4"), 1.9, self._sums, ink="accent", margin=1.0)
 
 

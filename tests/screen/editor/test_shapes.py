@@ -162,3 +162,20 @@ def test_rows_and_keys_fit_a_finger_on_the_smallest_screen(writer: Writer) -> No
     for box, _ in view.sketch._places:
         assert min(box.width(), box.height()) >= FINGER
         assert view.sketch.area().contains(box)
+
+
+def test_the_places_over_the_text_open_what_stands_on_them(writer: Writer) -> None:
+    writer.new("shaped")
+    head = writer.editor.head
+    head.grab()
+    keyboard, shapes, sums = range(3)
+    assert len({box.x() for box, _ in head._places}) == len(head._places) == 3
+    touch(writer, head, shapes)
+    assert (writer.editor.mode, writer.editor.shapes.model.of_shapes) == (Mode.SHAPES, True)
+    touch(writer, head, shapes)
+    assert writer.editor.mode is Mode.TEXT
+    touch(writer, head, sums)
+    assert (writer.editor.mode, writer.editor.shapes.model.of_shapes) == (Mode.SHAPES, False)
+    touch(writer, head, shapes)
+    touch(writer, head, keyboard)
+    assert writer.editor.lettered
