@@ -19,6 +19,7 @@ from app.jog.jog_speeds import CONTINUOUS, rapid_word, speed_words, step_words, 
 from app.offsets.offset_values import Mode
 from app.screen.look import CENTRE, Look, Painter
 from app.screen.panel import Control, Shown, pressed
+from app.screen.window_layout import FINGER
 from core.executor.snapshot import Snapshot
 
 # --- rows of tiles ------------------------------------------------------------------------------------
@@ -136,6 +137,8 @@ class Dial:
 
 
 ROW, HELD = 5.0, 9.4  # units, at least: a row of tiles, a target that is held
+CROSS = 3  # rows of the targets that are held
+DrawRow = Callable[[Painter, QRectF], None]
 
 
 class JogPad(JogCross):
@@ -169,23 +172,44 @@ class JogPad(JogCross):
         self.frame(painter, tr("JOG  ·  HOLD TO MOVE"))
         u = self.look.u
         room = self.inside().adjusted(-0.4 * u, 0, 0.4 * u, 0.3 * u)
-        rows = 4 if self._model.wheel.there else 3  # of tiles: steps, speeds, homing
-        high = self._tile_height(room, rows) + 0.6 * u
-        self._steps(painter, QRectF(room.x(), room.y(), room.width(), high - 0.6 * u))
-        self._speeds(painter, QRectF(room.x(), room.y() + high, room.width(), high - 0.6 * u))
-        if self._model.wheel.there:
-            self._wheel(painter, QRectF(room.x(), room.y() + 2 * high, room.width(), high - 0.6 * u))
+        rows = self._rows(room)
+        high = self._tile_height(room, len(rows) + 1) + 0.6 * u
+        row = QRectF(room.x(), room.y(), room.width(), high - 0.6 * u)
+        for draw in rows:
+            draw(painter, row)
+            row = row.translated(0, high)
         foot = QRectF(room.x(), room.bottom() - high + 0.6 * u, room.width(), high - 0.6 * u)
         self._homing(painter, foot)
-        top = room.y() + (rows - 1) * high
-        middle = self.cross(painter, QRectF(room.x(), top, room.width(), foot.y() - top - 0.6 * u))
+        middle = self.cross(painter, QRectF(room.x(), row.y(), room.width(), foot.y() - row.y() - 0.6 * u))
         self._middle(painter, middle)
+
+    def _rows(self, room: QRectF) -> list[DrawRow]:
+        """Over the cross: steps and speeds, in one row where two would leave no fingertip to each."""
+        wheel: list[DrawRow] = [self._wheel] if self._model.wheel.there else []
+        both: list[DrawRow] = [self._steps, self._speeds]
+        needed = self.look.keys_high(len(both) + len(wheel) + 1 + CROSS) + 0.6 * self.look.u
+        return [*(both if room.height() >= needed else [self._steps_and_speeds]), *wheel]
 
     def _tile_height(self, room: QRectF, rows: int) -> float:
         """A fingertip, where that leaves enough for what is held by a finger."""
         u = self.look.u
-        left = room.height() - 3 * (HELD * u + 0.6 * u) - u
-        return max(ROW * u, min(self.look.row(ROW, 9.0, touch=True), left / rows - 0.6 * u))
+        finger = self.look.row(ROW, 9.0, touch=True)
+        left = room.height() - CROSS * (HELD * u + 0.6 * u) - u
+        return max(min(finger, float(FINGER)), ROW * u, min(finger, left / rows - 0.6 * u))
+
+    def _steps_and_speeds(self, painter: Painter, row: QRectF) -> None:
+        """As the keys F2 and F3 do: the next one of each, and RAPID."""
+        model, mode = self._model, self._model.hold.mode
+        step = model.speeds.step
+        said = tr("CONT")
+        if step != CONTINUOUS:
+            turning = self._turning
+            said = model.speeds.step_word(turning, mode, step) if turning else step_words(mode)[step]
+        speeds = turn_words() if self._turning else speed_words(mode)
+        words = (f"F2 {said}", f"F3 {speeds[model.speeds.speed]}", tr("RAPID"))
+        chosen = 2 if model.armed else -1
+        tiles = Tiles(("", ""), words, [model.next_step, model.next_speed, model.arm], chosen, warn=True)
+        self._tiles(painter, row, tiles)
 
     def _steps(self, painter: Painter, row: QRectF) -> None:
         model = self._model

@@ -20,10 +20,10 @@ from app.path.path_projection import Projection, scale_length
 from app.path.polyline import Polyline
 from app.screen.look import CENTRE, LEFT, RIGHT, Look, put
 from app.screen.panel import Press
+from app.screen.window_layout import FINGER
 from core.language.diagnostics import Diagnostic, Severity
 
-BUTTON = (6.6, 6.6, 7.0)  # units: width, height, from one to the next; a fingertip
-LOW = 5.0  # units: from one to the next at least
+BUTTON = (6.6, 6.6, 0.4)  # units: width, height, between two of them; at least a fingertip
 
 
 class Button(NamedTuple):
@@ -37,6 +37,24 @@ class Button(NamedTuple):
 LegendEntry = tuple[str, QPen]
 
 
+def button_columns(look: Look, room: QRectF, count: int) -> int:
+    """In how many columns so many buttons stand: a low room has them beside each other."""
+    _, high, gap = _button(look)
+    rows = max(1, int((room.height() - 3.2 * look.u + gap) / (high + gap)))
+    return math.ceil(count / rows)
+
+
+def columns_wide(columns: int, look: Look) -> float:
+    """What so many columns take of a view at its right, pixels."""
+    wide, _, gap = _button(look)
+    return columns * (wide + gap)
+
+
+def _button(look: Look) -> tuple[float, float, float]:
+    wide, high, gap = (k * look.u for k in BUTTON)
+    return max(wide, FINGER), max(high, FINGER), gap
+
+
 def draw_buttons(
     painter: QPainter,
     look: Look,
@@ -44,14 +62,15 @@ def draw_buttons(
     buttons: Sequence[Button],
     place: Callable[[QRectF, Press], None],
 ) -> None:
-    """A column at the right; in a low pane they are lower, and as many as there is room for."""
-    wide, high, step = (k * look.u for k in BUTTON)
-    close = max(LOW * look.u, (room.height() - 3.2 * look.u) / max(1, len(buttons)))
-    high, step = high - max(0.0, step - close), min(step, close)
+    """At the right, column by column."""
+    wide, high, gap = _button(look)
+    columns = button_columns(look, room, len(buttons))
+    rows = math.ceil(len(buttons) / columns)
+    left = room.right() - columns_wide(columns, look) - 0.6 * look.u
     for number, (sign, press, lit) in enumerate(buttons):
-        box = QRectF(room.right() - wide - look.u, room.y() + 0.8 * look.u + number * step, wide, high)
-        if box.bottom() > room.bottom() - 2.4 * look.u:
-            return
+        column, row = divmod(number, rows)
+        x, y = left + column * (wide + gap), room.y() + 0.8 * look.u + row * (high + gap)
+        box = QRectF(x, y, wide, high)
         painter.fillRect(box, look.colour("lit" if lit else "key"))
         painter.setPen(look.colour("on_lit" if lit else "text"))
         painter.setFont(look.fit(sign, 1.6 if len(sign) > 1 else 2.8, wide - 0.4 * look.u, bold=True))

@@ -32,7 +32,6 @@ if TYPE_CHECKING:
     from app.path.polyline import Polyline
     from app.screen.page_base import KeyActions
 
-COLUMN = 6.4  # units at the right of a view that are the buttons'
 BAR = 6.8  # units under the part that are the time line's
 Picked = Callable[[int], None]
 
@@ -176,7 +175,11 @@ class PathView(Panel):
     def _lay_out(self) -> None:
         if self._set is not None:
             self._include()
-            self._set.lay(self.room().adjusted(0, 0, -COLUMN * self.look.u, 0))
+            from app.path.path_marks_view import button_columns, columns_wide
+
+            room = self.room()
+            columns = button_columns(self.look, room, len(self._buttons()))
+            self._set.lay(room.adjusted(0, 0, -columns_wide(columns, self.look), 0))
             self._show_tool()
         self.update()
 

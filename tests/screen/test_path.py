@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
+from itertools import combinations, pairwise
 
 import numpy as np
 import pytest
-from PySide6.QtGui import QColor, QImage
+from PySide6.QtCore import QRectF
+from PySide6.QtGui import QColor, QImage, QPainter
 
 from app.path.path_layers_view import PIXELS, SMOOTH_TO, Ink, Layers, polygon
+from app.path.path_marks_view import Button, button_columns, columns_wide, draw_buttons
 from app.path.path_picture import Picture
 from app.path.path_projection import (
     Ends,
@@ -23,6 +25,7 @@ from app.path.path_projection import (
 from app.path.polyline import Polyline, Stroke
 from app.screen.look import Look
 from app.screen.theme import DARK
+from app.screen.window_layout import FINGER
 
 FRAME = Projection(z=0.0, x=0.0, scale=10.0, width=400, height=200)
 
@@ -223,3 +226,20 @@ def test_a_line_has_no_holes() -> None:
 def test_a_point_is_one_pixel() -> None:
     column, row, _which = stepped(Ends(*(np.array([v]) for v in (2.2, 3.4, 2.2, 3.4))))
     assert (column.tolist(), row.tolist()) == ([2], [3])
+
+
+@pytest.mark.parametrize("high", [100.0, 150.0, 240.0])
+def test_all_buttons_fit_a_finger_in_a_low_view(high: float) -> None:
+    """Under the part its time line takes height: VIEW alone leads back to the path, and has to stay."""
+    look, room = Look(DARK, 6.4), QRectF(1.0, 8.0, 372.0, high)
+    image, boxes = QImage(374, 260, QImage.Format.Format_RGB32), list[QRectF]()
+    painter = QPainter(image)
+    buttons = [Button(sign, lambda: None) for sign in ("+", "−", "VIEW", "FIT", "MEAS")]
+    draw_buttons(painter, look, room, buttons, lambda box, _press: boxes.append(box))
+    painter.end()
+    assert len(boxes) == len(buttons)
+    for box in boxes:
+        assert min(box.width(), box.height()) >= FINGER - 1
+        assert room.contains(box)
+        assert box.x() >= room.right() - columns_wide(button_columns(look, room, 5), look) - look.u
+    assert not any(one.intersects(other) for one, other in combinations(boxes, 2))

@@ -11,6 +11,7 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QDialog
 from pytestqt.qtbot import QtBot
 
+from app.screen.window_layout import FINGER
 from core.executor.snapshot import State
 from tests.screen.jog.bench import INCH, JogBench, Key
 
@@ -169,3 +170,29 @@ def test_without_one_the_key_says_so_and_nothing_is_drawn(jog: JogBench) -> None
     jog.key(Key.Key_V)
     assert jog.prompt == "THIS MACHINE HAS NO HANDWHEEL"
     assert not jog.page.model.wheel_drawn
+
+
+@pytest.mark.parametrize("high", [314, 361])
+def test_every_target_fits_a_finger_on_the_smallest_screen(wheeled: JogBench, high: int) -> None:
+    """314 pixels are what a yellow row leaves to the page, 361 what it has without one."""
+    wheeled.window.resize(1024, 600)
+    pad = wheeled.page.pad
+    pad.resize(394, high)
+    pad.grab()
+    assert len(pad.controls) >= 17
+    for control in pad.controls:
+        assert min(control.box.width(), control.box.height()) >= FINGER - 1
+        assert pad.area().contains(control.box)
+
+
+def test_in_a_low_pad_one_row_goes_through_steps_and_speeds(wheeled: JogBench) -> None:
+    wheeled.window.resize(1024, 600)
+    pad, speeds = wheeled.page.pad, wheeled.page.model.speeds
+    pad.resize(394, 314)
+    pad.grab()
+    step, speed = speeds.step, speeds.speed
+    for control in pad.controls[:3]:
+        QTest.mouseClick(pad, Qt.MouseButton.LeftButton, pos=control.box.center().toPoint())
+    assert wheeled.page.model.armed
+    assert speeds.step != step
+    assert speeds.speed != speed
