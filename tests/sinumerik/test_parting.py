@@ -35,6 +35,22 @@ def test_a_surface_speed_beside_its_limit() -> None:
     assert begun.modal.css_max == 2000.0
 
 
+def test_a_surface_speed_in_feet_where_g96_counts_them() -> None:
+    """300 ft/min are 1524 mm/s, as G96 S300 behind it says; 300 m/min would be 5000."""
+    text = "G700\nS900 M3 G95 F0.003\nT1 D1\nG0 X2 Z-1\nCYCLE92(1.5,-1,0.5,-0.04,,0.04,300,2000,3)\nG96 S300"
+    passed = run(text, TOOLS)
+    ran = [b.action.surface_speed for b in passed.blocks if isinstance(b.action, SpindleRun)]
+    assert ran == [None, pytest.approx(1524.0), None, pytest.approx(1524.0)]
+
+
+def test_a_spindle_that_it_has_started_is_known_to_turn() -> None:
+    """Nothing was in force before: what goes on turning at 500 rpm is not told as a spindle that stands."""
+    passed = run("T1 D1\nG0 X50 Z-30\nCYCLE92(40,-30,10,-1,,1,800,,3,0.1,0.05,500)\nG0 Z0", TOOLS)
+    assert passed.found == []
+    assert [b.action.rpm for b in passed.blocks if isinstance(b.action, SpindleRun)] == [800.0, 500.0]
+    assert (passed.moves[-1].rpm, passed.moves[-1].modal.spindle) == (500.0, 1)
+
+
 def test_from_inside_it_goes_out_first() -> None:
     passed = run("S900 M3 G95 F0.1\nT1 D1\nG0 X36 Z2\nCYCLE92(40,-30,0,0)", TOOLS)
     assert [(b.x, b.z) for b in passed.moves if b.line == 4][:2] == [(21.0, 2.0), (21.0, -30.0)]

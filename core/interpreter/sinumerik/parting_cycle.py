@@ -14,7 +14,7 @@ from core.interpreter.elementary_blocks import Block
 from core.interpreter.modal_state import Modal
 from core.interpreter.sinumerik.boring_cycles import NO_DIRECTION
 from core.interpreter.sinumerik.cycle_parameters import NO_FEED, RETRACT, Cycle, Step
-from core.interpreter.units import METRES_PER_MINUTE
+from core.interpreter.units import FEET_PER_MINUTE, METRES_PER_MINUTE
 
 WRONG_DEPTH = 61604
 _DIRECTION = {3: 1, 4: -1}  # of _SDAC
@@ -23,8 +23,8 @@ _DIRECTION = {3: 1, 4: -1}  # of _SDAC
 def part_off(cycle: Cycle) -> Iterator[Block]:
     """Down to _DIAG1 at _FF1, from there to _DIAG2 at _FF2 and _SS2 rpm. Raises ProgramError before a block.
 
-    A speed _SV1 is one of the surface beside its limit _SV2, else rpm; behind the cycle the speed of before
-    is in force again.
+    A speed _SV1 is one of the surface beside its limit _SV2, counted as G96 counts S, else rpm; behind the
+    cycle the speed of before is in force again, or the last one where the spindle stood without a speed.
     """
     cycle.zero_only("_RC", "cut the chamfer or the radius with G1 before it")
     cycle.zero_only("_VARI", "the tool goes back out, and no drawer catches the part")
@@ -74,7 +74,8 @@ def _speed(cycle: Cycle, before: Modal) -> Modal:
     if value < 0.0 or most < 0.0 or (value > highest and not most):
         raise cycle.wrong("_SV1", f"is {value:g}, no speed of this spindle", "Correct it.")
     if value and most:
-        modal = modal._replace(css=True, surface_speed=value * METRES_PER_MINUTE, css_max=most)
+        unit = METRES_PER_MINUTE if before.metric else FEET_PER_MINUTE
+        modal = modal._replace(css=True, surface_speed=value * unit, css_max=most)
     elif value:
         modal = modal._replace(css=False, rpm=value)
     if not modal.spindle or not (modal.surface_speed if modal.css else modal.rpm):
@@ -104,6 +105,8 @@ def _blocks(
                                          css_max=before.css_max))  # fmt: skip
         if state.rpm:
             yield _turning(cycle)
+        else:
+            state.adopt(slow)  # it goes on turning, and what is in force says so
 
 
 def _turning(cycle: Cycle) -> Block:
