@@ -260,11 +260,11 @@ class Desk:
         """Why the palms start nothing now; empty when they may."""
         if self.stop_held() or not self.starts_here:
             return prompt_line.STOP_HELD if self.stop_held() else prompt_line.NOT_HERE
+        if self.restoring:
+            return prompt_line.RESTORING
         for page in self.own_starts:
             if page.open:
                 return page.barred()
-        if self.restoring:
-            return prompt_line.RESTORING
         loaded = self.session.now
         if self.snapshot().state is not State.IDLE:
             return ""

@@ -75,10 +75,9 @@ class Sharing:
                 self._note(store, settled=settled)
                 if found is not None:
                     trouble = self._publish(store, found)
-            except StoreError as error:
-                self.now = replace(self.now, trouble=str(error))
-            else:
                 self._tell(store, found, trouble)
+            except StoreError as error:  # a restore may close this store at any moment
+                self.now = replace(self.now, trouble=str(error))
             return self.now
 
     def peek(self) -> Shared:

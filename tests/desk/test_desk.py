@@ -12,7 +12,7 @@ from app.desk.desk import SILENT, Desk
 from app.desk.machine_status import Tone
 from app.desk.program_folder import ProgramFolders
 from app.desk.program_loading import LoadingSteps, Phase, ProgramLoader
-from app.desk.prompt_line import CONTROL_SILENT, GIVE_UP, ONE_PALM
+from app.desk.prompt_line import CONTROL_SILENT, GIVE_UP, ONE_PALM, RESTORING
 from core.executor.commands import CycleStart, EnableDrives, FeedHold, FeedOverride, Reset, SetSwitch
 from core.executor.snapshot import Alarm, Event, State
 from tests.screen.desks import desk_on
@@ -304,3 +304,23 @@ def test_a_store_that_fails_in_the_middle_of_a_run_is_told_once(desk: Desk, mach
     desk.clear()
     desk.look()
     assert desk.notice == ""
+
+
+class _PageReady:
+    """A page such as MDI or SEARCHTO, with something that the palms would start."""
+
+    open = True
+
+    def barred(self) -> str:
+        return ""
+
+    def close(self) -> None:
+        """Nothing is open."""
+
+
+def test_nothing_starts_from_any_page_while_a_backup_is_restored(desk: Desk, machine: FakeMachine) -> None:
+    at(machine, State.IDLE)
+    desk.own_starts.append(_PageReady())
+    assert desk.barred() == ""
+    desk.restoring = True
+    assert desk.barred() == RESTORING

@@ -321,3 +321,21 @@ def test_a_thousand_programs_go_over_in_one_look_each(
     two.look()
     assert len(two.now.families) == 1000
     assert two.text(two.now.families["p0999.nc"].newest[0]) == b"G00 X999\n"
+
+
+def test_a_restore_in_the_middle_of_a_look_is_told_and_ends_nothing(
+    desk_at_folder: MakeDesk, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The store is closed while the last file goes to the place: the thread that looks has to live on."""
+    one = desk_at_folder(1)
+    write(one, "G00 X1\n")
+    together(one)
+    (folder_of(one) / "PART.NC").unlink()
+    store, put = one._store(), one.place.put
+
+    def closed_meanwhile(*what: object) -> None:
+        put(*what)
+        store.close()
+
+    monkeypatch.setattr(one.place, "put", closed_meanwhile)
+    assert "is closed" in one.look().trouble
