@@ -8,7 +8,10 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from app.cli.store_command import opened_store
+from app.cli.who_changes import add_as_option, note_change, who_may
 from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError
+from core.access.access_table import Act
 from core.shapes.cutting_data import MATERIALS
 
 if TYPE_CHECKING:
@@ -37,6 +40,7 @@ def add_parser(subparsers: SubParsers) -> None:
     _add_part_options(parser)
     _add_tool_options(parser)
     parser.add_argument("--out", metavar="FILE", help="where the program goes (default: stdout)")
+    add_as_option(parser)
     parser.add_argument("--json", action="store_true", help="machine-readable output alone on stdout")
 
 
@@ -86,6 +90,8 @@ def _run(args: argparse.Namespace) -> int:
     from core.drawings.drawing_file import read_drawing
 
     machine = read_machine(args.machine)
+    if args.out is not None and not args.list:
+        args.who = who_may(opened_store, args, Act.PROGRAMS)
     if args.side == "bore" and args.hole is None and not args.list:
         raise CommandError("a bore begins with a hole: say its diameter with --hole")
     args.metric = args.metric or not machine.inch
@@ -230,6 +236,7 @@ def _write(text: str, args: argparse.Namespace) -> None:
         Path(args.out).write_text(text, encoding="ascii")
     except OSError as error:
         raise CommandError(f"{args.out}: cannot be written: {error.strerror}") from error
+    note_change(opened_store, args.who, f"program {Path(args.out).name} made of {Path(args.file).name}")
 
 
 def _tell(made: ProfileProgram, trial: Trial, chosen: Profile, text: str, args: argparse.Namespace) -> None:

@@ -7,7 +7,10 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
+from app.cli.store_command import opened_store
+from app.cli.who_changes import add_as_option, note_change, who_may
 from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError
+from core.access.access_table import Act
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
@@ -55,6 +58,7 @@ def add_parser(subparsers: SubParsers) -> None:
     )
     for each in (send, receive):
         _add_line(each)
+    add_as_option(receive)
     _add_sending(send)
 
 
@@ -158,15 +162,16 @@ def _receive(args: argparse.Namespace, machine: Machine, settings: DncModel) -> 
     if args.out and Path(args.out).exists():  # before anything is waited for: it could not be stored
         sys.stderr.write(f"turndesk: {args.out} is there already and is never replaced; take another name\n")
         return EXIT_ERRORS
+    who = who_may(opened_store, args, Act.PROGRAMS)  # before anything is waited for
     ending = usual_ending(Dialect(machine.language))
     lines = SerialLines(proving(workshop(machine, chosen_offsets(None), pictures=False)), ending)
     received = carry(lines.receive(settings), f"receiving from {settings.port}")
     if received is None:
         return EXIT_ERRORS
-    return _store(args, received)
+    return _store(args, received, who)
 
 
-def _store(args: argparse.Namespace, received: Received) -> int:
+def _store(args: argparse.Namespace, received: Received, who: str) -> int:
     from app.desk.data_folder import data_folder
     from app.programs.whole_file import FileError
     from app.transfer.line_transfer import free_name, store_new
@@ -178,10 +183,10 @@ def _store(args: argparse.Namespace, received: Received) -> int:
     except FileError as error:
         sys.stderr.write(f"turndesk: {error}\n")
         return EXIT_ERRORS
+    note_change(opened_store, who, f"program {path.name} received")
     seven = ", seven bits with even parity" if received.seven else ""
-    sys.stdout.write(
-        f"{path}: {received.lines} lines, whole{seven}\n  SHA-256 {received.digest}\n  {_found(received)}\n"
-    )
+    lines = "1 line" if received.lines == 1 else f"{received.lines} lines"
+    sys.stdout.write(f"{path}: {lines}, whole{seven}\n  SHA-256 {received.digest}\n  {_found(received)}\n")
     sys.stderr.write("".join(f"{text}\n" for text in received.findings))
     return EXIT_ERRORS if received.findings else EXIT_OK
 

@@ -9,8 +9,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from app.cli.store_command import opened_store
-from app.cli.who_changes import add_as_option, note_replaced, who_replaces
+from app.cli.who_changes import add_as_option, note_change, who_may
 from app.desk.command_errors import EXIT_OK, CommandError
+from core.access.access_table import Act
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
@@ -58,9 +59,9 @@ def _load(args: argparse.Namespace) -> int:
         told = check_setup(Path(args.file))
         sys.stdout.write(f"{args.file} is whole: the store, programs: {told.programs}, {told.machine}\n")
         return EXIT_OK
-    who = who_replaces(opened_store, args)
+    who = who_may(opened_store, args, Act.RESTORE)
     told, kept = load_setup(Path(args.file))
-    note_replaced(opened_store, who, f"setup taken from {args.file}; the store before is kept as {kept}")
+    note_change(opened_store, who, f"setup taken from {args.file}; the store before is kept as {kept}")
     beside = f"; the store that was here is kept as {kept}" if kept else ""
     sys.stdout.write(
         f"taken from {args.file}: the store, programs: {told.programs}, {told.machine}{beside}\n"

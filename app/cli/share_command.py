@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 from app.cli.store_command import opened_store
-from app.cli.who_changes import COMMAND_LINE, add_as_option, who_changes
+from app.cli.who_changes import add_as_option, note_change, who_may
 from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError
 from core.access.access_table import Act
 
@@ -33,13 +33,13 @@ def add_parser(subparsers: SubParsers) -> None:
     keep = actions.add_parser("keep", help="what is here stands against what was changed elsewhere")
     for action in (compare, take, keep):
         action.add_argument("name", metavar="PROGRAM")
-    for action in (take, keep):
-        add_as_option(action)
     for action in (compare, take):
         action.add_argument("--id", metavar="ID", help="its first letters, as 'status' shows them")
     for action in (begin, status, publish, compare, take, keep):
         action.add_argument("--machine", metavar="FILE", help="machine file with [sharing]")
         action.add_argument("--json", action="store_true", help="machine-readable output alone on stdout")
+    for action in (begin, publish, take, keep):
+        add_as_option(action)
 
 
 def run(args: argparse.Namespace) -> int:
@@ -47,18 +47,27 @@ def run(args: argparse.Namespace) -> int:
     from app.compose.machine_setup import read_machine
     from app.compose.sharing_desk import sharing_of
 
-    machine = read_machine(args.machine)
+    machine, acts = read_machine(args.machine), _acts(args)
+    who = who_may(opened_store, args, *acts) if acts else ""
     with _refusals(), opened_store(read_only=args.action in _READING) as store:
         sharing = sharing_of(machine, lambda: store)
         if sharing is None:
             raise CommandError(
                 "the machine file has no [sharing]; name a folder, a git remote or a database there"
             )
-        who = who_changes(store, args, Act.PROGRAMS) if args.action in _CHANGING else COMMAND_LINE
         status = _ACTIONS[args.action](sharing, args)
-        if who != COMMAND_LINE:
-            store.log_event("change", f"program {args.name}: share {args.action}", who=who).result()
-        return status
+    if acts:
+        program = f"program {args.name}: " if args.action in {"take", "keep"} else ""
+        note_change(opened_store, who, f"{program}share {args.action}")
+    return status
+
+
+def _acts(args: argparse.Namespace) -> tuple[Act, ...]:
+    """What it changes, of the table of levels; nothing: it only looks."""
+    if args.action in _LOOKING:
+        return ()
+    alone = args.action == "begin" or getattr(args, "claim", False)
+    return (Act.SHARED_PLACE,) if alone else (Act.PROGRAMS,)
 
 
 @contextmanager
@@ -96,7 +105,8 @@ def _publish(sharing: Sharing, args: argparse.Namespace) -> int:
     if shared.trouble:
         raise CommandError(shared.trouble)
     count = sum(bool(family.here) for family in shared.families.values())
-    _say(args, f"{sharing.place.name} has all {count} programs of {sharing.desk}", told(sharing, shared))
+    programs = "the one program" if count == 1 else f"all {count} programs"
+    _say(args, f"{sharing.place.name} has {programs} of {sharing.desk}", told(sharing, shared))
     return EXIT_OK
 
 
@@ -154,8 +164,8 @@ _ACTIONS = {
     "take": _take,
     "keep": _keep,
 }
-_CHANGING = frozenset({"take", "keep"})  # which program is the one here
-_READING = frozenset({"begin", "status", "compare"})  # beside a desk that runs
+_LOOKING = frozenset({"status", "compare"})
+_READING = _LOOKING | {"begin"}  # the store, beside a desk that runs
 
 
 def _looked(sharing: Sharing) -> Shared:

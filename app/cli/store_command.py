@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.cli.who_changes import COMMAND_LINE, add_as_option, note_replaced, who_changes, who_replaces
+from app.cli.who_changes import COMMAND_LINE, add_as_option, note_change, who_changes, who_may
 from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError
 from app.desk.data_folder import data_folder
 from core.access.access_table import Act
@@ -81,10 +81,10 @@ def _backup(args: argparse.Namespace) -> int:
 def _restore(args: argparse.Namespace) -> int:
     from core.store import backup
 
-    who = who_replaces(opened_store, args)
+    who = who_may(opened_store, args, Act.RESTORE)
     with store_refusals():
         kept = backup.restore(data_folder(), Path(args.path))
-    note_replaced(opened_store, who, f"restored from {args.path}; the store before is kept as {kept}")
+    note_change(opened_store, who, f"restored from {args.path}; the store before is kept as {kept}")
     beside = f"; the replaced store is kept as {kept}" if kept else ""
     sys.stdout.write(f"{data_folder()} is as {args.path} has it{beside}\n")
     return EXIT_OK

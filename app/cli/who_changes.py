@@ -96,10 +96,12 @@ Opened = Callable[[], AbstractContextManager["Store"]]
 """Opens the store of this installation for a command."""
 
 
-def who_replaces(opened: Opened, args: argparse.Namespace) -> str:
-    """Who may put another store in the place of this one. Raises CommandError.
+def who_may(opened: Opened, args: argparse.Namespace, *acts: Act) -> str:
+    """Who does what needs no store of its own; empty where there are no levels and nobody is named.
 
-    A store that cannot be read has no levels that anybody could ask for: it can always be replaced.
+    Raises CommandError as ``who_changes`` does. It can be done beside a desk that runs where there are no
+    levels: only a PIN has to be written down. A store that cannot be read has no levels that anybody could
+    ask for, or damage would be a lock.
     """
     from app.desk.data_folder import data_folder
     from core.store.store import Store
@@ -109,14 +111,14 @@ def who_replaces(opened: Opened, args: argparse.Namespace) -> str:
         with Store.open(data_folder(), read_only=True) as store:
             on = store.people().on
     except StoreError:
-        on = False
-    if not on:
         return args.as_name or ""
+    if not on and not args.as_name:
+        return ""
     with opened() as store:
-        return who_changes(store, args, Act.RESTORE)
+        return who_changes(store, args, *acts)
 
 
-def note_replaced(opened: Opened, who: str, text: str) -> None:
+def note_change(opened: Opened, who: str, text: str) -> None:
     """A line in the log of the store that is in place now, where it is known by whom."""
     if who:
         with opened() as store:

@@ -155,11 +155,11 @@ class Journal(Persistence):
         for written in [store.set_setting(key, value) for key, value in values.items()]:
             written.result()
 
-    def note_change(self, text: str) -> None:
+    def note_change(self, text: str, who: str = "") -> None:
         """Post a line of the log, where people say who they are."""
-        who = self.who()
-        if who:
-            self._post(lambda store: store.log_event("change", text, who=who))
+        now = self.who()
+        if now:
+            self._post(lambda store: store.log_event("change", text, who=who or now))
 
     def note_access(self, text: str, who: str) -> None:
         """Post a line of the log."""

@@ -40,10 +40,11 @@ class Persistence:
         for key, value in values.items():
             self.save_setting(key, value)
 
-    def note_change(self, text: str) -> None:
+    def note_change(self, text: str, who: str = "") -> None:
         """A line of the log, with the name, for a change whose table has no history of its own.
 
-        Nothing where there are no levels.
+        ``who`` has asked for it, where that is not whoever is signed in now. Nothing where there are no
+        levels.
         """
 
     def note_access(self, text: str, who: str) -> None:

@@ -50,6 +50,9 @@ CHOICES: Mapping[str, tuple[object, ...]] = {
 }
 
 
+_PASSING = frozenset({"readout"})  # turned on by a key many times a shift: no line of the log
+
+
 @dataclass(slots=True)
 class SettingsBook:
     """The choices in force. A value that is kept but no choice any more is forgotten, not obeyed."""
@@ -74,8 +77,10 @@ class SettingsBook:
         """Take a choice and keep it. Raises ValueError for what is none, StoreError when it is not kept."""
         if not _is_choice(name, value):
             raise ValueError(f"{name} cannot be {value!r}")
-        self.now = replace(self.now, **{name: value})  # type: ignore[arg-type]
+        before, self.now = getattr(self.now, name), replace(self.now, **{name: value})  # type: ignore[arg-type]
         self.persistence.save_setting(KEY, asdict(self.now))
+        if name not in _PASSING:
+            self.persistence.note_change(f"screen: {name} {before} → {value}")
 
     def following(self, name: str) -> object:
         """The choice after the present one."""

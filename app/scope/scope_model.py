@@ -20,6 +20,7 @@ from app.scope.scope_curves import LiveCurves, LiveSamples, Range, RecordCurves,
 from app.scope.scope_trigger import Trigger, When
 from app.scope.signals import Quantity, Signal, first_chosen, signals_of
 from app.scope.time_window import PAN, Cursors, Window
+from core.access.access_table import Act
 from core.executor.snapshot import Snapshot
 from core.records.record import Record
 
@@ -428,8 +429,11 @@ class Scope:
 
     def delete(self, kept: Kept) -> None:
         """Take a file away, after asking."""
+        if self.desk.refused(Act.RECORDS):
+            return
 
         def gone(_nothing: object) -> None:
+            self.desk.access.persistence.note_change(f"record {kept.path.name} deleted")
             self.desk.say(tr("DELETED: {path}").format(path=kept.path.name))
             self.list_files()
 

@@ -218,7 +218,8 @@ class SharingModel:
             self._take(version)
 
     def _take(self, version: SharedVersion) -> None:
-        why = self._in_use(version.key)  # it was started meanwhile
+        # It was started meanwhile, or the level has fallen back.
+        why = self._in_use(version.key) or self.desk.access.refusal(Act.PROGRAMS)
         if why or self.sharing is None:
             self.desk.say(why)
             return
@@ -240,7 +241,7 @@ class SharingModel:
         self.desk.ask(words.format(name=name), lambda: self._keep(key, name))
 
     def _keep(self, key: str, name: str) -> None:
-        if self.sharing is not None:
+        if self.sharing is not None and not self.desk.refused(Act.PROGRAMS):
             sharing = self.sharing
             said = tr("{name} STANDS AS IT IS HERE").format(name=name)
             self._work(lambda: sharing.keep(key), said, f"program {name} kept as it is here")
@@ -250,9 +251,11 @@ class SharingModel:
             self.desk.say(BUSY)
             return
 
+        who = self.desk.access.who  # who has asked, though another signs in meanwhile
+
         def done(_answer: object) -> None:
             self.desk.done(words)
-            self.desk.access.persistence.note_change(change)
+            self.desk.access.persistence.note_change(change, who)
             self.look_now()
 
         self.worker.queue(work, done, self.desk.refuse)

@@ -11,6 +11,7 @@ from app.desk.readouts import UNKNOWN, Lamp, drives_lamp, lamps_of
 from app.desk.sheet import Key, Row, Sheet, following
 from app.desk.translation import tr
 from app.special.special_functions import SpecialFunction
+from core.access.access_table import Act
 from core.executor.commands import ForceOutput
 from core.executor.snapshot import Snapshot, State
 from core.machine.machine_model import Machine
@@ -127,9 +128,12 @@ class InputsOutputs(SpecialFunction):
         if name in OF_STATION:
             self.desk.say(tr("{name} IS A BUTTON OF THE STATION OR FOLLOWS THE MACHINE").format(name=name))
             return
+        if self.desk.refused(Act.INPUTS):
+            return
         on = name not in self.desk.snapshot().inputs
         assert self.desk.set_input is not None
         self.desk.set_input(name, on)
+        self.desk.access.persistence.note_change(f"simulated input {name}: {'on' if on else 'off'}")
         words = tr("SIMULATED INPUT {name} IS ON") if on else tr("SIMULATED INPUT {name} IS OFF")
         self.desk.done(words.format(name=name))
 
@@ -146,13 +150,20 @@ class InputsOutputs(SpecialFunction):
             self.desk.post(ForceOutput(name, True))
             self.desk.done("LAMP TEST: ALL LAMPS OF THE TOWER ARE ON FOR TWO SECONDS")
             return
+        if self.desk.refused(Act.OUTPUTS):
+            return
         on = name not in snapshot.outputs
         asked = (
             tr("PRESS Y TO SWITCH {name} ON, ESC TO LEAVE IT OFF")
             if on
             else tr("PRESS Y TO SWITCH {name} OFF, ESC TO LEAVE IT ON")
         )
-        self.desk.ask(asked.format(name=name), lambda: self.desk.post(ForceOutput(name, on)))
+        self.desk.ask(asked.format(name=name), lambda: self._force(name, on))
+
+    def _force(self, name: str, on: bool) -> None:
+        if not self.desk.refused(Act.OUTPUTS):  # the level may have fallen back meanwhile
+            self.desk.post(ForceOutput(name, on))
+            self.desk.access.persistence.note_change(f"output {name} by hand: {'on' if on else 'off'}")
 
     def prompt(self) -> str:
         """What Return does here, for the prompt line."""

@@ -79,8 +79,10 @@ class DeskSounds:
 
     def choose(self, volume: int, silent: frozenset[str]) -> None:
         """Keep it. Raises StoreError."""
-        self.volume, self.silent = max(0, min(100, volume)), silent
+        before, self.volume, self.silent = self.volume, max(0, min(100, volume)), silent
         self.persistence.save_setting(_SETTING, {"volume": self.volume, "silent": sorted(silent)})
+        told = f"sound: {before} → {self.volume} %, silent: {', '.join(sorted(silent)) or 'nothing'}"
+        self.persistence.note_change(told)
 
     def close(self) -> None:
         """No sound any more."""

@@ -245,6 +245,7 @@ class SetupSheetFunction(SpecialFunction):
 
         def save() -> None:
             self.persistence.save_setting(notes_key(program), notes or None)
+            self.persistence.note_change(f"notes of {program}: {_changed(self.notes, notes)}")
             self._notes_of = program, notes
 
         self.desk.clear()
@@ -253,8 +254,16 @@ class SetupSheetFunction(SpecialFunction):
 
     def next_paper(self) -> None:
         """A4 or Letter."""
-        other = self._paper = Paper.LETTER if self.paper is Paper.A4 else Paper.A4
-        self.desk.keep(lambda: self.persistence.save_setting(_PAPER, other.value))
+        if self.desk.refused(Act.SCREEN):
+            return
+        before, other = self.paper, Paper.LETTER if self.paper is Paper.A4 else Paper.A4
+        self._paper = other
+
+        def save() -> None:
+            self.persistence.save_setting(_PAPER, other.value)
+            self.persistence.note_change(f"paper: {before.value} → {other.value}")
+
+        self.desk.keep(save)
 
     def prompt(self) -> str:
         """What the keys do."""
@@ -329,6 +338,12 @@ class SetupSheetFunction(SpecialFunction):
 def _texts(kept: object) -> list[str]:
     """The notes that were kept; anything else is none."""
     return [each for each in kept if isinstance(each, str)] if isinstance(kept, list) else []
+
+
+def _changed(before: Sequence[str], now: Sequence[str]) -> str:
+    """Which notes went and which came, for the log."""
+    gone = [f"'{each}' taken away" for each in before if each not in now]
+    return ", ".join((*gone, *(f"'{each}'" for each in now if each not in before))) or "in another order"
 
 
 def _places(folder: Path, plugged: Sequence[Stick]) -> tuple[Place, ...]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from functools import partial
 
 from app.desk import formats
 from app.desk.arithmetic import EntryError, value_of
@@ -12,6 +11,7 @@ from app.desk.readouts import UNKNOWN
 from app.desk.sheet import Key, Row, Sheet
 from app.desk.translation import tr
 from app.special.special_functions import FigureFunction
+from core.access.access_table import Act
 from core.executor.commands import SpindleLimit
 from core.executor.snapshot import Snapshot
 from core.machine.machine_model import SpindleModel
@@ -64,8 +64,18 @@ class SpindleSpeedLimit(FigureFunction):
         """The machine's own maximum again; asked once, because something may be in the chuck."""
         if not self.desk.snapshot().spindle_limit:
             self.desk.say("NO LIMIT IS IN FORCE")
-        else:
-            self.desk.ask(LIFT, partial(self.desk.post, SpindleLimit(None)))
+        elif not self.desk.refused(Act.SPINDLE_LIMIT):
+            self.desk.ask(LIFT, self._lifted)
+
+    def _lifted(self) -> None:
+        if not self.desk.refused(Act.SPINDLE_LIMIT):
+            self._limit(None)
+
+    def _limit(self, rpm: float | None) -> None:
+        before = self.desk.snapshot().spindle_limit
+        self.desk.post(SpindleLimit(rpm))
+        told = " → ".join(f"{each:g} rpm" if each else "none" for each in (before, rpm))
+        self.desk.access.persistence.note_change(f"spindle limit: {told}")
 
     def take(self, text: str) -> bool:
         """The limit, where this spindle can turn at it."""
@@ -75,7 +85,10 @@ class SpindleSpeedLimit(FigureFunction):
             raise EntryError(
                 f"{rpm:g} rpm is not between {low:g} and {high:g} rpm, which this spindle can turn"
             )
-        self.desk.post(SpindleLimit(rpm))
+        limit = self.desk.snapshot().spindle_limit
+        if limit and rpm > limit and self.desk.refused(Act.SPINDLE_LIMIT):
+            return False
+        self._limit(rpm)
         self.desk.done(tr("SPINDLE LIMITED TO {rpm} RPM UNTIL RESTART").format(rpm=formats.rpm(rpm)))
         return True
 

@@ -325,6 +325,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>A HIGHER SPINDLE LIMIT</source>
+      <translation>UN LÍMITE MÁS ALTO DEL HUSILLO</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>A T stands between G35 and G36.</source>
       <translation>Hay una T entre G35 y G36.</translation>
     </message>
@@ -2100,6 +2105,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>OUTPUTS BY HAND</source>
+      <translation>SALIDAS A MANO</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>Of TRANSMIT and TRACYL alone.</source>
       <translation>Sólo de TRANSMIT y TRACYL.</translation>
     </message>
@@ -2320,6 +2330,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>RECORDS OF THE SCOPE</source>
+      <translation>REGISTROS DEL OSCILOSCOPIO</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>RED</source>
       <translation>ROJO</translation>
     </message>
@@ -2527,6 +2542,11 @@
       <location filename="" />
       <source>SERVICE</source>
       <translation>SERVICIO</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>SIMULATED INPUTS</source>
+      <translation>ENTRADAS SIMULADAS</translation>
     </message>
     <message>
       <location filename="" />
@@ -2807,6 +2827,11 @@
       <location filename="" />
       <source>THE MACHINE FILE</source>
       <translation>EL FICHERO DE MÁQUINA</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>THE PLACE OF SHARED PROGRAMS</source>
+      <translation>EL LUGAR DE LOS PROGRAMAS COMPARTIDOS</translation>
     </message>
     <message>
       <location filename="" />
@@ -5582,6 +5607,11 @@
       <location filename="app/desk/screen_settings.py" />
       <source>AS THE PROGRAM</source>
       <translation>COMO EL PROGRAMA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/screen_settings.py" />
+      <source>screen: %1 %2 → %3</source>
+      <translation>pantalla: %1 %2 → %3</translation>
     </message>
     <message>
       <location filename="app/desk/sounds.py" />
@@ -11030,6 +11060,11 @@
     </message>
     <message>
       <location filename="app/scope/scope_model.py" />
+      <source>record %1 deleted</source>
+      <translation>registro %1 borrado</translation>
+    </message>
+    <message>
+      <location filename="app/scope/scope_model.py" />
       <source>{most} CURVES ARE SHOWN, AND NO MORE CAN BE TOLD APART: TAKE ONE AWAY FIRST</source>
       <translation>SE MUESTRAN {most} CURVAS Y NO SE DISTINGUEN MÁS: QUITE UNA PRIMERO</translation>
     </message>
@@ -13105,6 +13140,16 @@
     </message>
     <message>
       <location filename="app/special/inputs_outputs.py" />
+      <source>output %1 by hand: %2</source>
+      <translation>salida %1 a mano: %2</translation>
+    </message>
+    <message>
+      <location filename="app/special/inputs_outputs.py" />
+      <source>simulated input %1: %2</source>
+      <translation>entrada simulada %1: %2</translation>
+    </message>
+    <message>
+      <location filename="app/special/inputs_outputs.py" />
       <source>{name} IS A BUTTON OF THE STATION OR FOLLOWS THE MACHINE</source>
       <translation>{name} ES UN BOTÓN DEL PUESTO O SIGUE A LA MÁQUINA</translation>
     </message>
@@ -13192,6 +13237,11 @@
       <location filename="app/special/lamps_and_sound.py" />
       <source>none in the machine file: lamp_red, lamp_amber, lamp_green, lamp_buzzer under [io.out]</source>
       <translation>ninguna en el archivo de máquina: lamp_red, lamp_amber, lamp_green, lamp_buzzer en [io.out]</translation>
+    </message>
+    <message>
+      <location filename="app/special/lamps_and_sound.py" />
+      <source>sound: %1 → %2 %, silent: %3</source>
+      <translation>sonido: %1 → %2 %, en silencio: %3</translation>
     </message>
     <message>
       <location filename="app/special/lamps_and_sound.py" />
@@ -13655,6 +13705,11 @@
     </message>
     <message>
       <location filename="app/special/setup_sheet_function.py" />
+      <source>'%1' taken away</source>
+      <translation>'%1' quitada</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet_function.py" />
       <source>A NOTE HAS {most} LETTERS AT MOST: TAKE ANOTHER ONE</source>
       <translation>UNA NOTA TIENE {most} LETRAS COMO MÁXIMO: TOME OTRA</translation>
     </message>
@@ -13742,6 +13797,21 @@
       <location filename="app/special/setup_sheet_function.py" />
       <source>Writing …</source>
       <translation>Se escribe …</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet_function.py" />
+      <source>in another order</source>
+      <translation>en otro orden</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet_function.py" />
+      <source>notes of %1: %2</source>
+      <translation>notas de %1: %2</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet_function.py" />
+      <source>paper: %1 → %2</source>
+      <translation>papel: %1 → %2</translation>
     </message>
     <message>
       <location filename="app/special/setup_sheet_function.py" />
@@ -13902,6 +13972,11 @@
       <location filename="app/special/spindle_limit.py" />
       <source>a limit until restart</source>
       <translation>un tope hasta reiniciar</translation>
+    </message>
+    <message>
+      <location filename="app/special/spindle_limit.py" />
+      <source>spindle limit: %1</source>
+      <translation>límite del husillo: %1</translation>
     </message>
     <message>
       <location filename="app/transfer/serial_settings.py" />

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import argparse
 import io
 import json
+import re
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
 
 import resources
-from app.cli.main import main
+from app.cli.main import build_parser, main
 from core.store.store import Store
 
 Captured = pytest.CaptureFixture[str]
@@ -105,6 +107,95 @@ def test_what_is_of_service_is_refused_below(
     assert "may be changed from SERVICE level on; BEN is of SETUP: give --as one of ANNA" in told
 
 
+# --- every command ---------------------------------------------------------------------------------------
+
+CHANGES: dict[str, tuple[str, ...]] = {
+    "offsets set": ("T3", "x=1", "z=-1"), "offsets clear": ("T",), "offsets undo": (),
+    "store restore": ("{file}",), "store import": ("{home}",), "setup load": ("{file}",),
+    "access add": ("dora",), "access pin": ("anna",), "access remove": ("anna",),
+    "machine accept": ("{machine}",),
+    "jobs add": ("pin.nc", "5"), "jobs move": ("1", "1"), "jobs remove": ("1",), "jobs clear": (),
+    "share begin": (), "share publish": (), "share take": ("PIN.NC",), "share keep": ("PIN.NC",),
+    "serial receive": ("--port", "/dev/null"),
+    "prove": ("{program}", "--stock", "bar:1.0", "--keep-stock"),
+    "run": ("{program}", "--headless", "--stock", "bar:1.0", "--keep-stock"),
+    "profile": ("{file}", "--out", "{folder}/new.nc"),
+}  # fmt: skip
+"""Each command that changes something, with what it needs to come to the question who does it."""
+
+READS = {
+    "expand", "trace", "alarms", "parts", "shift", "scope", "offsets show", "offsets history",
+    "store verify", "access list", "access table", "jobs list", "share status", "share compare",
+    "machine check", "machine hal", "machine mtconnect", "serial ports", "serial send", "setup completion",
+    "store backup", "store export", "setup save",  # to a file of whoever asks; the store stays as it is
+    "machine peer",  # the other end of a machine that is simulated
+    "setup desktop",  # the menu of the system's user
+    "access reset",  # for those whose PINs are forgotten, at the machine's own keyboard
+}  # fmt: skip
+"""Commands that change nothing here that a level could guard."""
+
+
+def commands(parser: argparse.ArgumentParser, *words: str) -> Iterator[tuple[str, bool]]:
+    """Each command with its action, and whether it takes ``--as``."""
+    below = [each for each in parser._actions if isinstance(each, argparse._SubParsersAction)]
+    if not below:
+        yield " ".join(words), any("--as" in each.option_strings for each in parser._actions)
+    for each in below:
+        for name, choice in each.choices.items():
+            yield from commands(choice, *words, name)
+
+
+def test_each_command_says_who_changes_or_is_known_to_read() -> None:
+    found = dict(commands(build_parser()))
+    assert {name for name, asks in found.items() if asks} == set(CHANGES)
+    assert {name for name, asks in found.items() if not asks} == READS
+
+
+@pytest.mark.parametrize("command", list(CHANGES))
+def test_each_change_asks_a_rule_before_it_is_made(
+    command: str, say: Say, people: None, home: Path, tmp_path: Path
+) -> None:
+    (tmp_path / "own.toml").write_text(resources.machine_file("gt75.toml"))
+    (tmp_path / "part.nc").write_text("G90G94F200\nT1\nX.5Z0\nM30\n")
+    (home / "programs").mkdir()
+    given = {"home": home, "folder": home / "programs", "file": tmp_path / "b.db",
+             "machine": tmp_path / "own.toml", "program": tmp_path / "part.nc"}  # fmt: skip
+    words = [word.format(**given) for word in CHANGES[command]]
+    status, told = say(*command.split(), *words, "--as", "nobody")
+    assert status == 2
+    assert re.search(r"may be changed from \w+ level on; nobody is not among the people", told), told
+    assert list((home / "programs").iterdir()) == []
+
+
+@pytest.mark.parametrize(("words", "level"), [
+    (("share", "publish"), "SETUP"), (("share", "publish", "--claim"), "SERVICE"),
+    (("share", "begin"), "SERVICE"), (("share", "take", "PIN.NC"), "SETUP"),
+    (("share", "keep", "PIN.NC"), "SETUP"), (("serial", "receive", "--port", "/dev/null"), "SETUP"),
+])  # fmt: skip
+def test_programs_are_of_setup_and_their_place_of_service(
+    words: tuple[str, ...], level: str, say: Say, people: None
+) -> None:
+    status, told = say(*words)  # the system's user, of no level
+    assert (status, f"may be changed from {level} level on; shop is not among the people" in told) == (
+        2,
+        True,
+    )
+
+
+def test_a_shared_program_has_the_name_in_the_log(say: Say, people: None, home: Path, tmp_path: Path) -> None:
+    (tmp_path / "shop").mkdir()
+    table = f'[sharing]\nfolder = "{tmp_path / "shop"}"\ndesk = "LATHE 1"\n'
+    (tmp_path / "own.toml").write_text(f"{resources.machine_file('gt75.toml')}\n{table}")
+    named = ("--machine", tmp_path / "own.toml", "--as")
+    assert say("share", "begin", *named, "ben", typed="2580")[0] == 2
+    assert say("share", "begin", *named, "anna", typed="4711")[0] == 0
+    assert say("share", "publish", *named, "ben", typed="2580")[0] == 0
+    assert say("share", "status", *named[:2])[0] == 0  # looking is everybody's
+    with Store.open(home) as store:
+        told = [(row.text, row.who) for row in store.events(kinds={"change"})]
+    assert told == [("share publish", "BEN"), ("share begin", "ANNA")]
+
+
 def test_a_restore_has_the_name_in_the_log(say: Say, people: None, home: Path, tmp_path: Path) -> None:
     assert say("store", "backup", tmp_path / "b.db")[0] == 0
     assert say("store", "restore", tmp_path / "b.db", "--as", "anna", typed="4711")[0] == 0
@@ -138,7 +229,7 @@ def test_a_shared_program_is_taken_from_setup_on(say: Say, people: None, home: P
     file, shop = tmp_path / "lathe.toml", tmp_path / "shop"
     shop.mkdir()
     file.write_text(resources.machine_file("gt75.toml") + f'\n[sharing]\nfolder = "{shop}"\n')
-    assert say("share", "begin", "--machine", file)[0] == 0
+    assert say("share", "begin", "--machine", file, "--as", "anna", typed="4711")[0] == 0
     status, told = say("share", "take", "peg.nc", "--machine", file)
     assert (status, "PROGRAMS may be changed from SETUP level on" in told) == (2, True)
     status, told = say("share", "take", "peg.nc", "--as", "ben", "--machine", file, typed="2580")

@@ -46,7 +46,7 @@ def shop(tmp_path: Path, turndesk: Turndesk, monkeypatch: pytest.MonkeyPatch) ->
 
 def test_published_seen_compared_taken_and_settled(shop: Shop) -> None:
     shop.program(1, "CAP.NC").write_text("G00 X1\nM30\n")
-    assert shop.share(1, "publish")[1].endswith("has all 1 programs of LATHE 1\n")
+    assert shop.share(1, "publish")[1].endswith("has the one program of LATHE 1\n")
     told = json.loads(shop.share(2, "status", "--json")[1])
     (program,) = told["programs"]
     assert (program["program"], program["state"], program["here"]) == ("CAP.NC", "new", None)

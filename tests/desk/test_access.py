@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import re
 import sqlite3
 from collections.abc import Callable, Iterator
 from contextlib import closing
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TypeVar
 
@@ -24,10 +25,17 @@ from app.quality.parts_watch import PartsWatch
 from app.sharing.sharing import Sharing
 from app.sharing.sharing_model import SharingModel
 from app.special.access_levels import AccessLevels
+from app.special.inputs_outputs import InputsOutputs
+from app.special.inputs_outputs import Kind as Shown
+from app.special.lamps_and_sound import LampsAndSound
 from app.special.logged_events import FILTERS
 from app.special.machine_file_acceptance import MachineFileAcceptance
 from app.special.parts_counter import PartsCounterFunction
+from app.special.setup_sheet_function import SetupSheetFunction
 from app.special.special_functions import SpecialFunction, SpecialFunctions
+from app.special.spindle_limit import SpindleSpeedLimit
+from app.transfer.line_transfer import Received
+from app.transfer.serial_transfer import SerialTransfer
 from core.access.access_page import page
 from core.access.access_table import RULES, Act, Level
 from core.access.pins import PinError, WrongPins, check_pin, hashed, is_pin, wait_after
@@ -47,8 +55,49 @@ HOUSE = Path(__file__).parents[2]
 LIMIT = 60.0
 PINS = {"ANNA": "4711", "BEN": "2580", "CARLA": "9035"}
 LEVELS = {"ANNA": Level.SERVICE, "BEN": Level.SETUP, "CARLA": Level.OPERATOR}
-OPERATORS = {Act.WEAR, Act.COUNTS, Act.INSERTS, Act.READINGS, Act.JOBS, Act.SCREEN, Act.BACKUPS}
-SERVICES = {Act.MACHINE_FILE, Act.RESTORE, Act.PEOPLE}
+OPERATORS = {Act.WEAR, Act.COUNTS, Act.INSERTS, Act.READINGS, Act.JOBS, Act.SCREEN, Act.INPUTS, Act.BACKUPS}
+SERVICES = {Act.MACHINE_FILE, Act.RESTORE, Act.SHARED_PLACE, Act.PEOPLE}
+WRITES = re.compile(
+    r"\.(save_setting|keep_settings|set_setting|save_version|correct_parts|reset_parts|import_all|set_offset)\("
+    r"|\.(keep_person|remove_person|remove_people|keep_program|renamed|set_input|unlink|rename|write_text)\("
+    r"|\b(write_whole|write_new|write_out|store_new|ForceOutput|SpindleLimit)\("
+)
+BEHIND_A_RULE = {
+    "cli/who_changes.py": "the PINs that were wrong",
+    "compose/accepted_machine.py": "asked by machine_file_acceptance.py",
+    "compose/journal.py": "does what pages ask that have asked",
+    "compose/kept_stock.py": "asked by part_options.py and part_sheet.py",
+    "compose/setup_file.py": "asked by setup_command.py",
+    "compose/sharing_desk.py": "asked by share_command.py",
+    "desk/access.py": "asked by access_levels.py",
+    "desk/persistence.py": "as journal.py",
+    "desk/screen_settings.py": "asked by desk.py",
+    "editor/document.py": "asked by may_save of the editor",
+    "quality/parts_watch.py": "asked by features_section.py",
+    "special/part_count.py": "asked by parts_counter.py",
+    "transfer/line_transfer.py": "asked by serial_command.py and serial_transfer.py",
+}
+NO_CHANGE = {
+    "cli/desktop_entry.py": "the menu of the system's user",
+    "cli/proof_cache.py": "proofs that can be made again",
+    "cli/report_file.py": "a report, to a file of whoever asks",
+    "cli/shift_command.py": "a report",
+    "cli/trace_command.py": "setpoints, to a file of whoever asks",
+    "compose/demo_store.py": "a store for trying",
+    "compose/dialects_page.py": "a page of the manual",
+    "compose/headless_run.py": "inputs of a run that is simulated",
+    "compose/played_machine.py": "the other end of a machine that is simulated",
+    "compose/run_log.py": "old files of the machine's own log",
+    "compose/thumbnails.py": "pictures that can be made again",
+    "desk/daily_backup.py": "the machine's own backups",
+    "editor/drafts.py": "what is typed and not saved",
+    "jog/hand_functions.py": "coolant off: it brings to rest",
+    "mdi/mdi_line.py": "the lines that were typed",
+    "programs/whole_file.py": "how a file is written; who calls it asks",
+    "quality/shift_function.py": "a report",
+    "scope/record_shelf.py": "how records are kept; asked by scope_model.py",
+    "special/setup_sheet_work.py": "the sheet on paper",
+}
 
 
 @dataclass
@@ -143,6 +192,14 @@ def test_somebody_asks_for_every_act(act: Act) -> None:
     assert any(f"Act.{act.name}" in text for text in sources)
 
 
+def test_whoever_writes_asks_a_rule_or_is_known_to_need_none() -> None:
+    """A new writer of the store, the program folder, outputs or inputs comes to this list, or to a rule."""
+    app = HOUSE / "app"
+    texts = {path.relative_to(app).as_posix(): path.read_text("utf-8") for path in app.rglob("*.py")}
+    writers = {name for name, text in texts.items() if WRITES.search(text) and "Act." not in text}
+    assert writers == set(BEHIND_A_RULE) | set(NO_CHANGE)
+
+
 # --- off -------------------------------------------------------------------------------------------------
 
 
@@ -200,6 +257,83 @@ def test_pages_without_a_book_refuse_too(room: Room) -> None:
     assert editor.may_save() == ""
     programs.transfer.begin((), None, out=False)
     assert programs.transfer.open
+
+
+def test_a_lower_spindle_limit_is_everybodys_and_a_higher_one_is_not(room: Room) -> None:
+    room.enter_people()
+    limit = room.find(SpindleSpeedLimit)
+    assert limit.take("1500")
+    room.run()
+    assert limit.take("1200")
+    room.run()
+    assert not limit.take("1500")
+    assert "A HIGHER SPINDLE LIMIT: SETUP LEVEL IS NEEDED, OPERATOR IS IN FORCE" in room.desk.notice
+    limit.lift()
+    assert "SETUP LEVEL IS NEEDED" in room.desk.notice
+    room.run()
+    assert room.desk.snapshot().spindle_limit == 1200.0
+    room.sign_in("BEN")
+    limit.lift()
+    limit._lifted()
+    room.run()
+    assert room.desk.snapshot().spindle_limit == 0.0
+    assert room.log("change") == [
+        ("spindle limit: none → 1500 rpm", "operator"),
+        ("spindle limit: 1500 rpm → 1200 rpm", "operator"),
+        ("spindle limit: 1200 rpm → none", "BEN"),
+    ]
+
+
+def test_outputs_by_hand_are_of_setup_and_the_lamp_test_is_not(room: Room) -> None:
+    room.enter_people()
+    page = room.find(InputsOutputs)
+    page.kind = Shown.OUTPUTS
+    page.marked = tuple(page.machine.outputs).index("coolant")
+    room.desk.clear()
+    page.act()
+    assert "OUTPUTS BY HAND: SETUP LEVEL IS NEEDED" in room.desk.notice
+    page._force("coolant", True)  # the level fell back while it was asked
+    room.run()
+    assert "coolant" not in room.desk.snapshot().outputs
+    room.sign_in("BEN")
+    page._force("coolant", True)
+    room.run()
+    assert "coolant" in room.desk.snapshot().outputs
+    assert room.log("change") == [("output coolant by hand: on", "BEN")]
+
+
+def test_what_has_come_by_the_line_is_not_stored_when_the_level_fell_back(room: Room) -> None:
+    room.enter_people()
+    room.sign_in("BEN")
+    line = room.find(SerialTransfer)
+    line.received = Received(b"M30\n", "PIN", 1, "", False, 0, (), 0.0)
+    room.access.sign_out()
+    line._store()
+    assert "PROGRAMS: SETUP LEVEL IS NEEDED" in room.desk.notice
+    assert line.received is not None
+    assert not (line.own / "PIN").exists()
+
+
+def test_a_shared_program_asks_again_when_it_is_taken_and_has_the_name_of_who_took_it(
+    room: Room, tmp_path: Path
+) -> None:
+    room.enter_people()
+    page, peg = shared(room, tmp_path), tmp_path / "home" / "programs" / "peg.nc"
+    version = page.version
+    assert version is not None
+    for refused in (lambda: page._take(version), lambda: page._keep("peg.nc", "peg.nc")):
+        room.desk.clear()  # what was asked is answered when the level has fallen back
+        refused()
+        page.worker.settle(LIMIT)
+        assert "PROGRAMS: SETUP LEVEL IS NEEDED" in room.desk.notice
+    assert not peg.exists()
+    room.sign_in("BEN")
+    page._take(version)
+    room.access.sign_out()
+    page.worker.settle(LIMIT)
+    assert peg.read_text() == "M30\n"
+    assert room.log("change") == [("program peg.nc taken as LATHE 2 has it", "BEN")]
+    page.close()
 
 
 def test_what_stops_the_machine_is_behind_no_level(room: Room) -> None:
@@ -306,6 +440,29 @@ def test_every_history_has_the_name(room: Room) -> None:
     room.find(PartsCounterFunction).correct(1)
     assert room.log("change")[-1] == ("parts of pin.nc: 0 → 1", "BEN")
     assert "change" in FILTERS["OPERATOR"]
+
+
+def test_settings_sounds_and_notes_are_lines_of_the_log(room: Room) -> None:
+    room.enter_people()
+    room.sign_in("CARLA")
+    room.desk.choose_setting("theme", "light")
+    room.desk.next_readout()  # many times a shift: no line
+    room.find(LampsAndSound)._choose(40, frozenset())
+    sheet = room.find(SetupSheetFunction)
+    room.desk.session._now = replace(room.desk.session.now, path=Path("pin.nc"))
+    sheet._keep(["soft jaws"])
+    sheet._keep(["soft jaws", "stop 12 mm"])
+    sheet._keep(["stop 12 mm"])
+    sheet.next_paper()
+    texts = [text for text, who in room.log("change") if who == "CARLA"]
+    assert texts[:5] == [
+        "screen: theme dark → light",
+        "sound: 0 → 40 %, silent: nothing",
+        "notes of pin.nc: 'soft jaws'",
+        "notes of pin.nc: 'stop 12 mm'",
+        "notes of pin.nc: 'soft jaws' taken away",
+    ]
+    assert [text.partition(":")[0] for text in texts[5:]] == ["paper"]
 
 
 def test_an_accepted_machine_file_has_the_name(room: Room) -> None:
