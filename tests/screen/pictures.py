@@ -37,6 +37,7 @@ from core.store.part_cycles import CycleRow, StopRow
 from core.store.store import Store
 from core.store.store_rows import Kind
 from core.store.tool_lives import LifeRow
+from tests.screen.picture_shop import put_drawing, share_with_another
 
 SIZES = ((1024, 600), (1920, 1080), (3840, 2160))
 THEMES = ("dark", "light")
@@ -210,7 +211,10 @@ def _pictures(out: Path, sizes: tuple[tuple[int, int], ...], themes: tuple[str, 
     journal = Journal.at_home()
     stage = Stage(journal)
     stage.make_ready()
-    yield from taken(stage.desk, out, False, sizes, themes, heard=stage.hears)
+    with TemporaryDirectory(prefix="shop-") as folder:
+        put_drawing(Path(os.environ["TURNDESK_HOME"]) / "programs")
+        share_with_another(stage.desk, journal, Path(folder))
+        yield from taken(stage.desk, out, False, sizes, themes, heard=stage.hears)
     stage.press_start()
     stage.tick(lambda: stage.desk.snapshot().line >= AT_LINE)
     stage.tick(lambda: _z(stage.desk) <= AT_Z)
@@ -265,6 +269,7 @@ SCENES = (
     Scene("editor", "F3"),
     Scene("shapes", 'F3 Shapes R "1/2 Enter Enter Enter ".5'),
     Scene("calculators", 'F3 Calculators T ".5 Enter "1 Enter "1'),
+    Scene("drawing", "F3 Shapes X"),
     Scene("mdi", 'F1 F4 "G90G94F10X.9Z.1'),
     Scene("jog", "F1 F5"),
     Scene("by-hand", 'F1 F5 T "1 Enter C X B 1 "800 Enter'),
@@ -279,6 +284,7 @@ SCENES = (
     Scene("life", "F1 W 4"),
     Scene("trends", "F1 W 5 Enter Down Down"),
     Scene("jobs", "Jobs Down"),
+    Scene("sharing", "F1 X"),
     Scene("speed", 'F10 1 "1500'),
     Scene("parts", "F10 2"),
     Scene("outputs", "F10 3 Down"),
@@ -287,6 +293,7 @@ SCENES = (
     Scene("log", "F10 5"),
     Scene("backup", "F10 6"),
     Scene("screen", "F10 7"),
+    Scene("lamps", f"F10 {'Down ' * 14}Enter"),
     Scene("automatic", running=True),
     Scene("spanish", running=True, language="es"),
     Scene("mill-editor", "F3", mill=True, line=18),
@@ -348,7 +355,13 @@ def press(window: MainWindow, keys: str) -> None:
 
 
 def _to_line(window: MainWindow, line: int) -> None:
+    """And until a drawing has been read, and what was made of it proved."""
     page = window.frame.page if window.frame is not None else None
+    if isinstance(page, EditorPage) and page.shapes.model.form is not None:
+        _settle(window, SETTLE)
+        page.shapes.model.planning.settle(LOADING)
+        _settle(window, SETTLE)
+        page.shapes.model.trying.settle(LOADING)
     if line and isinstance(page, EditorPage):
         _settle(window, SETTLE)
         page.go_to(line)
