@@ -100,8 +100,9 @@ def carry_out(block: Block, context: MachineContext) -> Wait | None:
     match block.action:
         case SpindleRun():
             _start_spindle(block, context)
-        case SpindleStop():
+        case SpindleStop(stands=stands):
             context.spindle.stop()
+            return _until_it_stands(context) if stands else None
         case SpindleLock(orient=orient):
             return _lock_spindle(context, orient=orient)
         case Coolant(on=on):
@@ -126,6 +127,12 @@ def _start_spindle(block: Block, context: MachineContext) -> None:
     if start_conditions.unclamped(context):
         raise AlarmError("collet-open", line=block.line)
     context.spindle.ask(SpindleDemand.of(block))
+
+
+def _until_it_stands(context: MachineContext) -> Wait:
+    """An edge is not freed, and no hand goes near it, before."""
+    spindle, limit = context.spindle, context.machine.spindle.timeout
+    return Wait(lambda: "SPINDLE STOP", lambda _: spindle.stopped, context.now, limit, "ignores-stop")
 
 
 def _lock_spindle(context: MachineContext, *, orient: bool) -> Wait:

@@ -15,7 +15,9 @@ class SpindleRun:
 
 @dataclass(frozen=True, slots=True)
 class SpindleStop:
-    """M05."""
+    """M05; with ``stands`` nothing goes on before the spindle is at rest."""
+
+    stands: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -308,7 +308,7 @@ class Timeline:
         timing = self._machine.timing
         if isinstance(action, Dwell):
             return action.seconds
-        if isinstance(action, SpindleLock):
+        if isinstance(action, SpindleLock) or (isinstance(action, SpindleStop) and action.stands):
             return max(0.0, self.spindle.still_at(self._machine.spindle.stop_below) - self.t)
         if isinstance(action, Collet):
             return timing.collet_close if action.closed else timing.collet_open

@@ -17850,8 +17850,8 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/cycle_moves.py" />
-      <source>Write Q214=0, or turn the edge by hand before the move.</source>
-      <translation>Escriba Q214=0, o gire el filo a mano antes del movimiento.</translation>
+      <source>Write Q214=0, or turn the edge by hand where the program stops for it.</source>
+      <translation>Escriba Q214=0, o gire el filo a mano donde el programa se para para ello.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/cycle_moves.py" />
@@ -18217,6 +18217,26 @@
       <location filename="core/interpreter/klartext/hole_cycles.py" />
       <source>Cycle 204 goes through the hole with the spindle at an angle, and nothing here orients it.</source>
       <translation>El ciclo 204 pasa por el agujero con el husillo en un ángulo, y aquí nada lo orienta.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/hole_cycles.py" />
+      <source>EDGE TO X+</source>
+      <translation>FILO HACIA X+</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/hole_cycles.py" />
+      <source>EDGE TO X-</source>
+      <translation>FILO HACIA X-</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/hole_cycles.py" />
+      <source>EDGE TO Y+</source>
+      <translation>FILO HACIA Y+</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/hole_cycles.py" />
+      <source>EDGE TO Y-</source>
+      <translation>FILO HACIA Y-</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/hole_cycles.py" />

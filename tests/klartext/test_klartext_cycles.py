@@ -7,7 +7,7 @@ import math
 import pytest
 
 from core.geometry.rotary_axes import DatumPreset
-from core.interpreter.actions import Dwell, SpindleRun, SpindleStop
+from core.interpreter.actions import Dwell, ProgramStop, SpindleRun, SpindleStop
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.job_setup import MillTool, ToolOffset
 from tests.klartext.running import Ran, run
@@ -35,8 +35,10 @@ def _shown(block: Block) -> str:
             return f"rest {seconds:g}"
         case SpindleRun(rpm=rpm):
             return f"turn {rpm:g}"
-        case SpindleStop():
-            return "stop"
+        case SpindleStop(stands=stands):
+            return "stands" if stands else "stop"
+        case ProgramStop(message=message):
+            return message
         case None:
             assert block.swivel is not None
             letter = {Kind.RAPID: "R", Kind.FEED: "F", Kind.PLANE_ARC: "A"}[block.kind]
@@ -72,7 +74,12 @@ def test_reaming_goes_out_at_its_feed() -> None:
 
 def test_boring_stops_the_spindle_and_goes_aside() -> None:
     found = told(cycle(202, q201=-8, q214=1, q208=0))
-    assert found == ["turn 1000", "R 3", "F -7", "stop", "F -7", "R 31", "R 31", "turn 1000"]
+    assert found == ["turn 1000", "R 3", "F -7", "stands", "EDGE TO X+", "F -7", "R 31", "R 31", "turn 1000"]
+
+
+def test_boring_without_going_aside_waits_for_the_spindle_and_for_nobody() -> None:
+    found = told(cycle(202, q201=-8, q214=0, q208=0))
+    assert found == ["turn 1000", "R 3", "F -7", "stands", "R 31", "turn 1000"]
 
 
 @pytest.mark.parametrize(

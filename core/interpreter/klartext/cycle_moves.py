@@ -8,7 +8,7 @@ from dataclasses import replace
 
 from core.geometry.lines_and_arcs import Arc, Point
 from core.geometry.plane_arcs import HelixMove
-from core.interpreter.actions import Coolant, Dwell, SpindleRun, SpindleStop
+from core.interpreter.actions import Coolant, Dwell, ProgramStop, SpindleRun, SpindleStop
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.klartext.feed_rates import per_minute
 from core.interpreter.klartext.klartext_state import SLIDES, State
@@ -167,7 +167,7 @@ class CycleTool:
     def warn_unoriented(self) -> None:
         """Nothing stops the spindle of a mill at an angle here: the edge may point anywhere."""
         text = f"Cycle {self._number} frees the edge aside, and nothing here stops the spindle at an angle."
-        hint = "Write Q214=0, or turn the edge by hand before the move."
+        hint = "Write Q214=0, or turn the edge by hand where the program stops for it."
         self._state.tell_once(self._column, Severity.WARNING, "spindle-not-oriented", text, hint)
 
     # --- what it does -------------------------------------------------------------------------------------
@@ -242,8 +242,12 @@ class CycleTool:
         state.modal = state.modal._replace(coolant=number == 8)
         return [state.action(Coolant(number == 8))]
 
-    def stop(self) -> Block:
-        """The spindle at rest."""
+    def stop(self, *, stands: bool = False) -> Block:
+        """The spindle off; with ``stands`` it is waited for."""
         state = self._state
         state.modal = state.modal._replace(spindle=0)
-        return state.action(SpindleStop())
+        return state.action(SpindleStop(stands))
+
+    def halt(self, message: str) -> Block:
+        """For what the operator has to do by hand; Cycle Start goes on."""
+        return self._state.action(ProgramStop(optional=False, message=message))

@@ -11,6 +11,12 @@ from core.interpreter.klartext.cycle_moves import CycleTool
 
 SMALLEST = 1e-6  # mm; less is no depth
 _ASIDE = 0.2  # mm that a boring bar goes aside before it is drawn out
+_EDGE = {
+    (-1.0, 0.0): "EDGE TO X+",
+    (0.0, -1.0): "EDGE TO Y+",
+    (1.0, 0.0): "EDGE TO X-",
+    (0.0, 1.0): "EDGE TO Y-",
+}
 _MOST_PECKS = 10_000
 
 
@@ -47,7 +53,11 @@ def reaming(tool: CycleTool) -> Iterator[Block]:
 
 
 def boring(tool: CycleTool) -> Iterator[Block]:
-    """202: down, the spindle stopped, aside where Q214 says so, out, the spindle on again."""
+    """202: down, the spindle at rest, aside where Q214 says so, out, the spindle on again.
+
+    No spindle here is stopped at an angle: the program stops for the hand that turns the edge away from
+    where it goes.
+    """
     surface, clear, bottom = heights(tool)
     rpm = tool.rpm
     aside = {0: (0.0, 0.0), 1: (-1.0, 0.0), 2: (0.0, -1.0), 3: (1.0, 0.0), 4: (0.0, 1.0)}
@@ -60,9 +70,10 @@ def boring(tool: CycleTool) -> Iterator[Block]:
         return
     yield tool.to(bottom, tool.feed(206))
     yield from tool.dwell(tool.plain(211, 0.0))
-    yield tool.stop()
+    yield tool.stop(stands=True)
     if way != (0.0, 0.0):
         tool.warn_unoriented()
+        yield tool.halt(_EDGE[way])
         yield tool.across((x + way[0] * _ASIDE, y + way[1] * _ASIDE), None, tool.feed(206))
     yield from out(tool, surface, clear, tool.feed(208) if tool.plain(208, 0.0) else None)
     if way != (0.0, 0.0):

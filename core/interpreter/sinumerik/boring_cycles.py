@@ -49,11 +49,11 @@ def lift_off(cycle: Cycle) -> Iterator[Block]:
 
 
 def stop(cycle: Cycle) -> Iterator[Block]:
-    """CYCLE87, CYCLE88: at the bottom the spindle stops, M0 waits for the operator, and rapid out."""
+    """CYCLE87, CYCLE88: at the bottom the spindle comes to rest, M0 waits for the operator, and rapid out."""
     hole = hole_of(cycle)
     steps = [
         *approach(cycle, hole), *_turning(cycle), Step(cycle.x, hole.bottom, needed_feed(cycle)),
-        *dwell(seconds(cycle, "DTB")), Step(0.0, 0.0, action=SpindleStop(), spindle=0),
+        *dwell(seconds(cycle, "DTB")), Step(0.0, 0.0, action=SpindleStop(stands=True), spindle=0),
         Step(0.0, 0.0, action=ProgramStop(optional=False)), Step(cycle.x, hole.retract),
     ]  # fmt: skip
     return cycle.blocks(steps)

@@ -1,0 +1,75 @@
+"""Cycle 202 draws a boring bar out of its bore: never before the spindle stands, and not before a hand has
+turned the edge where Q214 frees it.
+"""
+
+from __future__ import annotations
+
+import pytest
+
+from app.compose.machine_files import shipped_machine
+from app.compose.machine_setup import setup_for
+from core.executor.commands import CycleStart
+from core.executor.snapshot import State
+from core.interpreter.dialects import interpretation
+from core.interpreter.elementary_blocks import Block
+from core.interpreter.job_setup import ToolOffset
+from core.language.source import Source
+from core.proving.prove_program import prove
+from tests.executor.rig import Rig
+
+MILL = shipped_machine("ac-table-mill")
+PROGRAM = (
+    "BEGIN PGM T MM\nTOOL CALL 1 Z S3000 F500\nL X+0 Y+0 Z+5 R0 FMAX M3\n"
+    "CYCL DEF 202 BORING Q200=+2 Q201=-6 Q206=+300 Q211=+0 Q208=+300 Q203=+0 Q204=+2 Q214={} Q336=+0\n"
+    "CYCL CALL\nL Z+5 FMAX\nM30\nEND PGM T MM\n"
+)
+X, Z = 0, 2
+BOTTOM = -356.0  # mm from home: Z0 lies at -350 without a preset
+
+
+def boring(direction: int) -> Rig:
+    """The program begun, and played until the bar stands on the ground of its bore."""
+    setup = setup_for(MILL, tools={1: ToolOffset()}, secondary={})
+    blocks: list[Block] = list(interpretation(Source("T.H", PROGRAM.format(direction)), setup).blocks())
+    rig = Rig(machine=MILL, made=blocks)
+    rig.start("anything")
+    rig.until_true(lambda shot: shot.actual[Z] < BOTTOM + 0.01)
+    return rig
+
+
+@pytest.mark.parametrize("direction", [0, 1, 4])
+def test_the_bar_moves_in_its_bore_only_while_the_spindle_stands(direction: int) -> None:
+    rig = boring(direction)
+    assert abs(rig.shot.rpm_actual) > 2900.0
+    waited, bore = set(), rig.shot.actual[X]
+
+    def watch(shot: object, rig: Rig = rig) -> None:
+        waited.add(rig.shot.waiting_for)
+        still = abs(rig.shot.actual[Z] - BOTTOM) < 0.02 and abs(rig.shot.actual[X] - bore) < 0.02
+        assert still or abs(rig.shot.rpm_actual) < MILL.spindle.stop_below
+
+    rig.watch.append(watch)
+    if direction:
+        rig.until(State.PROGRAM_STOP)
+        assert rig.shot.rpm_actual == 0.0
+        rig.run(0.4)
+        rig.post(CycleStart())
+    rig.until_true(lambda shot: shot.actual[Z] > BOTTOM + 5.0)
+    assert "SPINDLE STOP" in waited
+
+
+@pytest.mark.parametrize(("direction", "message"), [(1, "EDGE TO X+"), (2, "EDGE TO Y+"), (3, "EDGE TO X-")])
+def test_the_operator_is_told_where_the_edge_has_to_be(direction: int, message: str) -> None:
+    rig = boring(direction)
+    rig.until(State.PROGRAM_STOP)
+    assert rig.shot.message == message
+
+
+def test_the_proof_counts_the_time_in_which_the_spindle_runs_down() -> None:
+    """From 3000 rpm, at the deceleration of the machine file, down to the speed that counts as rest."""
+    setup = setup_for(MILL, tools={1: ToolOffset()}, secondary={})
+    whole = prove(Source("T.H", PROGRAM.format(0)), setup, MILL)
+    without = PROGRAM.format(0).replace("CYCL DEF 202 BORING", "CYCL DEF 201 REAMING")
+    reamed = prove(Source("T.H", without), setup, MILL)
+    down = (3000.0 - MILL.spindle.stop_below) / MILL.spindle.decel
+    assert whole.times.cycle - reamed.times.cycle >= down - 0.01
