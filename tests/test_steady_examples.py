@@ -7,6 +7,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+HOUSE = Path(__file__).parents[1]
 DRAWN = """\
 import sys
 from hypothesis import given, settings, strategies as st
@@ -31,6 +32,7 @@ def test_two_runs_with_other_modules_loaded_draw_the_same(tmp_path: Path) -> Non
     script = tmp_path / "drawn.py"
     script.write_text(DRAWN)
     steady = {name: value for name, value in os.environ.items() if name != "HYPOTHESIS_PROFILE"}
+    steady["PYTHONPATH"] = str(HOUSE)
     outputs = [
         subprocess.run(
             [sys.executable, script, *more], capture_output=True, text=True, check=True, env=steady

@@ -26,8 +26,6 @@ from tests.drivers.contract.world import SimWorld
 _SILENT = Fault(told=0.35, rests=0.45, says="check cable and power")
 # The drives miss our heartbeat.
 _DEAF = Fault(told=0.05, rests=0.45, says="", unknown=ALL_UNKNOWN)
-# Faults of which no drive knows in what mode it is told its positions.
-_NOT_OF_DRIVES = ("silent terminals", "terminals reboot", "garbage", "bus-off", "two masters", "dead reader")
 _SLIDES, _TERMINALS = frozenset({Unknown.SLIDES}), frozenset({Unknown.OUTPUTS, Unknown.INPUTS})
 
 
@@ -153,14 +151,6 @@ class Csp(Canopen):
 
 class Interpolated(Csp):
     """Told a position at each SYNC by 60C1h: interpolated position, as Schunk's and Pilz's drives have it."""
-
-    faults: ClassVar[Mapping[str, Fault]] = {
-        name: fault for name, fault in Csp.faults.items() if name not in _NOT_OF_DRIVES
-    }
-    missing: ClassVar[Mapping[str, str]] = {
-        **Csp.missing,
-        **dict.fromkeys(_NOT_OF_DRIVES, "all but its drives is as with csp: tried there"),
-    }
 
     @staticmethod
     def made(*changes: tuple[str, str], absolute: bool) -> Machine:
