@@ -102,7 +102,7 @@ def test_windows_take_every_block_once(blocks: list[Block], limits: MotionLimits
     assert chunks[-1].profile.position(1e9)[0] == pytest.approx(end_of(blocks), abs=1e-6)
 
 
-@settings(max_examples=250, deadline=None)
+@settings(max_examples=120, deadline=None)
 @given(mostly_nothing(), limits_of_both, st.randoms(use_true_random=False))
 def test_it_may_be_stopped_changed_and_continued_anywhere(
     blocks: list[Block], limits: MotionLimits, chance: Random
