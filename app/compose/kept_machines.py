@@ -12,6 +12,7 @@ import contextlib
 import os
 import pickle
 import sys
+import time
 from importlib.util import cache_from_source, source_hash
 from pathlib import Path
 
@@ -25,6 +26,7 @@ _READERS = (
     "core.table_schema.",
     "drivers.",
 )
+_BEGUN = time.time_ns()  # of this process: what is put in a reader's place later is not what it has loaded
 
 
 def find(file: Path, text: str) -> Machine | None:
@@ -43,12 +45,19 @@ def find(file: Path, text: str) -> Machine | None:
 
 
 def keep(file: Path, text: str, machine: Machine) -> None:
-    """Keep what ``text`` has given, for the next process; where that is not wanted or possible, no harm."""
+    """Keep what ``text`` has given, for the next process; where that is not wanted or possible, no harm.
+
+    Nor where a reader was replaced while this process ran, by an update of the product: the machine would
+    stand under the stamps of readers that have not read it.
+    """
     if sys.dont_write_bytecode:
         return
-    readers = "\n".join(sorted(_stamp(each.relative_to(_ROOT).as_posix()) for each in _readers()))
+    found = _readers()
+    readers = "\n".join(sorted(_stamp(each.relative_to(_ROOT).as_posix()) for each in found))
     rest = readers.encode() + b"\n\n" + pickle.dumps(machine)
     with contextlib.suppress(OSError, NotImplementedError):
+        if any(each.stat().st_ctime_ns > _BEGUN for each in found):
+            return
         place = _place(file)
         place.parent.mkdir(parents=True, exist_ok=True)
         aside = place.with_name(f"{place.name}.{os.getpid()}")

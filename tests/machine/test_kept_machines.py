@@ -76,6 +76,7 @@ def test_it_counts_no_more_once_a_reader_is_changed(tmp_path: Path, monkeypatch:
     reader.write_text("old")
     os.utime(reader, ns=(1, 1))
     monkeypatch.setattr(kept_machines, "_readers", lambda: [reader])
+    monkeypatch.setattr(kept_machines, "_BEGUN", reader.stat().st_ctime_ns)
     file, text, machine = kept("gt75.toml")
     assert kept_machines.find(file, text) == machine
     reader.write_text("new")
@@ -83,6 +84,20 @@ def test_it_counts_no_more_once_a_reader_is_changed(tmp_path: Path, monkeypatch:
     assert kept_machines.find(file, text) is None
     reader.unlink()
     assert kept_machines.find(file, text) is None
+
+
+def test_a_process_that_was_updated_under_way_keeps_nothing(
+    tmp_path: Path, compiled: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It has read with the modules of before, and the stamps would be those of the new ones."""
+    monkeypatch.setattr(kept_machines, "_ROOT", tmp_path)
+    reader = tmp_path / "table_schema.py"
+    reader.write_text("new")
+    os.utime(reader, ns=(1, 1))  # as an archive has it: its time of change may be years ago
+    monkeypatch.setattr(kept_machines, "_readers", lambda: [reader])
+    monkeypatch.setattr(kept_machines, "_BEGUN", reader.stat().st_ctime_ns - 1)
+    kept("gt75.toml")
+    assert not [each for each in compiled.rglob("*") if each.is_file()]
 
 
 def test_the_readers_are_those_of_the_file_and_none_else() -> None:
