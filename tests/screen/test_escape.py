@@ -95,6 +95,26 @@ def test_a_line_of_mdi_under_way_is_held_and_the_page_stays(day: Day) -> None:
     day.reaches(State.IDLE)
 
 
+def test_no_list_and_no_answer_comes_before_the_hold(day: Day) -> None:
+    """The codes are open over a line that runs, and a message has come that nobody asked for."""
+    drives_on(day)
+    opened(day, Key.Key_F4, page_table.MDI)
+    model = day.desk.attached(MdiModel)
+    assert model is not None
+    day.type("G90G94F5X1")
+    day.key(Key.Key_Return)
+    model.line.worker.settle(60.0)
+    day.run(0.05)
+    day.key(Key.Key_F3)
+    assert model.completion.open
+    day.palms()
+    day.reaches(State.RUN)
+    day.desk.say("PEG.NC WAS CHANGED ON LATHE 2: F1, X SHOWS WHAT")
+    day.key(Key.Key_Escape)
+    day.reaches(State.HOLD)
+    assert day.page == page_table.MDI
+
+
 def test_jog_first_takes_an_entry_back_and_stops_what_is_held(day: Day) -> None:
     drives_on(day)
     opened(day, Key.Key_F5, page_table.JOG)
