@@ -293,7 +293,10 @@ class Desk:
         if self.settings.now.first_job:
             self.first_job.see(snapshot, loaded, self.counter.count)
         third = self.lathe.third_axis if self.lathe is not None else "C"
-        view = status_of(snapshot, self.readout, self.with_c, self.settings.units, self.language, third)
+        table = self.lathe is None or self.lathe.table_turns
+        view = status_of(
+            snapshot, self.readout, self.with_c, self.settings.units, self.language, third, table
+        )
         if self._silence.silent(snapshot.t, self.hands.clock()):
             view = replace(view, state=SILENT, tone=Tone.ALARM)
         return snapshot, view, loaded

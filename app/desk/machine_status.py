@@ -97,9 +97,10 @@ def status_of(
     units: Units = Units.PROGRAM,
     language: str = "omniturn",
     third_axis: str = "C",
+    table: bool = True,
 ) -> MachineStatus:
     """What the page shows of ``snapshot``; ``with_c`` when the machine has a C axis, ``language`` is its own.
-    ``third_axis`` is what it calls C.
+    ``third_axis`` is what it calls C, ``table``: whether a table turns on a mill, and not its head alone.
 
     Every figure is in the one unit that ``units`` and this very snapshot come to.
     """
@@ -117,7 +118,7 @@ def status_of(
         feed=feed_figures(snapshot, metric),
         spindle=spindle_figures(snapshot, metric, language),
         modes=modes_of(snapshot),
-        lamps=lamps_of(snapshot),
+        lamps=lamps_of(snapshot, table=table),
         cycle=formats.duration(snapshot.cycle_elapsed),
         last_cycle=formats.duration(snapshot.last_cycle) if snapshot.last_cycle else formats.NOTHING,
         line=snapshot.line,

@@ -43,13 +43,16 @@ def modes_of(snapshot: Snapshot) -> tuple[Lamp, ...]:
     )
 
 
-def lamps_of(snapshot: Snapshot) -> tuple[Lamp, ...]:
-    """From the outputs that are on; their names are those of the machine files (coolant, collet, live1 …)."""
+def lamps_of(snapshot: Snapshot, *, table: bool = True) -> tuple[Lamp, ...]:
+    """From the outputs that are on; their names are those of the machine files (coolant, collet, live1 …).
+
+    ``table``: whether a table turns on this mill, and not its head alone.
+    """
     if snapshot.axes != LATHE:
         return (
             _spindle_lamp(snapshot),
             _output_lamp(snapshot, Lamp("COOLANT", "coolant" in snapshot.outputs)),
-            *_table_lamps(snapshot),
+            *_rotary_lamps(snapshot, table=table),
         )
     live = Lamp("LIVE TOOL", any(name.startswith("live") for name in snapshot.outputs))
     coolant = Lamp("COOLANT", "coolant" in snapshot.outputs)
@@ -74,14 +77,12 @@ def _output_lamp(snapshot: Snapshot, lamp: Lamp) -> Lamp:
     return Lamp(f"{lamp.word} {UNKNOWN}", lit=True, warn=True)
 
 
-def _table_lamps(snapshot: Snapshot) -> tuple[Lamp, ...]:
+def _rotary_lamps(snapshot: Snapshot, *, table: bool) -> tuple[Lamp, ...]:
     """Of a mill: whether moves count in a tilted plane, and whether table or head stand anywhere but at 0."""
     tilted = snapshot.swivel is not None and snapshot.swivel.system.tilted
     rotary = zip(snapshot.axes, snapshot.actual, strict=True)
     turned = any(abs(math.remainder(at, 360.0)) > AT_ZERO for name, at in rotary if name in "ABC")
-    rotaries = snapshot.swivel.system.kinematics.rotaries if snapshot.swivel is not None else ()
-    heads = bool(rotaries) and not any(axis.table for axis in rotaries)
-    return Lamp("TILTED PLANE", lit=tilted), Lamp("HEAD TURNED" if heads else "TABLE TURNED", lit=turned)
+    return Lamp("TILTED PLANE", lit=tilted), Lamp("TABLE TURNED" if table else "HEAD TURNED", lit=turned)
 
 
 def _spindle_lamp(snapshot: Snapshot) -> Lamp:

@@ -86,7 +86,7 @@ class InputsOutputs(SpecialFunction):
 
     def _lamps(self, snapshot: Snapshot) -> Sheet:
         lamps = (
-            *lamps_of(snapshot),
+            *lamps_of(snapshot, table=self.machine.table_turns),
             drives_lamp(snapshot),
             Lamp("ALARM", bool(snapshot.alarms), warn=True),
             Lamp("E-STOP", snapshot.state is State.ESTOP, warn=True),

@@ -172,6 +172,12 @@ class Machine:
         return self.third_axis if self.kind == "lathe" and name == "C" else name
 
     @property
+    def table_turns(self) -> bool:
+        """Whether a mill's rotary axes turn its table, all or some; False: they turn its head alone."""
+        chain = self.kinematics.chain if self.kinematics is not None else ()
+        return not chain or any(axis.table for axis in chain)
+
+    @property
     def lamps(self) -> tuple[str, ...]:
         """Its outputs that are lamps of the signal tower, which the control lights by itself."""
         return tuple(name for name in LAMPS if name in self.outputs)

@@ -100,12 +100,16 @@ def test_lamps_tell_of_plane_and_table(chamfers: tuple[Scene, list[Block]]) -> N
 
 
 def test_where_no_table_turns_the_lamp_tells_of_the_head() -> None:
-    fork = kinematics_of(shipped_machine("fork-head-mill"))
-    assert fork is not None
-    ran = run("L A+20 R0 FMAX\nL A+0 R0 FMAX", fork)
+    """By the machine file: before a program has run it told of a table."""
+    fork, table = shipped_machine("fork-head-mill"), shipped_machine("ac-table-mill")
+    kinematics = kinematics_of(fork)
+    assert kinematics is not None
+    ran = run("L A+20 R0 FMAX\nL A+0 R0 FMAX", kinematics)
     turned, home = (block for block in ran.blocks if block.moves)
-    assert Lamp("HEAD TURNED", lit=True) in lamps_of(snapshot_at(turned))
-    assert Lamp("HEAD TURNED", lit=False) in lamps_of(snapshot_at(home))
+    assert Lamp("HEAD TURNED", lit=True) in lamps_of(snapshot_at(turned), table=fork.table_turns)
+    idle = snapshot_at(home, swivel=None)
+    assert Lamp("HEAD TURNED", lit=False) in lamps_of(idle, table=fork.table_turns)
+    assert Lamp("TABLE TURNED", lit=False) in lamps_of(idle, table=table.table_turns)
 
 
 @pytest.mark.parametrize(("machine", "title"), [
