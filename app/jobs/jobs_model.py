@@ -119,7 +119,7 @@ class JobsModel:
     def setup(self) -> Sheet:
         """Of the marked job: its tools and what each lacks, what the proof has found, notes of its setup."""
         job = self.job
-        title = tr("SETUP") + (f"  ·  {job.program}" if job is not None else "")
+        title = tr("SETUP SHEET") + (f"  ·  {job.program}" if job is not None else "")
         rows = tuple(self._setup_rows(job)) if job is not None else ()
         return Sheet(title, ("", "", ""), (0.13, 0.45, 0.42), rows, raw=frozenset({0, 1, 2}), tall=True)
 
@@ -144,7 +144,7 @@ class JobsModel:
         for each in findings(sheet):
             name = tr("LINE {line}").format(line=each.line) if each.line else tr("PROOF")
             tone = Tone.ALARM if each.severity is Severity.ERROR else Tone.PAUSE
-            yield Row((name, _folded(each.message), _folded(each.hint)), True, tone)
+            yield Row((name, _folded(tr(each.message)), _folded(tr(each.hint))), True, tone)
         yield Row((tr("STOCK"), sheet.stock_words, ""))
         for name, words in sheet.held_words:
             yield Row((name, words, ""))

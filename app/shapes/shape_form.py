@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from app.desk.arithmetic import CHARACTERS, EntryError, value_of
 from app.desk.sheet import edited
+from app.desk.translation import tr
 from core.shapes.contour import Row, row_word
 from core.shapes.number_words import plain
 from core.shapes.pieces import Piece
@@ -93,7 +94,7 @@ class ShapeForm:
         self.one = filled(self.shape, values, self.setting, rows)
         if not self.troubles:
             for refused in self._refusals():
-                self.troubles.setdefault(refused.word, refused.text)
+                self.troubles.setdefault(refused.word, self._with_own_label(refused))
         self.lines = [] if self.troubles else self.one.lines(self.setting)
         self.words = () if self.troubles else self.shape.says(self.one, self.setting)
 
@@ -103,6 +104,13 @@ class ShapeForm:
         except ArithmeticError:
             word = self.fields[min(self.marked, len(self.fields) - 1)].word
             return [Refusal(word, "These figures make no shape: look at the last that was typed.")]
+
+    def _with_own_label(self, refused: Refusal) -> str:
+        """A sentence that begins with the field's label calls it as the form does, in its language."""
+        known = self.shape.field(refused.word)
+        if known is None or not refused.text.startswith(f"{known.label} "):
+            return refused.text
+        return tr(known.label) + refused.text.removeprefix(known.label)
 
     def _value(self, word: str) -> Value | None:
         known, said = self.shape.field(word), self.typed[word]

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 
 from PySide6.QtCore import QRectF, QSize, Qt
-from PySide6.QtGui import QWheelEvent
+from PySide6.QtGui import QMouseEvent, QWheelEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk.translation import spoken, tr
@@ -143,6 +144,13 @@ class LinesPanel(Panel):
     trouble = Shown("")
     words: Shown[tuple[str, ...]] = Shown(())
 
+    _page: Shown[int] = Shown(0)  # of what is said, where it is longer than its place
+
+    def mousePressEvent(self, event: QMouseEvent) -> None:
+        """A finger goes on in what is longer than its place, and behind its end to the beginning."""
+        self._page += 1
+        event.accept()
+
     def draw(self, painter: Painter) -> None:
         room, u = self.inside(), self.look.u
         high = 2.5 * u
@@ -173,8 +181,25 @@ class LinesPanel(Panel):
         text = "\n".join(tr(each) for each in self.words)
         flags = Qt.TextFlag.TextWordWrap | Qt.AlignmentFlag.AlignTop
         used = painter.boundingRect(room, flags, text)
-        painter.drawText(room, flags, text)
-        return room.adjusted(0, min(used.height() + self.look.u, room.height()), 0, 0)
+        if used.height() <= room.height():
+            painter.drawText(room, flags, text)
+            return room.adjusted(0, used.height() + self.look.u, 0, 0)
+        self._say_page(painter, room, flags, text)
+        return room.adjusted(0, room.height(), 0, 0)
+
+    def _say_page(self, painter: Painter, room: QRectF, flags: Qt.TextFlag, text: str) -> None:
+        """As many whole lines as fit, of the page that is turned to; its number stands below."""
+        line = painter.fontMetrics().lineSpacing()
+        lines = max(1, int((room.height() - 2.0 * self.look.u) / line))
+        whole = painter.boundingRect(QRectF(0, 0, room.width(), 0), flags, text).height()
+        pages = math.ceil(whole / (lines * line))
+        page = self._page % pages
+        painter.save()
+        painter.setClipRect(QRectF(room.x(), room.y(), room.width(), lines * line))
+        painter.drawText(room.adjusted(0, -page * lines * line, 0, whole), flags, text)
+        painter.restore()
+        foot = QRectF(room.x(), room.bottom() - 2.0 * self.look.u, room.width(), 2.0 * self.look.u)
+        painter.write(foot, f"{page + 1}/{pages} ▸", 1.7, "accent", at=RIGHT, raw=True)
 
     def _trouble(self, painter: Painter, room: QRectF) -> None:
         painter.setFont(self.look.font(2.0, bold=True))

@@ -164,7 +164,7 @@ class SharingModel:
         title = "  ·  ".join(filter(None, (tr("SHARED PROGRAMS"), where, waiting)))
         return Sheet(
             title,
-            ("PROGRAM", "STATE", "BY", "SAVED", "ON"),
+            ("PROGRAM", "STATE", "BY", "SAVED", "WHO HAS IT"),
             (0.24, 0.26, 0.14, 0.16, 0.2),
             rows,
             self.marked if rows else -1,

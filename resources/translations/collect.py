@@ -22,6 +22,7 @@ from core.language.klartext import klartext_faults
 from core.language.sinumerik.cycle_names import CYCLES, CYCLES_OUTSIDE
 from core.language.sinumerik.word_table import FUNCTIONS, M_FUNCTIONS, OUTSIDE, WORDS
 from core.language.source import Dialect
+from core.shapes.shape_table import HELPERS, SHAPES
 from resources.translations.reading import marked, texts_of
 
 HERE = Path(__file__).parent
@@ -123,6 +124,7 @@ ALSO = (
     "%1 · SIMULATED",
     # What the screen puts together of parts that are texts of their own.
     "LINE %1",
+    "%1 WARNINGS",
     "AND %1 MORE",
     "STOP %1: %2",
     "%1 cuts a contour, and its lines would have to follow",  # the reason stands in the code's entry
@@ -200,7 +202,24 @@ _WORDS = re.compile(
 )
 _CAPITALS = re.compile(r"[A-ZÁÉÍÓÚÑ][A-ZÁÉÍÓÚÑ'’-]+$")
 _SHORT = frozenset(
-    {"ON", "OFF", "MM", "ALL", "TIP", "GO", "UP", "FIT", "ADD", "DEL", "OUT", "END", "SFM", "JOG", "MDI"}
+    {
+        "ON",
+        "OFF",
+        "MM",
+        "ALL",
+        "TIP",
+        "PAD",
+        "GO",
+        "UP",
+        "FIT",
+        "ADD",
+        "DEL",
+        "OUT",
+        "END",
+        "SFM",
+        "JOG",
+        "MDI",
+    }
 )
 
 
@@ -217,7 +236,12 @@ def texts() -> dict[str, str]:
                 read = {text for text in texts_of(tree) if _is_read(text, loud)}
                 for text in sorted(read | set(marked(tree))):
                     found.setdefault(text, str(path.relative_to(HOUSE)))
-    return {**dict.fromkeys([*ALSO, *_of_levels(), *_loud_alarms(), *_of_codes(), *_of_books()], ""), **found}
+    return {
+        **dict.fromkeys(
+            [*ALSO, *_of_levels(), *_loud_alarms(), *_of_codes(), *_of_books(), *_of_shapes()], ""
+        ),
+        **found,
+    }
 
 
 def _of_levels() -> list[str]:
@@ -246,6 +270,13 @@ def _of_books() -> list[str]:
     refused |= {f"%1: {why}." for why in OUTSIDE.values()}
     refused |= {f"{name}: %1" for key, name in vars(klartext_faults).items() if key.isupper()}
     return sorted(shown | refused | {entry.group for entry in FUNCTIONS.values()} | reasons - {""})
+
+
+def _of_shapes() -> list[str]:
+    """Names of shapes and of their fields: many are single words."""
+    shapes = (*SHAPES.values(), *HELPERS.values())
+    labels = {field.label for shape in shapes for field in shape.fields}
+    return sorted({shape.name for shape in shapes} | {each for each in labels if len(each) > 1})
 
 
 def _with_numbered_holes(text: str) -> str:

@@ -25,6 +25,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>%1 WARNINGS</source>
+      <translation>%1 AVISOS</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>%1 are missing</source>
       <translation>faltan %1</translation>
     </message>
@@ -770,6 +775,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>CORNERS</source>
+      <translation>ESQUINAS</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>CYCLE%1: %2.</source>
       <translation>CYCLE%1: %2.</translation>
     </message>
@@ -1070,6 +1080,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>DEPTH</source>
+      <translation>PROFUNDIDAD</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>Datum table missing: %1</source>
       <translation>Falta la tabla de puntos cero: %1</translation>
     </message>
@@ -1365,8 +1380,18 @@
     </message>
     <message>
       <location filename="" />
+      <source>FLATS</source>
+      <translation>CARAS PLANAS</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>FRESH INSERTS</source>
       <translation>PLAQUITAS NUEVAS</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>FROM DIAMETER</source>
+      <translation>DESDE EL DIÁMETRO</translation>
     </message>
     <message>
       <location filename="" />
@@ -1540,6 +1565,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>G75 ROUGHING</source>
+      <translation>DESBASTE G75</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>G89 locks the spindle and stands without M codes.</source>
       <translation>G89 bloquea el husillo y va sin códigos M.</translation>
     </message>
@@ -1547,6 +1577,11 @@
       <location filename="" />
       <source>G96 is active, and a thread needs one speed from first pass to last.</source>
       <translation>G96 está activo, y una rosca necesita una sola velocidad de la primera a la última pasada.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>GROOVE</source>
+      <translation>RANURA</translation>
     </message>
     <message>
       <location filename="" />
@@ -1597,6 +1632,16 @@
       <location filename="" />
       <source>HAL'S REAL-TIME THREAD STANDS</source>
       <translation>EL HILO DE TIEMPO REAL DE HAL ESTÁ PARADO</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>HEAD</source>
+      <translation>INICIO</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>HOLES</source>
+      <translation>BARRENOS</translation>
     </message>
     <message>
       <location filename="" />
@@ -1782,6 +1827,16 @@
       <location filename="" />
       <source>Kind of feed and spindle speed</source>
       <translation>Tipo de avance y de velocidad de husillo</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>LEFT FOR FACING</source>
+      <translation>SOBRANTE PARA CAREAR</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>LEFT FOR FINISHING</source>
+      <translation>SOBRANTE PARA ACABAR</translation>
     </message>
     <message>
       <location filename="" />
@@ -2155,6 +2210,16 @@
     </message>
     <message>
       <location filename="" />
+      <source>PASSES</source>
+      <translation>PASADAS</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>PECK</source>
+      <translation>PICOTEO</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>PEOPLE AND THEIR PINS</source>
       <translation>PERSONAS Y SUS PIN</translation>
     </message>
@@ -2337,6 +2402,11 @@
       <location filename="" />
       <source>RED</source>
       <translation>ROJO</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>RUN-UP</source>
+      <translation>CARRERA PREVIA</translation>
     </message>
     <message>
       <location filename="" />
@@ -2540,13 +2610,33 @@
     </message>
     <message>
       <location filename="" />
+      <source>SERIES</source>
+      <translation>SERIE</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>SERVICE</source>
       <translation>SERVICIO</translation>
     </message>
     <message>
       <location filename="" />
+      <source>SETUP</source>
+      <translation>PREPARADOR</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>SIMULATED INPUTS</source>
       <translation>ENTRADAS SIMULADAS</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>SLOTS</source>
+      <translation>CANALES</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>STARTS</source>
+      <translation>ENTRADAS</translation>
     </message>
     <message>
       <location filename="" />
@@ -2855,6 +2945,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>THREAD G33</source>
+      <translation>ROSCA G33</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>TOOL LIFE GONE, OR PARTS WAIT TO BE MEASURED</source>
       <translation>VIDA DE HERRAMIENTA ACABADA, O HAY QUE MEDIR</translation>
     </message>
@@ -2885,8 +2980,18 @@
     </message>
     <message>
       <location filename="" />
+      <source>TRIANGLE</source>
+      <translation>TRIÁNGULO</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>TRY</source>
       <translation>PROBAR</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>TURN</source>
+      <translation>CILINDRADO</translation>
     </message>
     <message>
       <location filename="" />
@@ -3345,6 +3450,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>UNIT</source>
+      <translation>UNIDAD</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>Unclamps the collet.</source>
       <translation>Abre la pinza.</translation>
     </message>
@@ -3387,6 +3497,11 @@
       <location filename="" />
       <source>WHAT IS RESTORED</source>
       <translation>LO QUE SE RESTAURA</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>WORK</source>
+      <translation>TRABAJO</translation>
     </message>
     <message>
       <location filename="" />
@@ -5176,7 +5291,7 @@
     <message>
       <location filename="app/desk/program_loading.py" />
       <source>DRAWING</source>
-      <translation>DIBUJANDO</translation>
+      <translation>DIBUJO</translation>
     </message>
     <message>
       <location filename="app/desk/program_loading.py" />
@@ -5896,7 +6011,7 @@
     <message>
       <location filename="app/editor/editor_messages.py" />
       <source>ARROWS MARK A CODE AND TURN TO OTHER CHAPTERS, RETURN WRITES IT INTO THE TEXT; ESC: BACK</source>
-      <translation>LAS FLECHAS MARCAN UN CÓDIGO Y PASAN A OTROS CAPÍTULOS, INTRO LO ESCRIBE EN EL TEXTO; ESC: VOLVER</translation>
+      <translation>LAS FLECHAS MARCAN UN CÓDIGO Y PASAN A OTROS CAPÍTULOS, RETURN LO ESCRIBE EN EL TEXTO; ESC: VOLVER</translation>
     </message>
     <message>
       <location filename="app/editor/editor_messages.py" />
@@ -6306,12 +6421,12 @@
     <message>
       <location filename="app/jobs/jobs_function.py" />
       <source>PRESS RETURN FOR THE JOBS; ESC GOES BACK TO THE LIST</source>
-      <translation>PULSE INTRO PARA LOS TRABAJOS; ESC VUELVE A LA LISTA</translation>
+      <translation>PULSE RETURN PARA LOS TRABAJOS; ESC VUELVE A LA LISTA</translation>
     </message>
     <message>
       <location filename="app/jobs/jobs_function.py" />
       <source>Return opens the page; Shift+F6 does so anywhere, J in the main menu.</source>
-      <translation>Intro abre la página; Mayús+F6 lo hace en todas partes, J en el menú principal.</translation>
+      <translation>Return abre la página; Mayús+F6 lo hace en todas partes, J en el menú principal.</translation>
     </message>
     <message>
       <location filename="app/jobs/jobs_function.py" />
@@ -6445,8 +6560,8 @@
     </message>
     <message>
       <location filename="app/jobs/jobs_model.py" />
-      <source>SETUP</source>
-      <translation>PREPARADOR</translation>
+      <source>SETUP SHEET</source>
+      <translation>HOJA DE PREPARACIÓN</translation>
     </message>
     <message>
       <location filename="app/jobs/jobs_model.py" />
@@ -6466,7 +6581,7 @@
     <message>
       <location filename="app/jobs/jobs_model.py" />
       <source>TYPE IT AND PRESS RETURN; ESC KEEPS EVERYTHING AS IT IS</source>
-      <translation>ESCRÍBALO Y PULSE INTRO; ESC DEJA TODO COMO ESTÁ</translation>
+      <translation>ESCRÍBALO Y PULSE RETURN; ESC DEJA TODO COMO ESTÁ</translation>
     </message>
     <message>
       <location filename="app/jobs/jobs_model.py" />
@@ -7086,7 +7201,7 @@
     <message>
       <location filename="app/jog/jog_model.py" />
       <source>RETURN KEEPS WHAT WAS FOUND, ESC LEAVES THE TOOL AS IT WAS</source>
-      <translation>INTRO GUARDA LO HALLADO, ESC DEJA LA HERRAMIENTA COMO ESTABA</translation>
+      <translation>RETURN GUARDA LO HALLADO, ESC DEJA LA HERRAMIENTA COMO ESTABA</translation>
     </message>
     <message>
       <location filename="app/jog/jog_model.py" />
@@ -7571,7 +7686,7 @@
     <message>
       <location filename="app/mdi/mdi_model.py" />
       <source>ARROWS MARK A CODE OR ANOTHER CHAPTER, RETURN WRITES IT INTO THE LINE; ESC: BACK</source>
-      <translation>FLECHAS MARCAN UN CÓDIGO U OTRO CAPÍTULO, RETORNO LO ESCRIBE EN LA LÍNEA; ESC: ATRÁS</translation>
+      <translation>FLECHAS MARCAN UN CÓDIGO U OTRO CAPÍTULO, RETURN LO ESCRIBE EN LA LÍNEA; ESC: ATRÁS</translation>
     </message>
     <message>
       <location filename="app/mdi/mdi_model.py" />
@@ -7581,7 +7696,7 @@
     <message>
       <location filename="app/mdi/mdi_model.py" />
       <source>NO LINE IS READY: TYPE ONE AND PRESS ENTER</source>
-      <translation>NO HAY LÍNEA LISTA: ESCRIBA UNA Y OPRIMA ENTER</translation>
+      <translation>NO HAY LÍNEA LISTA: ESCRIBA UNA Y OPRIMA RETURN</translation>
     </message>
     <message>
       <location filename="app/mdi/mdi_model.py" />
@@ -7606,7 +7721,7 @@
     <message>
       <location filename="app/mdi/mdi_model.py" />
       <source>TYPE A LINE, TAB COMPLETES A CODE, ENTER PROVES IT; F1 LEAVES, THE SPINDLE STAYS AS IT IS</source>
-      <translation>ESCRIBA UNA LÍNEA, TAB COMPLETA UN CÓDIGO, ENTER LA COMPRUEBA; F1 SALE, EL HUSILLO SIGUE COMO ESTÁ</translation>
+      <translation>ESCRIBA UNA LÍNEA, TAB COMPLETA UN CÓDIGO, RETURN LA COMPRUEBA; F1 SALE, EL HUSILLO SIGUE COMO ESTÁ</translation>
     </message>
     <message>
       <location filename="app/mdi/mdi_view.py" />
@@ -7726,7 +7841,7 @@
     <message>
       <location filename="app/offsets/mill_tools.py" />
       <source>STOP: no other part begins when TIME2 is reached        Return turns it on and off</source>
-      <translation>STOP: no empieza otra pieza al llegar a TIME2        Intro lo activa y desactiva</translation>
+      <translation>STOP: no empieza otra pieza al llegar a TIME2        Return lo activa y desactiva</translation>
     </message>
     <message>
       <location filename="app/offsets/mill_tools.py" />
@@ -8641,17 +8756,17 @@
     <message>
       <location filename="app/part/part_sheet.py" />
       <source>TYPE A LENGTH OR A SUM, RETURN KEEPS IT WITH THE PROGRAM; 0: NOT SAID</source>
-      <translation>ESCRIBA UNA LONGITUD O SUMA, RETORNO LA GUARDA CON EL PROGRAMA; 0: NO INDICADO</translation>
+      <translation>ESCRIBA UNA LONGITUD O SUMA, RETURN LA GUARDA CON EL PROGRAMA; 0: NO INDICADO</translation>
     </message>
     <message>
       <location filename="app/part/part_sheet.py" />
       <source>TYPE THE NAME OF THE FILE; RETURN TAKES IT, ESC LEAVES IT AS IT WAS</source>
-      <translation>ESCRIBA EL NOMBRE DEL ARCHIVO; RETORNO LO TOMA, ESC LO DEJA COMO ESTABA</translation>
+      <translation>ESCRIBA EL NOMBRE DEL ARCHIVO; RETURN LO TOMA, ESC LO DEJA COMO ESTABA</translation>
     </message>
     <message>
       <location filename="app/part/part_sheet.py" />
       <source>TYPE THE REASON, RETURN KEEPS IT WITH THE PROGRAM; ESC LEAVES THE CHECK ON</source>
-      <translation>ESCRIBA EL MOTIVO, RETORNO LO GUARDA CON EL PROGRAMA; ESC DEJA LA COMPROBACIÓN</translation>
+      <translation>ESCRIBA EL MOTIVO, RETURN LO GUARDA CON EL PROGRAMA; ESC DEJA LA COMPROBACIÓN</translation>
     </message>
     <message>
       <location filename="app/part/part_sheet.py" />
@@ -10051,12 +10166,12 @@
     <message>
       <location filename="app/quality/shift_function.py" />
       <source>RETURN WRITES THE REPORT TO THE MARKED PLACE; F4 LOOKS FOR STICKS AGAIN</source>
-      <translation>INTRO ESCRIBE EL INFORME EN EL LUGAR MARCADO; F4 BUSCA OTRA VEZ MEMORIAS</translation>
+      <translation>RETURN ESCRIBE EL INFORME EN EL LUGAR MARCADO; F4 BUSCA OTRA VEZ MEMORIAS</translation>
     </message>
     <message>
       <location filename="app/quality/shift_function.py" />
       <source>Return writes it there as HTML.</source>
-      <translation>Intro lo escribe allí como HTML.</translation>
+      <translation>Return lo escribe allí como HTML.</translation>
     </message>
     <message>
       <location filename="app/quality/shift_function.py" />
@@ -11941,7 +12056,7 @@
     <message>
       <location filename="app/searchto/searchto_model.py" />
       <source>LINE {line} WAS RUNNING WHEN THE PROGRAM BROKE OFF; ENTER REBUILDS ITS STATE, F4 ONLY LEADS OUT</source>
-      <translation>LA LÍNEA {line} CORRÍA AL INTERRUMPIRSE EL PROGRAMA; ENTER RECONSTRUYE SU ESTADO, F4 SÓLO SACA</translation>
+      <translation>LA LÍNEA {line} CORRÍA AL INTERRUMPIRSE EL PROGRAMA; RETURN RECONSTRUYE SU ESTADO, F4 SÓLO SACA</translation>
     </message>
     <message>
       <location filename="app/searchto/searchto_model.py" />
@@ -11996,7 +12111,7 @@
     <message>
       <location filename="app/searchto/searchto_model.py" />
       <source>TYPE A LINE NUMBER OR A TEXT, OR CHOOSE BY THE ARROWS; ENTER REBUILDS THE STATE</source>
-      <translation>ESCRIBA UN NÚMERO DE LÍNEA O UN TEXTO, O ELIJA CON FLECHAS; ENTER RECONSTRUYE EL ESTADO</translation>
+      <translation>ESCRIBA UN NÚMERO DE LÍNEA O UN TEXTO, O ELIJA CON FLECHAS; RETURN RECONSTRUYE EL ESTADO</translation>
     </message>
     <message>
       <location filename="app/searchto/searchto_model.py" />
@@ -12166,7 +12281,7 @@
     <message>
       <location filename="app/searchto/searchto_view.py" />
       <source>ENTER REBUILDS THE STATE OF LINE {line}</source>
-      <translation>ENTER RECONSTRUYE EL ESTADO DE LA LÍNEA {line}</translation>
+      <translation>RETURN RECONSTRUYE EL ESTADO DE LA LÍNEA {line}</translation>
     </message>
     <message>
       <location filename="app/searchto/searchto_view.py" />
@@ -12505,6 +12620,11 @@
     </message>
     <message>
       <location filename="app/shapes/shapes_model.py" />
+      <source>PAD</source>
+      <translation>TECLAS</translation>
+    </message>
+    <message>
+      <location filename="app/shapes/shapes_model.py" />
       <source>SHAPES ARE WRITTEN IN OMNITURN OR SINUMERIK: THIS PROGRAM SPEAKS ANOTHER LANGUAGE</source>
       <translation>LAS FORMAS SE ESCRIBEN EN OMNITURN O SINUMERIK: ESTE PROGRAMA HABLA OTRO LENGUAJE</translation>
     </message>
@@ -12521,12 +12641,12 @@
     <message>
       <location filename="app/shapes/shapes_model.py" />
       <source>TYPE A FIGURE OR A SUM, RETURN: NEXT FIELD; F2 WRITES IT INTO THE PROGRAM</source>
-      <translation>ESCRIBA UNA CIFRA O UNA SUMA, RETORNO: CAMPO SIGUIENTE; F2 LO ESCRIBE EN EL PROGRAMA</translation>
+      <translation>ESCRIBA UNA CIFRA O UNA SUMA, RETURN: CAMPO SIGUIENTE; F2 LO ESCRIBE EN EL PROGRAMA</translation>
     </message>
     <message>
       <location filename="app/shapes/shapes_model.py" />
       <source>X Z C R A LEAD TO A COLUMN, RETURN TO THE NEXT POINT; F2 WRITES IT INTO THE PROGRAM</source>
-      <translation>X Z C R A LLEVAN A UNA COLUMNA, RETORNO AL PUNTO SIGUIENTE; F2 LO ESCRIBE EN EL PROGRAMA</translation>
+      <translation>X Z C R A LLEVAN A UNA COLUMNA, RETURN AL PUNTO SIGUIENTE; F2 LO ESCRIBE EN EL PROGRAMA</translation>
     </message>
     <message>
       <location filename="app/shapes/shapes_model.py" />
@@ -12672,6 +12792,11 @@
       <location filename="app/sharing/sharing_model.py" />
       <source>WHAT TAKING THE MARKED VERSION CHANGES</source>
       <translation>LO QUE CAMBIA AL TOMAR LA VERSIÓN MARCADA</translation>
+    </message>
+    <message>
+      <location filename="app/sharing/sharing_model.py" />
+      <source>WHO HAS IT</source>
+      <translation>QUIÉN LA TIENE</translation>
     </message>
     <message>
       <location filename="app/sharing/sharing_model.py" />
@@ -13206,7 +13331,7 @@
     <message>
       <location filename="app/special/lamps_and_sound.py" />
       <source>RETURN SWITCHES THE SOUND OF THE MARKED ROW; F3 LOUDER, F4 TRIES; ESC GOES BACK TO THE LIST</source>
-      <translation>INTRO CAMBIA EL SONIDO DE LA FILA MARCADA; F3 MÁS FUERTE, F4 PRUEBA; ESC VUELVE A LA LISTA</translation>
+      <translation>RETURN CAMBIA EL SONIDO DE LA FILA MARCADA; F3 MÁS FUERTE, F4 PRUEBA; ESC VUELVE A LA LISTA</translation>
     </message>
     <message>
       <location filename="app/special/lamps_and_sound.py" />
@@ -13762,11 +13887,6 @@
       <location filename="app/special/setup_sheet_function.py" />
       <source>Return writes it there, as PDF and as HTML.</source>
       <translation>Return la escribe ahí, en PDF y en HTML.</translation>
-    </message>
-    <message>
-      <location filename="app/special/setup_sheet_function.py" />
-      <source>SETUP SHEET</source>
-      <translation>HOJA DE PREPARACIÓN</translation>
     </message>
     <message>
       <location filename="app/special/setup_sheet_function.py" />

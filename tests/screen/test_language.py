@@ -19,8 +19,11 @@ from app.screen.look import Look
 from app.screen.main_window import MainWindow
 from app.screen.page_base import Page
 from app.screen.theme import DARK
+from app.shapes.shape_form import ShapeForm
 from core.alarms import CATALOGUE, Entry
 from core.executor.snapshot import Alarm
+from core.shapes.shape_setting import Setting
+from core.shapes.shape_table import SHAPES
 from resources.translations.collect import HERE, HOLE, texts
 from resources.translations.collect import catalogue as written
 from tests.screen.hands import Hands, Key
@@ -125,6 +128,20 @@ def test_a_refusal_with_values_is_told_in_spanish(spanish: Hands) -> None:
     spanish.desk.say("REFUSED: spindle limit 9000 is not between 0 and 3500 rpm")
     told = catalogue("es").translate(spanish.desk.notice)
     assert told == "RECHAZADO: el tope del husillo 9000 no está entre 0 y 3500 rpm"
+
+
+@pytest.mark.parametrize(
+    ("key", "told"),
+    [
+        ("R", "TAMAÑO no está dicho: escríbalo."),
+        ("G", "DIÁMETRO no está dicho: escríbalo."),
+        ("F", "DESDE EL DIÁMETRO no está dicho: escríbalo."),
+    ],
+)
+def test_a_refusal_of_a_shape_calls_its_field_as_the_form_does(spanish: Hands, key: str, told: str) -> None:
+    form = ShapeForm(SHAPES[key], Setting())
+    assert tr(form.trouble) == told
+    assert catalogue("es").translate(SHAPES[key].name) not in {"", SHAPES[key].name}
 
 
 def test_no_letter_is_missing_in_the_font() -> None:

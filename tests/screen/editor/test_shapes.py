@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import Qt
+from PySide6.QtCore import QPoint, Qt
+from PySide6.QtGui import QImage
 from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QWidget
+from pytestqt.qtbot import QtBot
 
 from app.editor.editor_view import Mode
+from app.screen.look import Look
 from app.screen.panel import Panel
+from app.screen.theme import DARK
 from app.screen.window_layout import FINGER
+from app.shapes.shapes_view import LinesPanel
 from core.executor.snapshot import State
 from tests.screen.editor.writer import Writer
 from tests.screen.hands import Key
@@ -179,3 +185,22 @@ def test_the_places_over_the_text_open_what_stands_on_them(writer: Writer) -> No
     touch(writer, head, shapes)
     touch(writer, head, keyboard)
     assert writer.editor.lettered
+
+
+def test_what_is_longer_than_its_place_is_turned_by_a_finger(qtbot: QtBot) -> None:
+    above = QWidget()
+    qtbot.addWidget(above)
+    panel = LinesPanel(Look(DARK, 6.4), above)
+    panel.resize(180, 110)
+    panel.words = ("the nose leaves metal there " * 20,)
+
+    def turned() -> QImage:
+        QTest.mouseClick(panel, Qt.MouseButton.LeftButton, pos=QPoint(60, 40))
+        return panel.grab().toImage()
+
+    first = panel.grab().toImage()
+    pages = [turned() for _ in range(40)]
+    assert pages[0] != first
+    assert first in pages  # behind the last page stands the first
+    panel.words = ("short",)
+    assert panel.grab().toImage() == turned()
