@@ -166,9 +166,8 @@ class Journal(Persistence):
         self._post(lambda store: store.log_event("access", text, who=who))
 
     def people(self) -> People:
-        """Who works at the machine."""
-        store = self._store
-        return store.people() if store else People()
+        """Who works at the machine. Raises StoreError while no store is open."""
+        return self.opened().people()
 
     def keep_person(self, row: PersonRow) -> None:
         """Back when it is on the disk. Raises StoreError."""

@@ -23,6 +23,7 @@ NOBODY = "operator"  # in the history, while nobody has signed in
 MINUTES = (2, 5, 10, 30, 60)  # without a key or finger after which a level falls back
 _USUAL = 10
 _WARNED = 30.0  # s before it does
+_AGAIN = 1.0  # s between two tries to read people that could not be read
 _WRONG, _MINUTES = "wrong PINs", "access minutes"  # settings
 
 
@@ -41,6 +42,7 @@ class Access:
     worker: Latest = field(default_factory=lambda: Latest("access"))
     pending: str = ""  # a service reset that is under way, for the header
     reset_look: Callable[[Snapshot], None] = lambda _snapshot: None  # of that reset
+    _unread: float | None = None  # when people were tried last, where they could not be read
     _used: float = 0.0
     _warned: bool = False
 
@@ -118,6 +120,8 @@ class Access:
     def look(self, snapshot: Snapshot) -> None:
         """Once a frame: what was tried, and whether the level falls back, which is said before."""
         self.worker.poll()
+        if self._unread is not None and self.clock() - self._unread >= _AGAIN:
+            self.reload()  # a store that was away at the start is there some time, and its levels with it
         self.reset_look(snapshot)
         if not self.name:
             return
@@ -145,7 +149,9 @@ class Access:
             self.people = self.persistence.people()
             minutes, wrong = self.persistence.setting(_MINUTES), self.persistence.setting(_WRONG)
         except StoreError:
+            self._unread = self.clock()
             return  # the desk says by itself that nothing can be read
+        self._unread = None
         self.minutes = minutes if isinstance(minutes, int) and minutes in MINUTES else _USUAL
         if isinstance(wrong, int) and wrong > self.wrong.count:
             self.wrong = WrongPins(wrong, self.clock())

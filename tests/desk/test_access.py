@@ -572,6 +572,20 @@ def test_who_is_taken_away_is_not_in_force_any_more(room: Room) -> None:
     assert room.access.words == "OPERATOR"
 
 
+def test_levels_come_back_with_a_store_that_was_away_at_the_start(room: Room) -> None:
+    """Else whoever was there then could enter himself as the first one, beside those of the store."""
+    room.enter_people()
+    store, room.journal._store = room.journal._store, None
+    room.desk.access = again = Access(room.journal, clock=lambda: room.at)
+    again.level = Level.OPERATOR
+    assert not again.people.on
+    room.journal._store = store
+    room.at += 1.0
+    room.run(1)
+    assert "SERVICE LEVEL IS NEEDED" in again.refusal(Act.PEOPLE)
+    again.close()
+
+
 # --- people ----------------------------------------------------------------------------------------------
 
 
