@@ -15,7 +15,7 @@ from app.screen.look import CENTRE, Look, Painter
 from app.screen.panel import Panel
 from core.language.diagnostics import Diagnostic, Severity
 
-ROW = 5.2  # units: a fingertip, two lines of text
+ROW = 5.2  # units: two lines of text, at least a fingertip
 
 
 class FindingList(Panel):
@@ -60,7 +60,12 @@ class FindingList(Panel):
 
     @property
     def _rows(self) -> int:
-        return max(1, int((self.height() - 3.0 * self.look.u) / (ROW * self.look.u)))
+        return max(1, int((self.height() - 3.0 * self.look.u) / self._high))
+
+    @property
+    def _high(self) -> float:
+        """Of a row, pixels."""
+        return self.look.row(ROW, 9.0, touch=True)
 
     def wheelEvent(self, event: QWheelEvent) -> None:
         """One row a notch."""
@@ -69,18 +74,18 @@ class FindingList(Panel):
         self.update()
 
     def draw(self, painter: Painter) -> None:
-        u = self.look.u
+        u, high = self.look.u, self._high
         self.frame(painter, self.words)
         shown = self.findings.diagnostics[self._top : self._top + self._rows]
         for place, found in enumerate(shown):
-            box = QRectF(0.6 * u, (2.3 + place * ROW) * u, self.width() - 1.2 * u, ROW * u)
+            box = QRectF(0.6 * u, 2.3 * u + place * high, self.width() - 1.2 * u, high)
             self._row(painter, box, found)
 
     def _row(self, painter: Painter, box: QRectF, found: Diagnostic) -> None:
         u = self.look.u
         if found.line == self._line:
             painter.fill(box, "here")
-        patch = QRectF(box.x() + 0.4 * u, box.y() + 0.9 * u, 3.2 * u, 3.2 * u)
+        patch = QRectF(box.x() + 0.4 * u, box.center().y() - 1.6 * u, 3.2 * u, 3.2 * u)
         painter.fill(patch, TONES[found.severity])
         painter.write(patch, LETTERS[found.severity], 2.0, "on_state", at=CENTRE)
         line = QRectF(box.x() + 4.4 * u, box.y(), 8 * u, box.height())

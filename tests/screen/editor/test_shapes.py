@@ -9,12 +9,15 @@ from PySide6.QtWidgets import QWidget
 from pytestqt.qtbot import QtBot
 
 from app.editor.editor_view import Mode
+from app.editor.findings_view import FindingList
+from app.editor.live_proof import Findings
 from app.screen.look import Look
 from app.screen.panel import Panel
 from app.screen.theme import DARK
 from app.screen.window_layout import FINGER
 from app.shapes.shapes_view import LinesPanel
 from core.executor.snapshot import State
+from core.language.diagnostics import Diagnostic, Severity
 from tests.screen.editor.writer import Writer
 from tests.screen.hands import Key
 
@@ -204,3 +207,17 @@ def test_what_is_longer_than_its_place_is_turned_by_a_finger(qtbot: QtBot) -> No
     assert first in pages  # behind the last page stands the first
     panel.words = ("short",)
     assert panel.grab().toImage() == turned()
+
+
+def test_findings_fit_a_finger_on_the_smallest_screen(qtbot: QtBot) -> None:
+    above = QWidget()
+    qtbot.addWidget(above)
+    panel = FindingList(Look(DARK, 6.4), lambda _found: None, above)
+    panel.resize(374, 106)  # as at 1024x600
+    found = [Diagnostic(line, 1, Severity.ERROR, "unknown", "not known") for line in range(1, 5)]
+    panel.show_findings(Findings(diagnostics=tuple(found)), 4)
+    panel.grab()
+    assert len(panel._places) == 2
+    for box, _ in panel._places:
+        assert box.height() >= FINGER
+        assert panel.area().contains(box)
