@@ -91,6 +91,10 @@ def _run(args: argparse.Namespace) -> int:
 
     machine = read_machine(args.machine)
     if args.out is not None and not args.list:
+        if Path(args.out).exists():
+            raise CommandError(f"{args.out} is there already and is never replaced; take another name")
+        if not Path(args.out).parent.is_dir():
+            raise CommandError(f"{args.out}: cannot be written: its folder is not there")
         args.who = who_may(opened_store, args, Act.PROGRAMS)
     if args.side == "bore" and args.hole is None and not args.list:
         raise CommandError("a bore begins with a hole: say its diameter with --hole")
@@ -232,10 +236,12 @@ def _write(text: str, args: argparse.Namespace) -> None:
         if not args.json:
             sys.stdout.write(text)
         return
+    from app.programs.whole_file import FileError, write_new
+
     try:
-        Path(args.out).write_text(text, encoding="ascii")
-    except OSError as error:
-        raise CommandError(f"{args.out}: cannot be written: {error.strerror}") from error
+        write_new(Path(args.out), text.encode("ascii"))
+    except FileError as error:
+        raise CommandError(str(error)) from error
     note_change(opened_store, args.who, f"program {Path(args.out).name} made of {Path(args.file).name}")
 
 

@@ -173,6 +173,15 @@ def test_what_cannot_be(turndesk: Turndesk, part: Path, words: list[str], says: 
     assert done.err.count("\n") == 1
 
 
+def test_a_program_that_is_there_is_never_replaced(turndesk: Turndesk, part: Path, tmp_path: Path) -> None:
+    out = tmp_path / "mine.nc"
+    out.write_text("M30\n")
+    done = turndesk("profile", part, "--out", out)
+    assert done.status == 2
+    assert "is there already and is never replaced" in done.err
+    assert out.read_text() == "M30\n"
+
+
 def test_no_drawing(turndesk: Turndesk, tmp_path: Path) -> None:
     assert "cannot be read" in turndesk("profile", tmp_path / "none.dxf").err
     assert turndesk("profile", tmp_path / "none.step").status == 2
