@@ -151,7 +151,8 @@ class Session:
     def _keep_so_far(self) -> None:
         kept = self._keep / "mutants.json"
         rooms = json.loads(kept.read_text())["rooms"] if kept.exists() else {}
-        rooms[self.room] = {
+        again = f", seed {self._seed}" if self._seed != 1 else ""  # a sample that no test was written for
+        rooms[f"{self.room}{again}"] = {
             "seed": self._seed,
             "mutants": len(self.results),
             "told": sum(outcome == TOLD for _, outcome, _ in self.results),
