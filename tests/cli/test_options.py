@@ -122,7 +122,8 @@ COVERED = {
     **{(command, "--as"): "tests/cli/test_access.py"
        for command in ("prove", "run", "offsets set", "offsets clear", "offsets undo", "store restore",
                        "store import", "setup load", "machine accept", "jobs add", "jobs move", "jobs remove",
-                       "jobs clear", "access add", "access pin", "access remove")},
+                       "jobs clear", "access add", "access pin", "access remove", "share begin",
+                       "share publish", "share take", "share keep", "serial receive", "profile")},
     **{("access " + action, "--json"): "tests/cli/test_access.py" for action in ("list", "table")},
     ("access add", "--level"): "tests/cli/test_access.py",
     ("serial receive", "--out"): "tests/drivers/transfer",
