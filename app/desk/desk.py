@@ -472,13 +472,16 @@ class Desk:
     def escape(self) -> bool:
         """Esc takes a question back; while something moves it holds, because it is what a hand hits first.
 
-        False when there was neither.
+        What is only told, asked for or not, comes not before the hold. False when there was nothing to do.
         """
-        if self.notice:
+        shot = self.snapshot()
+        moves = shot.state in prompt_line.MOVING
+        if self.asked or (self.notice and not moves):
             self.clear()
-        elif self.snapshot().confirmed:
+        elif shot.confirmed:
             self.post(ConfirmStart(""))
-        elif self.snapshot().state in prompt_line.MOVING:
+        elif moves:
+            self.clear()
             self.feed_hold("Esc at the screen")
         else:
             return False

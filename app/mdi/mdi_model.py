@@ -124,11 +124,12 @@ class MdiModel:
 
     def escape(self) -> bool:
         """Close the codes, take a ready line back, then what is typed; False when there was neither."""
+        under_way = self.snapshot().state in prompt_line.UNDER_WAY
         if self.completion.open:
             self.completion.open = False
-            return True
+            return not under_way  # a list comes not before the hold
         begun = self.line.ready or self.typing.text or self.line.busy
-        if self.snapshot().state in prompt_line.UNDER_WAY or not begun:
+        if under_way or not begun:
             return False
         if self.line.ready is None and not self.line.busy:
             self.typing.put("")

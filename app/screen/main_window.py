@@ -231,18 +231,9 @@ class MainWindow(QWidget):
             self.show()
 
     def _escape(self) -> None:
-        """One step back: in the page, then a question or the feed, and from the last step to Automatic.
-
-        While something moves it holds, whatever is open or said: what a hand hits first must do the safe
-        thing. Only what was asked is answered by it.
-        """
+        """One step back: in the page, then a question or the feed, and from the last step to Automatic."""
         frame = self.frame
-        if frame is None:
-            return
-        if frame.desk.snapshot().state in MOVING and not frame.desk.asked:
-            frame.desk.clear()
-            frame.desk.feed_hold("Esc at the screen")
-        elif not (frame.escape() or frame.desk.escape()):
+        if frame is not None and not (frame.escape() or frame.desk.escape()):
             frame.go(AUTOMATIC)
 
     def put_away(self) -> None:

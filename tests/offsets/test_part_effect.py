@@ -71,7 +71,7 @@ def test_a_thousandth_of_x_takes_two_off_each_diameter_and_leaves_shoulders(
     assert (turned.cells[2], turned.cells[3], turned.lit) == ("0.79800", "−0.00200", True)
     face = rows["SHOULDER0.00000"]
     assert (face.cells[2], face.cells[3], face.lit) == ("0.00000", "–", False)
-    assert shown.words.endswith("FEATURES OF THE PART CHANGE; F6 SHOWS THE TABLE")
+    assert shown.words == "1 FEATURE OF THE PART CHANGES; F6 SHOWS THE TABLE"
 
 
 def test_in_mm_the_same_is_told_in_mm(room: Room, shown: EffectDisplay) -> None:
