@@ -103,10 +103,15 @@ class Store:
 
     @contextmanager
     def read(self) -> Iterator[sqlite3.Connection]:
-        """The reading connection, for one thread at a time; SQLite's errors come out as StoreError."""
+        """The reading connection, for one thread at a time; SQLite's errors come out as StoreError.
+
+        All that is asked within sees one moment: a change that is saved between a row and its sum would
+        else make the row a damaged one.
+        """
         with self._reading:
             try:
-                yield self._reader
+                with _one_moment(self._reader) as connection:
+                    yield connection
             except sqlite3.ProgrammingError as error:
                 raise StoreError(f"{self.path} is closed; nothing can be read from it any more") from error
             except sqlite3.Error as error:
@@ -391,6 +396,17 @@ class Store:
                     offset_tables.change(connection, kind, number, reason, values)
 
         return self.write(operation)
+
+
+@contextmanager
+def _one_moment(connection: sqlite3.Connection) -> Iterator[sqlite3.Connection]:
+    """A transaction that only reads: it waits for no writer, and no writer waits for it."""
+    connection.execute("BEGIN")
+    try:
+        yield connection
+    finally:
+        if connection.in_transaction:  # SQLite itself ends one that a damaged file has broken
+            connection.execute("ROLLBACK")
 
 
 def _writer(connection: sqlite3.Connection, path: Path) -> StoreWriter:

@@ -227,3 +227,20 @@ def test_what_was_damaged_before_a_newer_version_stays_so(kept: Path) -> None:
 def test_a_life_is_read_as_it_was_kept(kept: Path) -> None:
     with Store.open(kept) as store, store.read() as connection:
         assert lives(connection)[3] == LifeRow(3, parts=40, seconds=120.5)
+
+
+def test_what_is_saved_between_a_row_and_its_sum_damages_nothing(
+    kept: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A wear entered while the desk reads its offsets: they are those of before, or those behind it."""
+    with Store.open(kept) as store:
+        sums = row_sums._sums
+
+        def saved_meanwhile(connection: sqlite3.Connection, table: str) -> dict[row_sums.Key, str]:
+            monkeypatch.setattr(row_sums, "_sums", sums)
+            store.set_tool(3, "worn", wear_x=-0.01).result()
+            return sums(connection, table)
+
+        monkeypatch.setattr(row_sums, "_sums", saved_meanwhile)
+        assert store.tools()[3].wear_x == 0.0
+        assert store.tools()[3].wear_x == -0.01
