@@ -75,7 +75,9 @@ def _demand_pin(store: Store, row: PersonRow) -> None:
 
     kept = store.setting(_WRONG)
     wrong = kept if isinstance(kept, int) else 0
-    time.sleep(wait_after(wrong))
+    if pause := wait_after(wrong):
+        sys.stderr.write(f"turndesk: {wrong} wrong PINs in a row: the next can be typed in {pause:.0f} s\n")
+        time.sleep(pause)
     if is_pin(asked_pin(f"PIN of {row.name}: "), Hashed(row.salt, row.hash)):
         store.set_setting(_WRONG, None)
         return

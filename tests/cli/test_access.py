@@ -84,8 +84,9 @@ def test_a_wrong_pin_changes_nothing_is_logged_and_lets_wait(
     for _ in range(4):
         status, told = say("offsets", "clear", "T", "--as", "ben", typed="0815")
         assert (status, "that is not the PIN of BEN" in told) == (2, True)
-    assert say("offsets", "set", "G54", "z=-1", "--as", "ben", typed="2580")[0] == 0
-    assert waited == [0.0, 0.0, 0.0, 5.0, 10.0]
+    status, told = say("offsets", "set", "G54", "z=-1", "--as", "ben", typed="2580")
+    assert (status, "4 wrong PINs in a row: the next can be typed in 10 s" in told) == (0, True)
+    assert waited == [5.0, 10.0]
     with Store.open(home) as store:
         assert store.events("wrong PIN")[0].text == "wrong PIN for BEN, 4 in a row, on the command line"
 
