@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING
+
+from core.dataclass import dataclass
 
 if TYPE_CHECKING:
     from app.cli.proof_job import ProofJob

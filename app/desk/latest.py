@@ -12,8 +12,10 @@ import time
 from collections import deque
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TypeVar
+
+from core.dataclass import dataclass
 
 _log = logging.getLogger(__name__)
 

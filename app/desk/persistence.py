@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 
+from core.dataclass import dataclass
 from core.store.backup_verdict import Verdict
 from core.store.people import People, PersonRow
 from core.store.store_errors import StoreError

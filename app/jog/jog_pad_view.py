@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from functools import partial
 
 from PySide6.QtCore import QPointF, QRectF
@@ -20,6 +19,7 @@ from app.offsets.offset_values import Mode
 from app.screen.look import CENTRE, Look, Painter
 from app.screen.panel import Control, Shown, pressed
 from app.screen.window_layout import FINGER
+from core.dataclass import dataclass
 from core.executor.snapshot import Snapshot
 
 # --- rows of tiles ------------------------------------------------------------------------------------

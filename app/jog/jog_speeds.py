@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from app.desk.formats import MM_PER_INCH
 from app.offsets.offset_values import Mode
+from core.dataclass import dataclass
 from core.machine.machine_model import Machine
 
 INCH_STEPS, MM_STEPS, DEGREE_STEPS = (

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from app.desk.persistence import Persistence
+from core.dataclass import dataclass
 from core.store.store_errors import StoreError
 
 KEY = "mdi"

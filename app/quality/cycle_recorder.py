@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
+from core.dataclass import dataclass
 from core.executor.snapshot import Event, State
 from core.store import part_cycles
 from core.store.part_cycles import CycleRow, StopRow

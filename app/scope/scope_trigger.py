@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from enum import Enum
 
 import numpy as np
 import numpy.typing as npt
 
 from app.desk.translation import tr
+from core.dataclass import dataclass
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 
+from core.dataclass import dataclass
 from core.executor.drive_test_path import DriveTestPath
 from core.executor.job import Job, Proof
 from core.executor.jog_line import Direction

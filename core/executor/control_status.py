@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any
 
+from core.dataclass import dataclass
 from core.executor.interrupted_job import InterruptedJob
 from core.executor.job import Job, Proof
 from core.executor.machine_context import MachineContext

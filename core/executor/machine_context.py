@@ -5,9 +5,10 @@ from __future__ import annotations
 import logging
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from core.alarms import Code
+from core.dataclass import dataclass
 from core.executor.attempt import Attempt
 from core.executor.commanded_outputs import CommandedOutputs
 from core.executor.raised_alarm import log_line, make_alarm

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+from core.dataclass import dataclass
 from core.executor.snapshot import ACTIVE, STOPPED, State
 
 _NO_PARTS = frozenset({State.ESTOP, State.FAULT, State.DISABLED})

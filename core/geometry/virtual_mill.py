@@ -8,11 +8,12 @@ the part from there.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
 
+from core.dataclass import dataclass
 from core.geometry.lines_and_arcs import arc_sweep
 
 FloatArray = npt.NDArray[np.float64]

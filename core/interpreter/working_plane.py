@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
+from core.dataclass import dataclass
 from core.geometry.rotary_axes import Kinematics, Place
 from core.geometry.rotation_frames import IDENTITY, Matrix, Vector
 

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from math import inf
 
+from core.dataclass import dataclass
 from core.machine.hardware_model import Hardware
 from core.machine.mill_kinematics import KinematicsModel
 from core.machine.signal_table import LAMPS

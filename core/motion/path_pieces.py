@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import fields
 
 import numpy as np
 
+from core.dataclass import dataclass
 from core.motion.axis_limits import BoolArray, FloatArray, IntArray, MotionError
 from core.motion.block_table import BlockTable
 

@@ -11,7 +11,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+
+from core.dataclass import dataclass
 
 MM_PER_INCH = 25.4
 

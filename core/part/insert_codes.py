@@ -10,9 +10,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import pairwise
 from math import radians, sin, tan
+
+from core.dataclass import dataclass
 
 MM_PER_INCH = 25.4
 

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
 from itertools import pairwise
 
+from core.dataclass import dataclass
 from core.interpreter.elementary_blocks import Kind
 from core.part.cutter import Cutter, Side
 from core.part.stock import Stock

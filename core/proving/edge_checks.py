@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
 
 import numpy as np
 
+from core.dataclass import dataclass
 from core.interpreter.elementary_blocks import Kind
 from core.part.cutter import Cutter, Side
 from core.part.stock import Stock

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import field
 
+from core.dataclass import dataclass
 from core.interpreter.machine_requirements import Need
 from core.interpreter.working_plane import Swivel
 from core.language.diagnostics import Diagnostic, Severity

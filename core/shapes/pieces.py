@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
+from core.dataclass import dataclass
 from core.language.source import Dialect
 from core.shapes.contour import Row, read_contour
 from core.shapes.program_head import MM, RADIUS

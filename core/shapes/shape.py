@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 
+from core.dataclass import dataclass
 from core.language.source import Dialect
 from core.part.tool_shape import ToolKind
 from core.shapes.code_lines import Code

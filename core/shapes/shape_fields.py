@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from enum import StrEnum
 from math import inf
 from typing import TYPE_CHECKING, NamedTuple
+
+from core.dataclass import dataclass
 
 if TYPE_CHECKING:
     from core.shapes.shape_setting import Setting

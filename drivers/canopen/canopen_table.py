@@ -6,9 +6,10 @@ import itertools
 import math
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TypeGuard
 
+from core.dataclass import dataclass
 from core.table_schema import (
     Driver,
     DriverTable,

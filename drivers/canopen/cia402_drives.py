@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import struct
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import canopen
 from canopen.emcy import EmcyError
 
+from core.dataclass import dataclass
 from core.ports import DriverError, Fault, FaultCode
 from drivers.canopen import canopen_objects as od
 from drivers.canopen.canopen_bus import Bus

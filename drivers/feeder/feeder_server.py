@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import fields
 from functools import cache, partial
 
 import numpy as np
 
+from core.dataclass import dataclass
 from core.ports import DriverError, MachinePorts, StationState, Stop, Trip, TrippedError, at_rest
 from drivers.feeder.feeder_messages import (
     NOTHING,

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, field
+from dataclasses import field
+
+from core.dataclass import dataclass
 
 # --- What the look-alike does like the real one, or is made to do; each can be switched.
 

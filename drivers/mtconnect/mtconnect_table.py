@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+from core.dataclass import dataclass
 from core.table_schema import Driver, DriverTable, Field, FileReading, Kind, Unit
 
 _FIELDS = (

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import NamedTuple
 
+from core.dataclass import dataclass
 from core.geometry.chamfer_and_rounding import (
     CornerError,
     CornerTooLargeError,

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import field
 
+from core.dataclass import dataclass
 from core.language.diagnostics import ProgramError
 from core.language.formulas import Formula, Parameter
 from core.language.sinumerik.sinumerik_alarms import NOT_DEFINED
