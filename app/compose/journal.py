@@ -31,6 +31,10 @@ UNDER_WAY = "under_way"  # setting: what a power cut would leave interrupted
 AGAIN = 5.0  # s between two tries to open a store
 
 
+def _nobody() -> None:
+    """Nobody waits for a store that comes late."""
+
+
 class Journal(Persistence):
     """Writes by the store's own thread, so that neither executor nor screen ever waits for the disk.
 
@@ -49,19 +53,33 @@ class Journal(Persistence):
         self._trouble = ""
         self._recorder = CycleRecorder()
         self._noted: InterruptedJob | None = None  # what a power cut would leave interrupted
+        self._has_noted = False  # whether this control has begun or ended anything since
+        self._unread = True  # whether what the last one has left is still to be read
         self._closing = threading.Event()
+        self._opener: threading.Thread | None = None  # where there was no store at the start
         self.left: InterruptedJob | None = None  # what the last one has left
         self.damage: tuple[str, ...] = ()  # what was not as it was saved, in sentences
+        self._tell_late: Callable[[], None] = _nobody
+        self._late = False  # whether the store came after the start
         try:
             self._store = Store.open(folder)
-            self.damage = (*self._store.repaired, *self._store.damaged())
-            note_cut_off_runs(self._store)
-            self.left = self._noted = of_plain(self._store.setting(UNDER_WAY))
+            self._read_what_was_left(self._store)
         except StoreError as error:
             self._trouble = str(error)
             self._held = deque(maxlen=HELD)
             if error.passing:
-                threading.Thread(target=self._try_again, name="store-opener", daemon=True).start()
+                self._opener = threading.Thread(target=self._try_again, name="store-opener", daemon=True)
+                self._opener.start()
+
+    def _read_what_was_left(self, store: Store) -> None:
+        """Damage, runs that were cut off, the interrupted job. Raises StoreError."""
+        self.damage = (*store.repaired, *store.damaged())
+        note_cut_off_runs(store)
+        left = of_plain(store.setting(UNDER_WAY))
+        with self._lock:
+            self._unread = False
+            if not self._has_noted:
+                self.left = self._noted = left
 
     @classmethod
     def at_home(cls) -> Journal:
@@ -86,25 +104,34 @@ class Journal(Persistence):
 
     def note(self, what: InterruptedJob | None) -> None:
         """Keep what a power cut would leave interrupted now; None: nothing."""
-        self._noted = what
-        value = plain(what) if what is not None else None
+        with self._lock:
+            self._noted, self._has_noted = what, True
+        self._post_noted()
+
+    def _post_noted(self) -> None:
+        value = plain(self._noted) if self._noted is not None else None
         self._post(lambda store: store.set_setting(UNDER_WAY, value))
 
     def book(self) -> OffsetBook:
         """The offsets of the store, for the screen to show and to change."""
-        if self._store is None:
-            return OffsetBook(locked=f"OFFSETS CANNOT BE KEPT: {self.trouble}")
-        book = OffsetBook(self._store)
-        self._books.append(book)
+        store = self._store
+        book = OffsetBook(store, "" if store else f"OFFSETS CANNOT BE KEPT: {self.trouble}")
+        self._know(book, store)
         return book
 
     def parts_book(self, tools: Kind = Kind.TOOL) -> PartsBook:
         """Measured parts and tool lives of the store; ``tools``: the table of this machine."""
-        if self._store is None:
-            return PartsBook(locked=f"MEASURED PARTS CANNOT BE KEPT: {self.trouble}", tools=tools)
-        book = PartsBook(self._store, tools=tools)
-        self._books.append(book)
+        store = self._store
+        locked = "" if store else f"MEASURED PARTS CANNOT BE KEPT: {self.trouble}"
+        book = PartsBook(store, locked, tools)
+        self._know(book, store)
         return book
+
+    def _know(self, book: OffsetBook | PartsBook, store: Store | None) -> None:
+        """It is told of another store; also of one that came while the book was made."""
+        self._books.append(book)
+        if self._store is not store:
+            book.reopen(self._store, self._trouble)
 
     def hear(self, event: Event) -> None:
         """Keep an event; a finished part counts for the program that made it."""
@@ -264,14 +291,40 @@ class Journal(Persistence):
             for book in self._books:
                 book.reopen(None, self._trouble)
             return
+        late = self._unread
+        if late:
+            self._read_late(store)
         with self._lock:
             held, self._held, self._store = self._held or (), None, store
             for event in held:
                 self._write(store, event)
         self._trouble = ""
-        self.note(self._noted)
+        self._post_noted()
         for book in self._books:
             book.reopen(store, "")
+        if late:
+            self._late = True
+            self._tell_late()
+
+    def when_late(self, tell: Callable[[], None]) -> None:
+        """``tell`` is called, by another thread, once a store that was away at the start has been read.
+
+        ``left`` and ``damage`` are known then. A store that is there already: at once.
+        """
+        self._tell_late = tell
+        if self._late:
+            tell()
+
+    def _read_late(self, store: Store) -> None:
+        try:
+            self._read_what_was_left(store)
+        except StoreError as error:
+            self.damage = (str(error),)
+
+    @property
+    def waiting(self) -> bool:
+        """Whether there is no store, for a reason that may pass, and it is tried again."""
+        return self._store is None and self._opener is not None
 
     def _try_again(self) -> None:
         """A disk that was full at the start, or a file that was locked: some time it is not."""

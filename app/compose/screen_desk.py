@@ -51,6 +51,7 @@ from app.editor.versions import NoArchive
 from app.offsets.mill_touch import MillTouch
 from app.offsets.offset_effect import Effect
 from core.access.access_table import Act
+from core.executor.commands import LeftInterrupted
 from core.executor.executor import Executor
 from core.executor.interrupted_job import InterruptedJob
 from core.executor.recorder import Recorder, recorded_of
@@ -147,7 +148,7 @@ def _shop_floor(desk: Desk, executor: Executor, journal: Journal) -> Callable[[]
 
     assert desk.lathe is not None
     open_ones = [open_shop_floor(desk.lathe, snapshot, tell)]
-    if not journal.trouble:
+    if not journal.trouble or journal.waiting:
         open_ones.append(keep_status(desk.lathe, snapshot, data_folder()))
         open_ones.append(_daily_backup(desk, desk.lathe, journal))
     open_ones.append(open_office(desk, desk.lathe, journal, tell))
@@ -206,12 +207,12 @@ def desk_and_executor(
     give_scope(desk)
     if journal is not None:
         desk.log.recall(_stops(journal))
+        journal.when_late(partial(_came_late, desk, journal))
     desk.shut = connected.close
     for warning in (*connected.ports.warnings, *(f"machine file: {each}" for each in desk.changes.changes)):
         events.say("warning", warning)
-    for damage in journal.damage if journal is not None else ():
-        events.say("warning", damage)
-        desk.say(tr("LOOK: {what}").format(what=damage))
+    if journal is not None:
+        _tell_damage(desk, journal, partial(events.say, "warning"))
     if recorder.trouble:
         events.say("warning", recorder.trouble)
     if any(each.startswith(NO_PRIORITY) for each in connected.ports.warnings):
@@ -219,6 +220,20 @@ def desk_and_executor(
     if desk.changes.barred:
         desk.say(desk.changes.barred)
     return desk, executor
+
+
+def _came_late(desk: Desk, journal: Journal) -> None:
+    """By another thread: what was not known at the start because the store was away."""
+    if journal.left is not None:
+        desk.post(LeftInterrupted(journal.left))
+    _tell_damage(desk, journal, lambda text: journal.hear(Event(desk.snapshot().t, "warning", text)))
+
+
+def _tell_damage(desk: Desk, journal: Journal, log: Callable[[str], None]) -> None:
+    """What was not as it was saved goes to the log and to the prompt line."""
+    for damage in journal.damage:
+        log(damage)
+        desk.say(tr("LOOK: {what}").format(what=damage))
 
 
 class _Events:

@@ -167,9 +167,10 @@ class OffsetBook:
 
     def _turn_to(self, store: Store | None, trouble: str) -> str:
         self._reopened, self._saving = None, None
+        if store is not self.store:
+            self.changes += 1
         self.store = store
         self.locked = "" if store is not None else f"OFFSETS CANNOT BE KEPT: {trouble}"
-        self.changes += 1
         return self._read_or_why()
 
     def _read_or_why(self) -> str:

@@ -141,7 +141,8 @@ class PartsBook:
     def look(self, program: str) -> None:
         """Take up what the worker has read and what is on the disk; read anew what has changed."""
         if self._reopened is not None:
-            self.store, self.locked = self._reopened
+            self.store, trouble = self._reopened
+            self.locked = "" if self.store is not None else f"MEASURED PARTS CANNOT BE KEPT: {trouble}"
             self._reopened, self._behind, self._stale = None, None, True
         self.worker.poll()
         self._look_at_writing()

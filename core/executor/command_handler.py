@@ -37,6 +37,7 @@ class CommandHandler:
             commands.LoadJob: self._load,
             commands.GiveProof: self._prove,
             commands.Renew: self._renew,
+            commands.LeftInterrupted: lambda command: control.program_run.interruption.found(command.left),
             commands.Prepare: self._prepare,
             commands.ConfirmStart: self._confirm,
             commands.PartsMade: self._count,

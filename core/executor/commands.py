@@ -7,6 +7,7 @@ from dataclasses import field
 
 from core.dataclass import dataclass
 from core.executor.drive_test_path import DriveTestPath
+from core.executor.interrupted_job import InterruptedJob
 from core.executor.job import Job, Proof
 from core.executor.jog_line import Direction
 from core.executor.snapshot import Starts
@@ -45,6 +46,13 @@ class Renew(Command):
     job: Job | None = None
     proof: Proof | None = None
     trouble: str = ""  # why there will be none
+
+
+@dataclass(frozen=True, slots=True)
+class LeftInterrupted(Command):
+    """What the control before has left interrupted, where that could not be read at the start."""
+
+    left: InterruptedJob
 
 
 @dataclass(frozen=True, slots=True)

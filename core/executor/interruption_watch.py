@@ -44,6 +44,7 @@ class InterruptionWatch:
     ) -> None:
         """``left`` is what the control found at its start."""
         self._context, self._status, self._parts, self._keep = context, status, parts, note
+        self._begun = False  # whether this control has begun any program
         self._begin: Begin | None = None
         self._before: InterruptedJob | None = None  # what a restart under way goes on with
         self._noted: InterruptedJob | None = None
@@ -53,6 +54,12 @@ class InterruptionWatch:
         self._settled = True
         self._answered: float | None = None
         status.interrupted = left
+
+    def found(self, left: InterruptedJob) -> None:
+        """What the control before has left, known only now. A program begun since has settled it."""
+        if not self._begun and self._status.interrupted != left:
+            self._status.interrupted = left
+            self._context.log("interrupted", left.words)
 
     # --- the program under way ----------------------------------------------------------------------------
 
@@ -67,6 +74,7 @@ class InterruptionWatch:
         """The program begins, or a restart in it: from here on a power cut leaves an interrupted job."""
         status, before = self._status, self._status.interrupted
         assert status.job is not None
+        self._begun = True
         self._begin, self._before, self._answered = begin, None, None
         if before is not None and begin is not None and _of(before, status.job):
             self._before = before

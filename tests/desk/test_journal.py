@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
 
 from app.compose.journal import UNDER_WAY, Journal
 from app.desk.persistence import Persistence
+from core.executor.interrupted_job import plain
 from core.executor.snapshot import Event
-from core.store.store_errors import StoreError
+from core.store.database import Opened
+from core.store.store import Store
+from core.store.store_errors import Cause, StoreError
+from core.store.store_rows import Kind
 from tests.interrupted import broken_off
 
 
@@ -94,3 +98,84 @@ def test_without_a_store_nothing_is_backed_up_or_restored(tmp_path: Path) -> Non
     assert journal.setting("a") is None
     assert journal.parts("pin.nc") == 0
     journal.close()
+
+
+# --- a store that was away at the start --------------------------------------------------------------------
+
+
+@pytest.fixture
+def away(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Journal]:
+    """Begun while the disk was full; the store holds a job that was interrupted before."""
+    with Store.open(tmp_path / "home") as store:
+        store.set_tool(3, "test", x=1.25).result(60)
+        store.set_setting(UNDER_WAY, plain(broken_off(line=8))).result(60)
+    full = Cause.FULL.error(tmp_path / "home" / "turndesk.db", "")
+    monkeypatch.setattr("app.compose.journal.AGAIN", 1e6)  # the test opens it
+    with monkeypatch.context() as disk:
+        disk.setattr("core.store.store.open_to_write", raising(full))
+        journal = Journal(tmp_path / "home")
+    assert "the disk is full" in journal.trouble
+    yield journal
+    journal.close()
+
+
+def raising(error: StoreError) -> Callable[[Path], Opened]:
+    def refuse(_folder: Path) -> Opened:
+        raise error
+
+    return refuse
+
+
+def test_offsets_are_changed_as_soon_as_the_store_is_there(away: Journal) -> None:
+    book, parts = away.book(), away.parts_book()
+    assert "OFFSETS CANNOT BE KEPT: the disk is full" in book.change(Kind.TOOL, 3, {"x": 2.0}, "test")
+    assert "MEASURED PARTS CANNOT BE KEPT: the disk is full" in parts.locked
+    away._open_again()
+    assert book.poll() == ""
+    assert book.tools[3].x == 1.25
+    assert book.changes == 1  # what is on the desk is proved anew
+    assert book.change(Kind.TOOL, 3, {"x": 2.0}, "test") == ""
+    away.save_version("a.nc", b"M30", "so that all is written")
+    assert book.poll() == ""
+    assert book.tools[3].x == 2.0
+    parts.look("")
+    assert (parts.locked, parts.store) == ("", book.store)
+    parts.worker.close()
+
+
+def test_a_store_that_stays_away_changes_nothing(away: Journal, monkeypatch: pytest.MonkeyPatch) -> None:
+    book, parts = away.book(), away.parts_book()
+    locked = Cause.LOCKED.error(Path("turndesk.db"), "")
+    monkeypatch.setattr("core.store.store.open_to_write", raising(locked))
+    away._open_again()
+    assert book.poll() == ""
+    assert book.locked.startswith("OFFSETS CANNOT BE KEPT: turndesk.db is locked by another program")
+    assert book.changes == 0
+    parts.look("")
+    assert parts.locked.startswith("MEASURED PARTS CANNOT BE KEPT: turndesk.db is locked")
+    parts.worker.close()
+
+
+def test_an_interrupted_job_is_still_one_when_its_store_comes_late(away: Journal, tmp_path: Path) -> None:
+    """The tool stands in that part, whatever the disk was at the start."""
+    told: list[object] = []
+    away.when_late(lambda: told.append(away.left))
+    assert (away.left, told) == (None, [])
+    away._open_again()
+    assert told == [broken_off(line=8)]
+    away.when_late(lambda: told.append("who asks later"))
+    assert told[1:] == ["who asks later"]
+    away.close()
+    again = Journal(tmp_path / "home")
+    assert again.left == broken_off(line=8)
+    again.close()
+
+
+def test_what_this_control_has_begun_counts_more(away: Journal, tmp_path: Path) -> None:
+    away.note(broken_off(line=3))
+    away._open_again()
+    assert away.left is None
+    away.close()
+    again = Journal(tmp_path / "home")
+    assert again.left == broken_off(line=3)
+    again.close()

@@ -12,6 +12,7 @@ from core.executor.commands import (
     CycleStart,
     FeedHold,
     JogStep,
+    LeftInterrupted,
     PartsMade,
     Prepare,
     Reset,
@@ -341,6 +342,31 @@ def test_after_a_power_cut_the_job_stands_there_and_the_palms_are_asked() -> Non
     rig.until(State.IDLE)
     assert rig.shot.parts == 1  # nothing was left out, so it is a part
     assert rig.shot.interrupted is None
+
+
+def test_a_job_that_is_known_late_asks_the_palms_too() -> None:
+    """The store was away at the start."""
+    rig = Rig()
+    rig.load(PART, TOOLS)
+    rig.ready()
+    rig.post(LeftInterrupted(made()))
+    rig.post(LeftInterrupted(made()))
+    rig.run(0.1)
+    assert rig.shot.interrupted == made()
+    assert rig.said("interrupted") == [made().words]
+    assert not begins(rig)
+
+
+def test_a_program_begun_meanwhile_is_what_counts() -> None:
+    rig = Rig()
+    in_the_cut(rig)
+    rig.post(LeftInterrupted(made()))
+    rig.run(0.1)
+    assert rig.shot.interrupted is None
+    rig.post(Reset())
+    rig.until(State.IDLE)
+    assert rig.shot.interrupted is not None
+    assert rig.shot.interrupted.program == "PART"
 
 
 def test_cycle_repeat_counts_on_and_an_end_between_two_parts_interrupts_nothing() -> None:
