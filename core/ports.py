@@ -6,6 +6,7 @@ Times are seconds of one monotonic clock; lengths are mm (X a radius), C is degr
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from enum import StrEnum
 from typing import NamedTuple, Protocol
 
@@ -13,7 +14,6 @@ import numpy as np
 import numpy.typing as npt
 
 from core import faults
-from core.dataclass import dataclass
 
 # --- a controller that plans by itself ------------------------------------------------------------------
 

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from dataclasses import fields as fields_of
 from enum import Enum, StrEnum
 from math import inf
 from typing import TYPE_CHECKING, NamedTuple, TypeGuard, TypeVar
 
-from core.dataclass import dataclass
 from core.nearest import nearest
 
 if TYPE_CHECKING:

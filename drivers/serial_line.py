@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import errno
 import os
+from dataclasses import dataclass
 from typing import Protocol
 
-from core.dataclass import dataclass
 from core.ports import DriverError
 
 

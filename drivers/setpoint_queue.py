@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
-from core.dataclass import dataclass
 from core.ports import DriverError, Segments
 from drivers.setpoint_pieces import Piece, PieceQueue
 

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Callable
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
-
-from core.dataclass import dataclass
 
 if TYPE_CHECKING:
     from app.cli.proof_job import ProofJob

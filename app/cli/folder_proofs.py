@@ -8,7 +8,7 @@ import os
 import sys
 from collections.abc import Iterator
 from concurrent.futures import CancelledError, Executor, Future
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -25,7 +25,6 @@ from app.cli.proof_work import OtherVersionError, Proof, code_version, proof_of
 from app.cli.report_file import ReportFile, report_file
 from app.compose.kept_stock import kept_with_all
 from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, EXIT_USAGE, CommandError
-from core.dataclass import dataclass
 from core.language.source import Source
 
 if TYPE_CHECKING:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
 from pathlib import Path
 
 from app.desk.command_errors import CommandError
-from core.dataclass import dataclass
 
 
 @dataclass(frozen=True, slots=True)

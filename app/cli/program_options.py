@@ -5,11 +5,11 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Collection
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from app.desk.command_errors import CommandError
-from core.dataclass import dataclass
 from core.language.source import Dialect, dialect_of
 
 if TYPE_CHECKING:

@@ -12,14 +12,13 @@ import sys
 import time
 import zlib
 from collections.abc import Mapping, Set
-from dataclasses import fields, is_dataclass
+from dataclasses import dataclass, fields, is_dataclass
 from enum import Enum
 from hashlib import sha256
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from app.cli.proof_work import Proof, code_version
-from core.dataclass import dataclass
 
 if TYPE_CHECKING:
     from app.cli.proof_job import ProofJob

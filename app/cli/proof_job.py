@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
-
-from core.dataclass import dataclass
 
 if TYPE_CHECKING:
     from core.interpreter.job_setup import Setup

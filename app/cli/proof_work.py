@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from app.cli.proof_job import ProofJob
-from core.dataclass import dataclass
 
 if TYPE_CHECKING:
     from app.cli.figures import Json

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import importlib
 from collections.abc import Callable, Iterable
-from dataclasses import fields
+from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any
 
-from core.dataclass import dataclass
 from core.machine.machine_model import Axis, Machine
 from core.ports import Clock, DriverError, MachinePorts
 from drivers.setpoint_queue import AxisFigures

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -15,7 +15,6 @@ from app.desk.kept_part import NOTHING_KEPT, KeptPart
 from app.desk.latest import AbandonedError, Watch, sentence
 from app.desk.program_loading import PartProved, at_a_machine
 from app.desk.translation import tr
-from core.dataclass import dataclass
 from core.language.diagnostics import Diagnostic, Severity
 from core.store.store_errors import StoreError
 

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import asdict, replace
+from dataclasses import asdict, dataclass, replace
 
 from app.desk.command_errors import CommandError
-from core.dataclass import dataclass
 from core.machine.machine_model import Machine
 from core.table_schema import MachineFileError
 from drivers.hal.boards import board_table

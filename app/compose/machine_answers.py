@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import socket
 from collections.abc import Iterator
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from app.compose.backend_entry import backend_of, has_inverter, played
@@ -13,7 +13,6 @@ from app.compose.page_server import listening_at
 from app.compose.sharing_desk import place_of
 from app.compose.shop_floor import try_shop_floor
 from app.desk.data_folder import data_folder
-from core.dataclass import dataclass
 from core.machine.machine_model import Axis, Machine
 from core.machine.sharing_table import SharingTable
 from core.machine.shop_network_tables import AnnounceTable, StatusPageTable, broker_of

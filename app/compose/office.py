@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
@@ -18,7 +19,6 @@ from app.desk.prompt_line import UNDER_WAY
 from app.quality.parts_watch import PartsWatch
 from app.shopfloor.floor_reading import FloorReader
 from app.shopfloor.office_status import OfficeLook
-from core.dataclass import dataclass
 from core.machine.shop_network_tables import AnnounceTable, StatusPageTable
 from core.ports import DriverError
 from drivers.mtconnect.mtconnect_adapter import utc_now

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from app.compose.known_part import known_part
 from app.compose.machine_setup import setup_for
-from core.dataclass import dataclass
 from core.drawings.drawing_view import Profile, Side
 from core.drawings.part_against_drawing import Comparison, compared
 from core.drawings.profile_program import NoseOffset

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection
+from dataclasses import dataclass
 
 from app.desk.data_folder import RECORDS, data_folder
 from app.desk.desk import Desk
@@ -11,7 +12,6 @@ from app.scope.analyses import Analyses
 from app.scope.record_shelf import RecordShelf
 from app.scope.scope_curves import LiveSamples
 from app.scope.scope_model import Scope
-from core.dataclass import dataclass
 from core.executor.recorder import Recorder
 from core.records.record import Channel, Record
 from core.records.record_file import open_record, save_record, write_csv

@@ -7,6 +7,7 @@ import json
 import shutil
 import tempfile
 import zipfile
+from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path, PurePosixPath
 
@@ -14,7 +15,6 @@ from app.compose.journal import UNDER_WAY
 from app.compose.machine_setup import read_machine
 from app.desk.command_errors import CommandError
 from app.desk.data_folder import data_folder
-from core.dataclass import dataclass
 from core.file_placing import put_in_place, write_in_place
 from core.store import backup
 from core.store.store import Store

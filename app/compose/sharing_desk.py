@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import secrets
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 
 from app.compose.journal import Journal
@@ -14,7 +15,6 @@ from app.desk.translation import tr
 from app.sharing.sharing import Shared, Sharing
 from app.sharing.sharing_model import SharingModel
 from app.sharing.sharing_thread import SharingThread
-from core.dataclass import dataclass
 from core.executor.snapshot import Event
 from core.machine.machine_model import Machine
 from core.machine.sharing_table import SharingTable

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 import zlib
+from dataclasses import dataclass
 from functools import lru_cache
 from hashlib import sha256
 from pathlib import Path
@@ -17,7 +18,6 @@ import numpy as np
 
 from app.compose.desk_part import PartDesk
 from app.programs.preview import Thumbnail
-from core.dataclass import dataclass
 
 if TYPE_CHECKING:
     from app.desk.latest import Watch

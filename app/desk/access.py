@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import field
+from dataclasses import dataclass, field
 from functools import partial
 
 from app.desk.latest import Latest
@@ -15,7 +15,6 @@ from app.desk.persistence import Persistence
 from app.desk.translation import data, tr
 from core.access.access_table import Act, Level, level_for
 from core.access.pins import Hashed, WrongPins, is_pin
-from core.dataclass import dataclass
 from core.executor.snapshot import Snapshot
 from core.store.people import People, PersonRow
 from core.store.store_errors import StoreError

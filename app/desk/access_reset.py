@@ -7,10 +7,10 @@ and the log keeps when it was begun, given up or done.
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 from app.desk.access import Access
 from app.desk.translation import tr
-from core.dataclass import dataclass
 from core.executor.snapshot import Snapshot, State
 
 WAIT = 600.0  # s

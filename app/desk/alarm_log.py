@@ -8,10 +8,10 @@ from __future__ import annotations
 import re
 from collections import deque
 from collections.abc import Callable, Iterable
+from dataclasses import dataclass
 
 from app.desk.formats import wall_time
 from core.alarms import CATALOGUE, Code
-from core.dataclass import dataclass
 from core.executor.raised_alarm import make_alarm
 from core.executor.snapshot import Alarm, Event
 from core.store.store_rows import EventRow

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import field
+from dataclasses import dataclass, field
 
-from core.dataclass import dataclass
 from core.language.code_book import CodeBook, Entry
 
 

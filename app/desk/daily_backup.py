@@ -6,12 +6,11 @@ It waits for a standstill, but not for longer than half a day.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import field
+from dataclasses import dataclass, field
 from datetime import date, datetime, timedelta
 from pathlib import Path
 
 from app.desk.repeating_thread import RepeatingThread
-from core.dataclass import dataclass
 from core.store.store_errors import StoreError
 
 ENDING = ".turndesk.db"

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import NamedTuple
 
 from app.desk.interrupted_notice import NoticeRow
 from app.desk.program_loading import Loaded, Phase
 from app.desk.prompt_line import missing_tools
 from app.desk.translation import tr
-from core.dataclass import dataclass
 from core.executor.snapshot import CYCLE, Snapshot
 
 CLOSE = "×"  # what the card's key presses, and shows

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 from app.desk import formats
 from app.desk.program_loading import Loaded
 from app.desk.screen_settings import Units
 from app.desk.translation import tr
-from core.dataclass import dataclass
 from core.executor.interrupted_job import CONTROL_LOST, InterruptedJob
 from core.executor.snapshot import Snapshot, Starts, State
 from core.language.source import Dialect

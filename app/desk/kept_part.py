@@ -6,10 +6,9 @@ None of it is ever written into the program's text.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from pathlib import Path
 
-from core.dataclass import dataclass
 from core.store.program_settings import part_key, stock_key
 
 Setting = Callable[[str], object]

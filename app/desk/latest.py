@@ -12,10 +12,8 @@ import time
 from collections import deque
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import TypeVar
-
-from core.dataclass import dataclass
 
 _log = logging.getLogger(__name__)
 

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 
 from app.desk.translation import tr
-from core.dataclass import dataclass
 from core.machine.machine_changes import Change
 
 

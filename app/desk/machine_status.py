@@ -5,6 +5,7 @@ No Qt and no machine logic.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from enum import StrEnum
 
 from app.desk import formats
@@ -24,7 +25,6 @@ from app.desk.screen_settings import Units
 from app.desk.translation import tr
 from app.desk.waiting import waits_for
 from core.alarms import CATALOGUE, Reaction
-from core.dataclass import dataclass
 from core.executor.snapshot import Alarm, Snapshot, State
 from core.interpreter.modal_state import Modal
 from core.tool_edges import tool_of

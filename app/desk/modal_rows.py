@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 from app.desk import formats
 from app.desk.translation import tr
-from core.dataclass import dataclass
 from core.interpreter.checkpoint import Checkpoint
 from core.interpreter.modal_state import Modal
 from core.tool_edges import edge_name

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from pathlib import Path
 
-from core.dataclass import dataclass
 from core.store.backup_verdict import Verdict
 from core.store.people import People, PersonRow
 from core.store.store_errors import StoreError

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import field
+from dataclasses import dataclass, field
 from functools import partial
 
 from app.desk.latest import Latest, Watch
 from app.desk.program_loading import Proved
-from core.dataclass import dataclass
 from core.executor.commands import Command, Prepare
 from core.executor.job import Job, Proof
 from core.executor.snapshot import CYCLE, Snapshot, Starts

@@ -9,10 +9,10 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 from app.desk.program_loading import Loaded
-from core.dataclass import dataclass
 from core.drawings.drawing_file import is_drawing
 from core.language.source import Source, SourceError, load_source
 

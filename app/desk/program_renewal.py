@@ -7,7 +7,7 @@ the executor takes it up at the end of the part.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 
 from app.desk.latest import AbandonedError, Latest, Request
@@ -16,7 +16,6 @@ from app.desk.prompt_line import UNDER_WAY
 from app.desk.translation import tr
 from app.offsets.offset_book import OffsetBook
 from app.offsets.offsets_in_force import secondary_offsets, tool_offsets
-from core.dataclass import dataclass
 from core.executor.commands import Command, GiveProof, Renew, UseOffsets
 from core.executor.job import Job, Proof, outdated
 from core.executor.snapshot import Snapshot, State

@@ -8,13 +8,12 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable
-from dataclasses import field
+from dataclasses import dataclass, field
 from enum import StrEnum
 
 from app.desk import interrupted_notice
 from app.desk.machine_status import MachineStatus
 from app.desk.program_loading import Loaded, Phase
-from core.dataclass import dataclass
 from core.executor.job import WARNING
 from core.executor.snapshot import Alarm, Event, Snapshot, State
 from core.language.diagnostics import Severity

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import dataclass
 from enum import StrEnum
 
 from app.desk import formats
 from app.desk.translation import tr
-from core.dataclass import dataclass
 from core.executor.snapshot import Snapshot
 from core.interpreter.working_plane import Swivel
 from core.ports import Unknown

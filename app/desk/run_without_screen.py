@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
-from core.dataclass import dataclass
 from core.executor.commands import Command, CycleStart, EnableDrives, FeedHold, Home, LoadJob, SetSwitch
 from core.executor.executor import Executor
 from core.executor.job import Job, Proof

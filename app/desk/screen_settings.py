@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict, field, fields, replace
+from dataclasses import asdict, dataclass, field, fields, replace
 from enum import StrEnum
 
 from app.desk.persistence import Persistence
-from core.dataclass import dataclass
 from core.store.store_errors import StoreError
 
 KEY = "screen"

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 from app.desk.arithmetic import CHARACTERS, LONGEST
 from app.desk.machine_status import Tone
-from core.dataclass import dataclass
 
 if TYPE_CHECKING:
     from core.part.tool_outline import ToolOutline

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import Protocol
 
 from app.desk.prompt_line import BOTH_UP, ONE_PALM
-from core.dataclass import dataclass
 
 # --- palm buttons and pots ----------------------------------------------------------------------------
 

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 
 from app.desk.program_folder import ENDINGS
 from app.editor.versions import Archive
 from app.programs.whole_file import present, write_whole
-from core.dataclass import dataclass
 from core.language.source import SourceError, load_source
 from core.store.program_records import check_name
 from core.store.store_errors import StoreError

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import field
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from app.desk.latest import Latest
 from app.editor import editor_messages as messages
 from app.editor.document import Document
 from app.editor.versions import Archive
-from core.dataclass import dataclass
 from core.file_placing import write_in_place
 from core.store.store_errors import StoreError
 

@@ -7,7 +7,7 @@ the text field of the page, which hands it over with each request.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from functools import partial
 from pathlib import Path
@@ -31,7 +31,6 @@ from app.editor.document import (
 from app.editor.drafts import Drafts
 from app.editor.live_proof import LiveProof
 from app.editor.versions import Archive
-from core.dataclass import dataclass
 from core.executor.snapshot import Snapshot, State
 from core.ports import Unknown
 

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import TYPE_CHECKING
 
 from app.desk.latest import Latest, Request
 from app.desk.program_loading import LoadingSteps
-from core.dataclass import dataclass
 from core.interpreter.dialects import code_book
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Source

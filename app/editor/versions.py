@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from difflib import SequenceMatcher
 from typing import Protocol
 
 from app.desk.latest import Latest, Watch
-from core.dataclass import dataclass
 from core.store.store_errors import StoreError
 from core.store.store_rows import VersionRow
 

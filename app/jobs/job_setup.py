@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 
 from app.desk.formats import local_time
 from app.desk.translation import tr
 from app.special.setup_sheet import SetupSheet, SheetTool
-from core.dataclass import dataclass
 from core.language.diagnostics import Diagnostic, Severity
 from core.quality.tool_life import LifeState, ToolLife
 from core.store.store_rows import ToolRow

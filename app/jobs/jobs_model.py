@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sqlite3
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from functools import partial
 from textwrap import wrap
 
@@ -19,7 +19,6 @@ from app.jobs.job_setup import ProvedJob, Station, findings, missing, stations, 
 from app.jobs.jobs_watch import JobsWatch
 from app.special.parts_counter import whole_number
 from core.access.access_table import Act
-from core.dataclass import dataclass
 from core.executor.snapshot import Snapshot
 from core.language.diagnostics import Severity
 from core.store import job_queue

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 
 from app.desk.desk import Desk
@@ -14,7 +15,6 @@ from app.jobs.job_setup import ProvedJob, missing
 from app.jobs.next_job import JobProofs
 from app.quality.parts_watch import PartsWatch
 from core.access.access_table import Act
-from core.dataclass import dataclass
 from core.executor.snapshot import Snapshot
 from core.quality.tool_life import ToolLife
 from core.store import job_queue

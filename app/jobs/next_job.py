@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from functools import partial
 
 from app.desk.latest import Latest, Watch
 from app.jobs.job_setup import ProvedJob
-from core.dataclass import dataclass
 
 Prove = Callable[[str, Watch], ProvedJob]
 """A program by its name, with the offsets of now; on the worker. Raises ValueError with a sentence."""

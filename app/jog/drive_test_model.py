@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 
 from app.desk import formats
 from app.desk.desk import Desk
@@ -33,7 +33,6 @@ from app.scope.drive_test_figures import (
 )
 from app.scope.record_shelf import INSTANT
 from app.scope.scope_model import Scope
-from core.dataclass import dataclass
 from core.executor import drive_test_path
 from core.executor.commands import Command, DriveTest, DriveTestOn, JogStop
 from core.executor.drive_test_path import DriveTestPath, Limits, Shape

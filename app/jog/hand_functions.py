@@ -6,7 +6,7 @@ switch and E-stop as a line that is typed in MDI. Switching off needs no palms.
 
 from __future__ import annotations
 
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from app.desk import prompt_line
@@ -16,7 +16,6 @@ from app.desk.prepared_line import PreparedLine, ProveLine
 from app.desk.readouts import TURNING
 from app.desk.sheet import edited
 from app.desk.translation import tr
-from core.dataclass import dataclass
 from core.executor.commands import ForceOutput, Reset, SpindleStop
 from core.executor.snapshot import CYCLE, STOPPED, Snapshot, Starts, State
 from core.language.diagnostics import Diagnostic

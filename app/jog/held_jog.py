@@ -8,12 +8,11 @@ nothing moves before everything is let go and pressed anew.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import field
+from dataclasses import dataclass, field
 
 from app.desk.translation import tr
 from app.jog.jog_speeds import CONTINUOUS, JogSpeeds
 from app.offsets.offset_values import Mode
-from core.dataclass import dataclass
 from core.executor.commands import Command, Jog, JogStep, JogStop
 from core.executor.jog_line import Direction
 from core.executor.snapshot import Snapshot, State

@@ -7,12 +7,12 @@ was taken away comes back only when the switch was elsewhere in between, or by t
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 from app.desk.sheet import following
 from app.desk.translation import tr
 from app.jog.held_jog import BEGINS, RENEWED, HeldJog
 from app.jog.jog_speeds import CONTINUOUS, JogSpeeds
-from core.dataclass import dataclass
 from core.executor.commands import Command, Wheel, WheelOff
 from core.executor.snapshot import Snapshot
 from core.machine.machine_model import Machine

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from enum import StrEnum
 
 from app.desk.desk import Desk
 from app.desk.translation import tr
-from core.dataclass import dataclass
 from core.executor.commands import Home
 from core.executor.snapshot import Snapshot, State
 from core.machine.machine_model import Axis, Machine

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import field
+from dataclasses import dataclass, field
 
 from app.desk import prompt_line
 from app.desk.desk import Desk
@@ -19,7 +19,6 @@ from app.jog.skim_cut import SkimCut
 from app.jog.tilted_jog import TiltedJog
 from app.jog.tool_setting import TOOL, ToolSetting
 from app.offsets.mill_touch import MillTouch
-from core.dataclass import dataclass
 from core.executor.commands import JogStop
 from core.executor.snapshot import Snapshot, State
 from core.machine.machine_model import Machine

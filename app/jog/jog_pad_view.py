@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from functools import partial
 
 from PySide6.QtCore import QPointF, QRectF
@@ -19,7 +20,6 @@ from app.offsets.offset_values import Mode
 from app.screen.look import CENTRE, Look, Painter
 from app.screen.panel import Control, Shown, pressed
 from app.screen.window_layout import FINGER
-from core.dataclass import dataclass
 from core.executor.snapshot import Snapshot
 
 # --- rows of tiles ------------------------------------------------------------------------------------

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from app.desk.formats import MM_PER_INCH
 from app.offsets.offset_values import Mode
-from core.dataclass import dataclass
 from core.machine.machine_model import Machine
 
 INCH_STEPS, MM_STEPS, DEGREE_STEPS = (

@@ -6,12 +6,13 @@ tip stands on part zero. Touch Z: the position of the face that the tip touches,
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 from app.desk.arithmetic import EntryError, value_of
 from app.desk.translation import tr
 from app.offsets.offset_history import OffsetHistory
 from app.offsets.offset_values import TOOL_FIELDS, Mode, to_mm, word
 from app.offsets.tool_fields import NewTool
-from core.dataclass import dataclass
 from core.executor.snapshot import Snapshot, State
 from core.store.touch_off import Touch
 

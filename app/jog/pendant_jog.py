@@ -6,12 +6,11 @@ moves nothing before it has been let go.
 
 from __future__ import annotations
 
-from dataclasses import field
+from dataclasses import dataclass, field
 
 from app.desk.translation import tr
 from app.jog.held_jog import HeldJog
 from app.jog.jog_handwheel import JogHandwheel
-from core.dataclass import dataclass
 from core.executor.snapshot import Snapshot
 from core.machine.machine_model import Machine
 from core.machine.station_rules import AXIS_BUTTON, ENABLE, JOG_RAPID, STEP_BUTTON, jog_button

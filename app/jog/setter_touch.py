@@ -6,7 +6,7 @@ Of a tip that is set by its nose centre (9) the centre stands a nose radius befo
 
 from __future__ import annotations
 
-from dataclasses import field
+from dataclasses import dataclass, field
 
 from app.desk.desk import Desk
 from app.desk.translation import tr
@@ -16,7 +16,6 @@ from app.jog.jog_touch_off import TOUCH_X, TOUCH_Z
 from app.jog.tool_setting import ToolSetting
 from app.offsets.offset_history import refusal
 from app.offsets.offset_values import signed
-from core.dataclass import dataclass
 from core.executor.commands import Command, Touch
 from core.executor.snapshot import Snapshot, State, Touched, TouchPhase
 from core.machine.machine_model import Machine

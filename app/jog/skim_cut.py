@@ -6,7 +6,7 @@ What counts is where the slide stood in the cut; has it moved since, that may be
 
 from __future__ import annotations
 
-from dataclasses import field
+from dataclasses import dataclass, field
 from enum import Enum, auto
 
 from app.desk.desk import Desk
@@ -15,7 +15,6 @@ from app.desk.readouts import TURNING
 from app.desk.translation import tr
 from app.jog.jog_touch_off import MOVED, TOUCH_X, TOUCH_Z, TOUCHES
 from app.jog.tool_setting import ToolSetting
-from core.dataclass import dataclass
 from core.executor.snapshot import CYCLE, Snapshot, State
 
 LEAST_CUT = 0.25  # mm along the other axis with the spindle turning: less is no cut that can be measured

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 from app.desk.translation import tr
-from core.dataclass import dataclass
 from core.executor.jog_line import Direction
 from core.executor.snapshot import Snapshot
 from core.geometry.rotary_axes import Kinematics, Rotary

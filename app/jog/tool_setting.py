@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import field
+from dataclasses import dataclass, field
 
 from app.desk.arithmetic import CHARACTERS, LONGEST, EntryError, value_of
 from app.desk.desk import Desk
@@ -24,7 +24,6 @@ from app.offsets.offset_values import (
     word,
 )
 from app.offsets.tool_fields import ToolFields
-from core.dataclass import dataclass
 from core.executor.snapshot import Snapshot
 from core.store.offset_fields import REMARK_LONGEST, Sort
 from core.store.store_rows import OFFSETS, Kind, ToolRow

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import field
+from dataclasses import dataclass, field
 
 from app.desk.code_help import CodeHelp
 from app.mdi.mdi_line import LONGEST, MdiLine
-from core.dataclass import dataclass
 from core.language.code_book import CodeBook, Entry
 
 CONTINUED = "~"  # a block of Klartext goes on in the next line

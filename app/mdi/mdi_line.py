@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from contextlib import suppress
-from dataclasses import field
+from dataclasses import dataclass, field
 
 from app.desk.persistence import Persistence
-from core.dataclass import dataclass
 from core.store.store_errors import StoreError
 
 KEY = "mdi"

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import field
+from dataclasses import dataclass, field
 
 from app.desk import prompt_line
 from app.desk.prepared_line import PreparedLine, ProveLine
 from app.desk.translation import tr
 from app.mdi.line_completion import LineCompletion
 from app.mdi.mdi_line import MdiLine
-from core.dataclass import dataclass
 from core.executor.commands import Command, SpindleStop
 from core.executor.snapshot import CYCLE, Snapshot, State
 from core.language.code_book import CodeBook

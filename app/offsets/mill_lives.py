@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 
 from app.desk.desk import Desk
-from core.dataclass import dataclass
 from core.quality.tool_life import ToolLife
 
 

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 
-from core.dataclass import dataclass
 from core.geometry.rotary_axes import DatumPreset
 from core.interpreter.job_setup import MillTool, Setup, ToolOffset
 from core.store.store_rows import MillRow, PresetRow, ToolRow

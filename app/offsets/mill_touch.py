@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from app.desk.desk import Desk
 from app.desk.translation import tr
 from app.offsets.mill_offsets import MillOffsets, with_mill
-from core.dataclass import dataclass
 from core.executor.snapshot import Snapshot, State
 from core.geometry.rotary_axes import DatumPreset, Kinematics
 from core.geometry.rotation_frames import Vector

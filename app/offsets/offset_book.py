@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from concurrent.futures import Future
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from app.desk.access import Access
 from app.offsets.offset_acts import act_of
 from app.offsets.offsets_in_force import PRESET, preset_of
 from core.access.access_table import Act
-from core.dataclass import dataclass
 from core.store.store_errors import StoreError
 from core.store.store_rows import (
     Change,

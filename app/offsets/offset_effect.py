@@ -7,7 +7,7 @@ there the path after lies beside the path before by as much as the tip will.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import TYPE_CHECKING, TypeVar
 
@@ -18,7 +18,6 @@ from app.desk.latest import Latest, Watch
 from app.desk.translation import tr
 from app.offsets.offset_table import OffsetTable
 from app.offsets.offsets_in_force import secondary_offsets, tool_offsets
-from core.dataclass import dataclass
 from core.executor.job import Job
 from core.interpreter.job_setup import SecondaryOffset, ToolOffset
 from core.store.store_rows import Change, Kind, SecondaryRow, ToolRow

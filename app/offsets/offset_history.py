@@ -5,7 +5,7 @@ And when an offset may change: corrections at any time at which no hand moves th
 
 from __future__ import annotations
 
-from dataclasses import field
+from dataclasses import dataclass, field
 
 from app.desk.desk import Desk
 from app.desk.formats import local_time
@@ -13,7 +13,6 @@ from app.desk.prompt_line import UNDER_WAY
 from app.desk.translation import tr
 from app.offsets.offset_book import OffsetBook
 from app.offsets.offset_values import Mode, from_to
-from core.dataclass import dataclass
 from core.executor.snapshot import Snapshot, State
 from core.store.store_errors import StoreError
 from core.store.store_rows import Change, Kind

@@ -5,11 +5,12 @@ Inch with 5 places, metric with 4; zero offsets in mm and degrees with 3. Stored
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 from app.desk import formats
 from app.desk.arithmetic import EntryError, value_of
 from app.desk.formats import MINUS, MM_PER_INCH
 from app.desk.translation import tr
-from core.dataclass import dataclass
 from core.store.offset_fields import Field, Sort
 from core.store.store_rows import (
     FIELDS,

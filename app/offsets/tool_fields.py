@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Callable
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import ClassVar
 
 from app.desk.arithmetic import CHARACTERS, LONGEST, EntryError
@@ -12,7 +12,6 @@ from app.desk.translation import tr
 from app.offsets.offset_history import OffsetHistory
 from app.offsets.offset_table import OffsetTable
 from app.offsets.offset_values import TOOL_FIELDS, heading, shown_value, value_added, value_typed, word
-from core.dataclass import dataclass
 from core.store.offset_fields import Sort
 from core.store.store_rows import Kind, ToolRow, Value
 from core.tool_edges import edge_name, edge_number

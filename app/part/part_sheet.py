@@ -6,7 +6,7 @@ What is said here is kept in the store with the program, never written into its 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from functools import partial
 from pathlib import Path
@@ -22,7 +22,6 @@ from app.desk.sheet import STEPS, Key, edited, following
 from app.desk.translation import tr
 from app.part.stock_entry import StockEntry, StockField, StockKind
 from core.access.access_table import Act
-from core.dataclass import dataclass
 from core.language.diagnostics import Diagnostic, Severity
 from core.part.stock_spec import StockError
 from core.store.store_errors import StoreError

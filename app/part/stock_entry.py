@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from pathlib import Path
 
 from app.desk.arithmetic import EntryError, value_of
 from app.desk.formats import MM_PER_INCH, length
 from app.desk.kept_part import KeptPart
-from core.dataclass import dataclass
 from core.part.stock_spec import StockError, StockSpec, stock_spec
 
 _PLACES = 6

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -15,7 +15,6 @@ import numpy as np
 import numpy.typing as npt
 
 from app.desk.latest import Latest, Request
-from core.dataclass import dataclass
 from core.language.diagnostics import Diagnostic, Severity
 
 if TYPE_CHECKING:

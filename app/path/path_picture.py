@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from array import array
 from collections.abc import Callable, Iterable
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,7 +18,6 @@ import numpy.typing as npt
 from app.path.face_and_side import FaceAndSideBuilder, way_of
 from app.path.polyline import SAME, Floats, Polyline, PolylineBuilder, Stroke, arc_pieces, bounds_of
 from app.working_plane.plane_scene import Scene, SceneBuilder
-from core.dataclass import dataclass
 from core.geometry.lines_and_arcs import arc_sweep
 from core.geometry.virtual_mill import Face
 from core.interpreter.elementary_blocks import Block, Kind, Series, TimedSeries

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QEvent, QPointF, Qt
 from PySide6.QtGui import QNativeGestureEvent, QTouchEvent
 
 from app.screen.look import Look
-from core.dataclass import dataclass
 
 if TYPE_CHECKING:
     from app.path.part_bar_view import PartBar

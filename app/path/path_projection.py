@@ -6,12 +6,11 @@ Everything is done for whole arrays: no Python loop goes over the points.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-
-from core.dataclass import dataclass
 
 if TYPE_CHECKING:
     from app.path.polyline import Polyline

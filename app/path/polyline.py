@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import math
 from array import array
-from dataclasses import field
+from dataclasses import dataclass, field
 from enum import IntEnum
 from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
-
-from core.dataclass import dataclass
 
 if TYPE_CHECKING:
     from core.geometry.virtual_mill import PlaneMove, Spot

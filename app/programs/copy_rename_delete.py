@@ -6,7 +6,7 @@ The files are changed on a worker, and nothing is ever overwritten.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import field
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from app.desk.desk import Desk
@@ -19,7 +19,6 @@ from app.desk.translation import tr
 from app.programs.program_rows import Program
 from app.programs.whole_file import FileError, present, write_whole
 from core.access.access_table import Act
-from core.dataclass import dataclass
 from core.drawings.drawing_file import is_drawing
 from core.store.program_records import check_name
 from core.store.store_errors import StoreError

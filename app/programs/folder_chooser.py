@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from app.desk import formats
@@ -11,7 +11,6 @@ from app.desk.program_folder import ENDINGS
 from app.desk.sheet import Row, Sheet
 from app.programs.removable_media import Medium, Stick, sticks, why_not
 from app.programs.whole_file import FileError
-from core.dataclass import dataclass
 from core.drawings.drawing_file import is_drawing
 
 UP = ".."

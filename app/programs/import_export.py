@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import field
+from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 
@@ -22,7 +22,6 @@ from app.programs.folder_chooser import FolderChooser, chooser_sheet
 from app.programs.removable_media import Medium, why_not
 from app.programs.whole_file import FileError, present, settle, write_out, write_whole
 from core.access.access_table import Act
-from core.dataclass import dataclass
 from core.drawings.drawing_file import is_drawing
 from core.language.source import SourceError, load_source
 from core.store.store_errors import StoreError

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections import OrderedDict
 from collections.abc import Callable
-from dataclasses import field
+from dataclasses import dataclass, field
 from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 from app.desk.latest import Latest, Watch
 from app.desk.program_loading import LoadingSteps
 from app.programs.program_rows import Program
-from core.dataclass import dataclass
 from core.executor.job import Job
 
 if TYPE_CHECKING:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 
@@ -17,7 +17,6 @@ from app.programs.copy_rename_delete import COPY, NONE, RENAME, CopyRenameDelete
 from app.programs.import_export import ImportExport
 from app.programs.preview import Preview
 from app.programs.program_rows import ORDERS, Program, list_programs, minute_of, minute_of_file, sorted_by
-from core.dataclass import dataclass
 from core.executor.snapshot import State
 
 DRAWING = "{name} IS A DRAWING: F3 MAKES A PROGRAM OF IT"

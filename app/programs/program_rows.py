@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
 
 from app.desk import formats
 from app.desk.persistence import Persistence
 from app.desk.program_folder import ProgramFolders
-from core.dataclass import dataclass
 from core.drawings.drawing_file import is_drawing
 from core.store.store_rows import RunRow
 

@@ -9,12 +9,12 @@ import errno
 import os
 import shutil
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 from app.desk import formats
 from app.desk.translation import tr
 from app.programs.whole_file import FileError
-from core.dataclass import dataclass
 
 ROOTS = (Path("/media"), Path("/run/media"), Path("/mnt"))
 MOUNTS = Path("/proc/self/mountinfo")

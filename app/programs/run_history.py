@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from contextlib import suppress
-from dataclasses import field
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from app.desk import prompt_line
 from app.desk.persistence import Persistence
 from app.desk.program_loading import Loaded, Phase
-from core.dataclass import dataclass
 from core.executor.snapshot import Snapshot, State
 from core.store.store import Store
 from core.store.store_errors import StoreError

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import Any
 
 from app.desk.desk import Desk
@@ -16,7 +16,6 @@ from app.offsets.part_effect import part_table
 from app.quality.plots import ChartDrawing, correction_plot
 from app.quality.section import signed_size
 from app.quality.wear_correction import Correction
-from core.dataclass import dataclass
 from core.quality.wear_proposal import Proposal
 from core.store.store_rows import Kind, SecondaryRow, ToolRow
 

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
-from core.dataclass import dataclass
 from core.executor.snapshot import Event, State
 from core.store import part_cycles
 from core.store.part_cycles import CycleRow, StopRow

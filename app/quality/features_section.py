@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 
 from app.desk.arithmetic import CHARACTERS, EntryError, value_of
@@ -15,7 +15,6 @@ from app.quality.parts_book import feature_of, row_of
 from app.quality.parts_watch import PartsWatch
 from app.quality.section import NO_PROGRAM, QualitySection, mark_of, signed_size, size, typed_length
 from core.access.access_table import Act
-from core.dataclass import dataclass
 from core.executor.snapshot import Snapshot
 from core.quality.measured_feature import (
     NAME_LONGEST,

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Protocol
 
 from app.desk.translation import tr
-from core.dataclass import dataclass
 
 LONGEST = 60  # characters of a line; more without an end is no gauge
 _DIGIMATIC = re.compile(r"\d{2}A([+-]\d{1,8}(?:\.\d{1,8})?)")

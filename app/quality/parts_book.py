@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from concurrent.futures import Future
-from dataclasses import field
+from dataclasses import dataclass, field
 from datetime import UTC, datetime, timedelta
 from typing import Any
 
 from app.desk.access import Access
 from app.desk.latest import Latest
 from core.access.access_table import Act
-from core.dataclass import dataclass
 from core.quality.measured_feature import CorrectedBy, Feature, FeatureKind
 from core.store import measured_parts, part_cycles, tool_lives
 from core.store.job_queue import JobRow

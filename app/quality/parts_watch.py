@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import field
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from app.desk.desk import Desk
@@ -11,7 +11,6 @@ from app.desk.translation import tr
 from app.quality import sample_plan
 from app.quality.parts_book import PartsBook
 from app.quality.tool_life_watch import ToolLifeWatch
-from core.dataclass import dataclass
 from core.executor.commands import BarNextPart
 from core.executor.snapshot import Snapshot
 from core.store.store_errors import StoreError

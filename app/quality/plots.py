@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 
 import numpy as np
 import numpy.typing as npt
 
-from core.dataclass import dataclass
 from core.quality.control_charts import Chart, ChartPair
 from core.quality.drift_rules import findings
 from core.quality.wear_proposal import Proposal

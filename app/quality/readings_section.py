@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
@@ -21,7 +22,6 @@ from app.quality.readings_file import write_readings
 from app.quality.section import QualitySection, mark_of, signed_size, size, typed_length
 from app.quality.wear_correction import correction, proposal
 from core.access.access_table import Act
-from core.dataclass import dataclass
 from core.executor.snapshot import Snapshot
 from core.quality.quality_errors import QualityError
 from core.store import measured_parts

@@ -6,6 +6,7 @@ The rows are those of the trends and of ``turndesk parts``: nothing is counted a
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from datetime import datetime
 from itertools import pairwise
 from typing import NamedTuple
@@ -15,7 +16,6 @@ from app.desk.translation import tr
 from app.quality.cycle_recorder import COMPLETE
 from app.quality.parts_book import feature_of
 from app.quality.shift_times import Shift
-from core.dataclass import dataclass
 from core.quality.availability import Availability, Span, availability
 from core.quality.stops import ReasonShare, Stop, pareto
 from core.store import event_log, measured_parts, offset_tables, part_cycles, tool_lives

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import sqlite3
 from collections.abc import Callable, Collection, Iterator, Mapping
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 
 from app.desk.translation import tr
 from app.quality.parts_book import PartsBook
 from core.access.access_table import Act
-from core.dataclass import dataclass
 from core.executor.snapshot import CYCLE, Snapshot
 from core.quality.tool_life import LifeState, ToolLife
 from core.store import tool_lives

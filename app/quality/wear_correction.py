@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 from app.desk.arithmetic import EntryError
 from app.desk.desk import Desk
 from app.desk.formats import fixed
@@ -10,7 +12,6 @@ from app.offsets.offset_history import refusal
 from app.offsets.offset_values import Mode, added, out_of_range, signed, value_added
 from app.quality.parts_book import PartsData, feature_of
 from app.quality.section import size
-from core.dataclass import dataclass
 from core.quality.measured_feature import CorrectedBy
 from core.quality.quality_errors import QualityError
 from core.quality.wear_proposal import Proposal, propose

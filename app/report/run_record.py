@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Collection
-from dataclasses import field
+from dataclasses import dataclass, field
 
-from core.dataclass import dataclass
 from core.interpreter.actions import ProgramStop
 from core.interpreter.elementary_blocks import Block, TimedSeries
 from core.interpreter.working_plane import Corners

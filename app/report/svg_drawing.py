@@ -6,10 +6,8 @@ Z runs to the right, X upwards. What is drawn is figures alone; texts are escape
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from html import escape
-
-from core.dataclass import dataclass
 
 Point = tuple[float, float]
 """Z and r, mm."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from enum import Enum
 from itertools import combinations
 from operator import itemgetter
@@ -32,7 +32,6 @@ from app.scope.drive_test_figures import (
 )
 from app.scope.scope_model import Scope
 from app.scope.spindle_response import SpindleResponse, last_run_up, spindle_drawing, spindle_sheet
-from core.dataclass import dataclass
 from core.machine.machine_model import Axis, SpindleModel
 from core.records.ball_bar import BallBar, arcs_in, ball_bar
 from core.records.path_error import PathError, WorstPlace, of_samples, worst_places

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
@@ -16,7 +17,6 @@ from app.desk import formats
 from app.desk.sheet import Row, Sheet
 from app.desk.translation import tr
 from app.scope.drawing import Drawing
-from core.dataclass import dataclass
 from core.machine.machine_model import Axis
 from core.records.derived_figures import velocity
 from core.records.record import Record

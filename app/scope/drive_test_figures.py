@@ -8,6 +8,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Mapping
+from dataclasses import dataclass
 from enum import Enum
 
 import numpy as np
@@ -17,7 +18,6 @@ from app.desk import formats
 from app.desk.sheet import Row, Sheet
 from app.desk.translation import tr
 from app.scope.axis_response import SHARES, Moved, Units, moved, step_rows, stretches, window_rows
-from core.dataclass import dataclass
 from core.executor.drive_test_path import PAUSE, DriveTestPath, Shape
 from core.machine.machine_model import Axis
 from core.records.record import Record

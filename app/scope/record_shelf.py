@@ -9,12 +9,11 @@ import os
 import time
 from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import field
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple, TypeVar
 
 from app.desk.formats import file_size, local_time
-from core.dataclass import dataclass
 from core.file_placing import put_in_place
 from core.records.record import Record
 from core.records.record_file import ENDING

@@ -7,7 +7,7 @@ on: only what was sampled since the last picture is looked at.
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import Protocol
 
 import numpy as np
@@ -16,7 +16,6 @@ import numpy.typing as npt
 from app.scope.curve_columns import Columns, Points, kept_range, points_of
 from app.scope.scope_trigger import Trigger
 from app.scope.signals import Quantity, Signal
-from core.dataclass import dataclass
 from core.executor.snapshot import State
 from core.records.record import Channel, Record
 

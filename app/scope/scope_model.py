@@ -6,7 +6,7 @@ Nothing is computed on the screen's thread: ``look`` asks a worker for the next 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from enum import Enum
 from functools import partial
 
@@ -21,7 +21,6 @@ from app.scope.scope_trigger import Trigger, When
 from app.scope.signals import Quantity, Signal, first_chosen, signals_of
 from app.scope.time_window import PAN, Cursors, Window
 from core.access.access_table import Act
-from core.dataclass import dataclass
 from core.executor.snapshot import Snapshot
 from core.records.record import Record
 

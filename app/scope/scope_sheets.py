@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 
 from app.desk import formats
 from app.desk.arithmetic import EntryError, line_of, value_of
@@ -12,7 +12,6 @@ from app.desk.translation import tr
 from app.scope.scope_model import Scope, Side
 from app.scope.scope_trigger import When
 from app.scope.signals import Signal
-from core.dataclass import dataclass
 
 _RELEASE, _SIGNAL, _LEVEL, _PLACE = range(4)  # rows of the trigger
 

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from enum import Enum
 
 import numpy as np
 import numpy.typing as npt
 
 from app.desk.translation import tr
-from core.dataclass import dataclass
 
 FloatArray = npt.NDArray[np.float64]
 

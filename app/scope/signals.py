@@ -6,6 +6,7 @@ Most are channels of a record as they are; velocity, acceleration and ripple are
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from enum import Enum
 
 import numpy as np
@@ -13,7 +14,6 @@ import numpy.typing as npt
 
 from app.desk.formats import MM_PER_INCH
 from app.desk.translation import tr
-from core.dataclass import dataclass
 from core.records import derived_figures
 from core.records.record import Channel
 

@@ -6,7 +6,7 @@ Read off the record of a run-up that was made anyway: the spindle is turned by p
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -15,7 +15,6 @@ from app.desk import formats
 from app.desk.sheet import Row, Sheet
 from app.desk.translation import tr
 from app.scope.drawing import Drawing
-from core.dataclass import dataclass
 from core.machine.machine_model import SpindleModel
 from core.records.record import Record
 from core.records.record_errors import AnalysisError

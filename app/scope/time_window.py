@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from core.dataclass import dataclass
+from dataclasses import dataclass
 
 SPANS = (
     *(0.01, 0.02, 0.05, 0.1, 0.2, 0.5),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import partial
 
 from PySide6.QtCore import QRectF
@@ -11,7 +12,6 @@ from PySide6.QtWidgets import QLineEdit, QWidget
 
 from app.screen.look import Look, Painter
 from app.screen.panel import Panel, Shown
-from core.dataclass import dataclass
 
 
 @dataclass(frozen=True, slots=True)

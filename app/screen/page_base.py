@@ -38,6 +38,7 @@ spindle, lamps, dock, prompt and function keys belong to the ``Frame``. To plug 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from typing import ClassVar, Protocol
 
 from PySide6.QtGui import QKeyEvent
@@ -48,7 +49,6 @@ from app.desk.machine_status import MachineStatus
 from app.desk.program_loading import Loaded
 from app.screen.look import Look
 from app.screen.machine_labels import label_on
-from core.dataclass import dataclass
 from core.executor.snapshot import Snapshot
 
 KeyActions = Mapping[str, Callable[[], object]]  # by the name of the key; what they answer is not used

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from importlib import import_module
 from typing import Any
 
 from PySide6.QtWidgets import QWidget
 
 from app.screen.page_base import Host, Page
-from core.dataclass import dataclass
 
 MENU, AUTOMATIC, EDITOR, MDI, JOG = "MAIN MENU", "AUTOMATIC", "EDITOR", "MDI", "JOG"
 SEARCHTO = "SEARCHTO"

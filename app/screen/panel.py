@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import ClassVar, Generic, TypeVar
 
 from PySide6.QtCore import QEvent, QPointF, QRectF, Qt
@@ -12,7 +12,6 @@ from PySide6.QtWidgets import QWidget
 
 from app.desk.translation import tr
 from app.screen.look import CENTRE, LEFT, Look, Painter, put
-from core.dataclass import dataclass
 
 Press = Callable[[], None]
 T = TypeVar("T")

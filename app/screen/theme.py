@@ -6,7 +6,7 @@ lightness as well as in hue. Nothing is told by colour alone: every state has it
 
 from __future__ import annotations
 
-from core.dataclass import dataclass
+from dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True)

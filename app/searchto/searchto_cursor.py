@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 from app.desk.arithmetic import line_of
 from app.desk.sheet import edited
-from core.dataclass import dataclass
 
 _PASS = re.compile(r"\s*(\d+)\s*[Pp]\s*(\d+)\s*")
 LONGEST = 60  # characters of what is typed

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from app.desk.latest import Latest, Watch
 from app.desk.program_loading import Proved
-from core.dataclass import dataclass
 from core.executor.job import Job
 from core.interpreter.restart.cut_record import CutRecord
 from core.interpreter.restart.restart_lines import Interruption, NoRestart, RestartPoint

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from enum import Enum, auto
 from typing import TYPE_CHECKING
 
@@ -13,7 +13,6 @@ from app.desk.translation import tr
 from app.searchto.searchto_cursor import LineCursor
 from app.searchto.searchto_finder import Answer, LineFinder
 from app.searchto.searchto_plan import Plan, WayOut, now_of, plan_of, way_out_of
-from core.dataclass import dataclass
 from core.executor.commands import Command, Prepare
 from core.executor.job import Job, make_job
 from core.executor.snapshot import CYCLE, Snapshot, Starts, State

@@ -6,13 +6,12 @@ Where the tool stands in the part: the way out of it, or in words how the operat
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 
 from app.desk import formats
 from app.desk.modal_rows import NONE, ModalRow, rows_of
 from app.desk.translation import tr
 from app.path.path_aspects import DrawnLeg as Drawn
-from core.dataclass import dataclass
 from core.executor.interrupted_job import CONTROL_LOST
 from core.executor.job import Job
 from core.executor.snapshot import Snapshot

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import partial
 
 from PySide6.QtCore import QRectF
@@ -13,7 +14,6 @@ from app.screen.look import CENTRE, LEFT, Look, Painter
 from app.screen.panel import Panel, Shown
 from app.screen.window_layout import FINGER
 from app.searchto.searchto_plan import StateRow
-from core.dataclass import dataclass
 
 DIFFERS = "≠"
 PASS_BEFORE, PASS_AFTER = "Pass before", "Pass after"

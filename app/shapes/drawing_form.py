@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from pathlib import Path
 
 from app.shapes.drawing_plan import Asked, Plan, pictured
 from app.shapes.shape_form import ShapeForm
-from core.dataclass import dataclass
 from core.drawings.drawing_view import Front, Side, Zero
 from core.drawings.part_against_drawing import Comparison
 from core.drawings.profile_words import in_words

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from core.dataclass import dataclass
 from core.drawings.contour_walk import Net
 from core.drawings.drawing import Drawing, DrawingError
 from core.drawings.drawing_view import (

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from app.desk.arithmetic import CHARACTERS, EntryError, value_of
 from app.desk.sheet import edited
 from app.desk.translation import tr
-from core.dataclass import dataclass
 from core.shapes.contour import Row, row_word
 from core.shapes.number_words import plain
 from core.shapes.pieces import Piece

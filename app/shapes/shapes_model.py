@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from app.desk.latest import Latest, Watch
@@ -12,7 +12,6 @@ from app.desk.translation import tr
 from app.shapes.drawing_form import PROFILE, WAITS, DrawingForm
 from app.shapes.drawing_plan import Plan, Planner
 from app.shapes.shape_form import ShapeForm
-from core.dataclass import dataclass
 from core.drawings.drawing_file import read_drawing
 from core.drawings.part_against_drawing import Comparison
 from core.language.source import Dialect, dialect_of

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import partial
 
 from PySide6.QtCore import QRectF, QSize, Qt
@@ -17,7 +18,6 @@ from app.screen.panel import Panel, Shown
 from app.shapes.shape_form import COLUMNS, Cell, ShapeForm
 from app.shapes.shapes_model import Shapes
 from app.shapes.sketch_view import SketchPanel
-from core.dataclass import dataclass
 from core.shapes.contour import row_word
 
 ROW = 5.2  # units: at least a finger's height

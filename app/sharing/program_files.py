@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from hashlib import sha256
 from pathlib import Path
 
 from app.desk.program_folder import ENDINGS
-from core.dataclass import dataclass
 from core.sharing.version_record import MOST_BYTES
 from core.store.program_records import check_name
 from core.store.shared_versions import key_of

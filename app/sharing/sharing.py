@@ -9,13 +9,12 @@ from __future__ import annotations
 import sqlite3
 import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 
 from app.programs.whole_file import FileError, write_new, write_whole
 from app.sharing.program_files import FilesOfMachine, SharedFile
-from core.dataclass import dataclass
 from core.sharing.shared_place import Found, Published, SharedPlace
 from core.sharing.sharing_errors import Cause, SharingError
 from core.sharing.version_record import DeskState, new_version

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from pathlib import Path
 from textwrap import wrap
 
@@ -17,7 +17,6 @@ from app.desk.translation import tr
 from app.editor.versions import NoArchive, VersionHistory, lines_of
 from app.sharing.sharing import Shared, Sharing
 from core.access.access_table import Act
-from core.dataclass import dataclass
 from core.store.shared_versions import Family, SharedVersion, key_of
 from core.store.store_rows import VersionRow
 

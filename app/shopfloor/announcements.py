@@ -7,6 +7,7 @@ import logging
 import threading
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from http.client import HTTPException
 from typing import Any, Protocol
 from urllib.error import URLError
@@ -14,7 +15,6 @@ from urllib.request import Request, urlopen
 
 from app.desk.repeating_thread import RepeatingThread
 from app.shopfloor.status_file import Status
-from core.dataclass import dataclass
 
 LOOK = 0.5  # s
 HELD = 100  # announcements that wait for somebody who does not answer; of more the oldest go

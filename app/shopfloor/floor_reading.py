@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from app.desk.machine_status import SilenceWatch
 from core.alarms import CATALOGUE, Code, Reaction
-from core.dataclass import dataclass
 from core.executor.interrupted_job import InterruptedJob
 from core.executor.snapshot import Alarm, Snapshot, Starts, State
 from core.machine.machine_model import Machine

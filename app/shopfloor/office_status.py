@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from datetime import datetime
 
 from app.shopfloor.floor_reading import FloorReader
 from app.shopfloor.status_file import Status, status_of
-from core.dataclass import dataclass
 from core.executor.snapshot import Snapshot
 from core.store.part_cycles import StopRow
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 import hmac
 import json
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from html import escape
 from http import HTTPStatus
 from http.cookies import CookieError, SimpleCookie
@@ -17,7 +18,6 @@ from urllib.parse import parse_qs
 
 from app.desk.formats import duration
 from app.shopfloor.status_file import Status
-from core.dataclass import dataclass
 from resources import status_page_file
 
 if TYPE_CHECKING:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from functools import partial
 
 from app.desk.access import MINUTES, Access
@@ -15,7 +16,6 @@ from app.desk.translation import data, tr
 from app.special.special_functions import SpecialFunction
 from core.access.access_table import RULES, Act, Level
 from core.access.pins import LONGEST, PinError, check_pin, hashed
-from core.dataclass import dataclass
 from core.executor.snapshot import Snapshot
 from core.store.people import NAME_LONGEST, PersonRow, check_person
 from core.store.store_errors import StoreError

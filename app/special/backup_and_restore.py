@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from datetime import datetime
 from functools import partial
 from pathlib import Path
@@ -20,7 +21,6 @@ from app.programs.removable_media import Stick, sticks
 from app.programs.whole_file import FileError
 from app.special.special_functions import SpecialFunction
 from core.access.access_table import Act
-from core.dataclass import dataclass
 from core.executor.snapshot import Snapshot
 from core.store.backup_verdict import Verdict
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 
 from app.desk.desk import Desk
 from app.desk.persistence import Persistence
@@ -12,7 +12,6 @@ from app.desk.sounds import Sounds
 from app.desk.translation import tr
 from app.special.special_functions import SpecialFunction
 from core.access.access_table import Act
-from core.dataclass import dataclass
 from core.executor.commands import ForceOutput
 from core.executor.signal_kinds import SignalKinds
 from core.executor.snapshot import Snapshot

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import field
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from app.desk.persistence import Persistence
 from app.desk.translation import tr
-from core.dataclass import dataclass
 from core.executor.commands import Command, PartsMade, SetSwitch
 from core.executor.snapshot import Snapshot, State
 from core.store.store_errors import StoreError

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 from app.desk.program_loading import at_a_machine
 from app.desk.translation import tr
 from app.report.run_record import RunRecord, Stop, ToolTime
 from app.special.mill_setup import MillSetup, mill_setup
 from app.special.mill_setup import offset_words as mill_offset_words
-from core.dataclass import dataclass
 from core.interpreter.dialects import ReadProgram
 from core.interpreter.job_setup import SecondaryOffset, Setup, ToolOffset, ZeroOffset
 from core.language.diagnostics import Diagnostic, Severity

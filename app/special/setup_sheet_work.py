@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
 
@@ -14,7 +15,6 @@ from app.report.html_tables import PAGE_END, clock, headline, page_head, text_ha
 from app.report.pdf_file import Paper, pdf_of
 from app.special.setup_sheet import SetupSheet, outside_words, setup_sheet
 from app.special.setup_sheet_page import setup_sheet_html
-from core.dataclass import dataclass
 from core.executor.job import Job
 from core.machine.machine_model import Machine
 from core.part.insert_codes import InsertCodeError

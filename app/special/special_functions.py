@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import ClassVar
 
 from app.desk.arithmetic import EntryError
@@ -11,7 +12,6 @@ from app.desk.desk import Desk
 from app.desk.latest import Latest
 from app.desk.sheet import STEPS, Entry, Key, Row, Sheet
 from app.desk.translation import tr
-from core.dataclass import dataclass
 from core.executor.snapshot import Snapshot
 
 

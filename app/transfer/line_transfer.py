@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol, TypeVar
 
 from app.programs.copy_rename_delete import checked_name, same_name_in
 from app.programs.whole_file import FileError, write_new
-from core.dataclass import dataclass
 from core.machine.serial_table import DncModel
 
 T_co = TypeVar("T_co", covariant=True)

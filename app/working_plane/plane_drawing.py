@@ -8,14 +8,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
 from app.working_plane.plane_scene import Ink, Scene
-from core.dataclass import dataclass
 
 if TYPE_CHECKING:
     from app.working_plane.plane_instant import Instant

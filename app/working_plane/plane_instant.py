@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from app.desk.readouts import rotary_angle, system_words
-from core.dataclass import dataclass
 
 if TYPE_CHECKING:
     from app.working_plane.plane_scene import Scene

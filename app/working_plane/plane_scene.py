@@ -8,14 +8,13 @@ from __future__ import annotations
 import math
 from array import array
 from bisect import bisect_right
-from dataclasses import field
+from dataclasses import dataclass, field
 from enum import IntEnum
 from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
-from core.dataclass import dataclass
 from core.geometry.plane_arcs import HelixMove
 from core.geometry.rotation_frames import applied, plus
 from core.interpreter.elementary_blocks import Kind

@@ -7,9 +7,8 @@ feed hold, Reset, ending what runs, drives off; nor does running a program that 
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from enum import Enum, IntEnum
-
-from core.dataclass import dataclass
 
 
 class Level(IntEnum):

@@ -8,9 +8,8 @@ from __future__ import annotations
 import hashlib
 import hmac
 import secrets
+from dataclasses import dataclass
 from typing import NamedTuple
-
-from core.dataclass import dataclass
 
 SHORTEST, LONGEST = 4, 12
 _SALT, _LENGTH = 16, 32  # bytes

@@ -7,10 +7,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
-from core.dataclass import dataclass
 from core.drawings.drawing import DrawingError
 from core.geometry.intersections import intersections
 from core.geometry.lines_and_arcs import Arc, Element, Line, Point, arc_between

@@ -5,10 +5,9 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from pathlib import Path
 
-from core.dataclass import dataclass
 from core.geometry.lines_and_arcs import Arc, Element, Line, Point
 
 MOST_BYTES = 16 * 1024 * 1024

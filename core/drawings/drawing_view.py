@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from enum import StrEnum
 from typing import NamedTuple
 
-from core.dataclass import dataclass
 from core.drawings.contour_walk import GAP, Net, inner_side, nets, outer_side, turned_about
 from core.drawings.drawing import Drawing, DrawingError, Drawn
 from core.geometry.lines_and_arcs import Arc, Element, Line, Point

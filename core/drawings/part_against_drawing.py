@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
-from core.dataclass import dataclass
 from core.drawings.drawing_view import Profile, Side
 from core.geometry.lines_and_arcs import Arc, Element
 

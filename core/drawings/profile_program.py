@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
-from core.dataclass import dataclass
 from core.drawings.drawing_view import Profile, Side
 from core.drawings.nose_reach import reached_by_nose
 from core.drawings.turning_contour import Groove, TurningContour, joined, reach_of, turning_contour

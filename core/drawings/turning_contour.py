@@ -7,10 +7,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
-from core.dataclass import dataclass
 from core.drawings.contour_walk import split, turned_about
 from core.drawings.drawing import DrawingError
 from core.drawings.drawing_view import Profile, Side

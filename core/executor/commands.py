@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 
-from core.dataclass import dataclass
 from core.executor.drive_test_path import DriveTestPath
 from core.executor.interrupted_job import InterruptedJob
 from core.executor.job import Job, Proof

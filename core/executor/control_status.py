@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import Any
 
-from core.dataclass import dataclass
 from core.executor.interrupted_job import InterruptedJob
 from core.executor.job import Job, Proof
 from core.executor.machine_context import MachineContext

@@ -7,12 +7,12 @@ over the other. A sine is s/2·(1 - cos ωt): it begins at rest, and lies to one
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from enum import StrEnum
 from itertools import pairwise
 
 import numpy as np
 
-from core.dataclass import dataclass
 from core.executor.jog_line import Ramp
 from core.executor.jogging import step_ramps
 

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from datetime import UTC, datetime
 from math import isfinite
 
-from core.dataclass import dataclass
 from core.tool_edges import edge_name
 
 CONTROL_LOST = "THE CONTROL LOST ITS POWER OR WAS KILLED"

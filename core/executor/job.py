@@ -9,9 +9,8 @@ import dataclasses
 import hashlib
 import math
 from collections.abc import Callable
-from dataclasses import field
+from dataclasses import dataclass, field
 
-from core.dataclass import dataclass
 from core.executor.read_ahead import ProgramPass
 from core.interpreter.dialects import ReadProgram, line_alone
 from core.interpreter.job_setup import Setup

@@ -5,10 +5,9 @@ from __future__ import annotations
 import logging
 import math
 from collections.abc import Callable
-from dataclasses import field
+from dataclasses import dataclass, field
 
 from core.alarms import Code
-from core.dataclass import dataclass
 from core.executor.attempt import Attempt
 from core.executor.commanded_outputs import CommandedOutputs
 from core.executor.raised_alarm import log_line, make_alarm

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from core.dataclass import dataclass
+from dataclasses import dataclass
+
 from core.executor.snapshot import ACTIVE, STOPPED, State
 
 _NO_PARTS = frozenset({State.ESTOP, State.FAULT, State.DISABLED})

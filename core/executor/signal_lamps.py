@@ -7,9 +7,8 @@ state with all other outputs, by the drivers' own way; then the control lights w
 
 from __future__ import annotations
 
-from dataclasses import field
+from dataclasses import dataclass, field
 
-from core.dataclass import dataclass
 from core.executor.attempt import Attempt
 from core.executor.machine_context import MachineContext
 from core.executor.signal_kinds import SignalKinds

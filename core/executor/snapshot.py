@@ -7,13 +7,12 @@ control and becomes an alarm.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field, fields
+from dataclasses import dataclass, field, fields
 from enum import StrEnum
 from operator import attrgetter
 from typing import Any, NamedTuple
 
 from core.alarms import Code
-from core.dataclass import dataclass
 from core.executor.interrupted_job import InterruptedJob
 from core.interpreter.kept_pass import KeptPass
 from core.interpreter.modal_state import Modal

@@ -6,10 +6,10 @@ Each wait has words for the screen, an end, and a time limit behind which it is 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from enum import Enum, auto
 
 from core.alarms import Code
-from core.dataclass import dataclass
 from core.executor import start_conditions
 from core.executor.machine_context import MachineContext
 from core.executor.raised_alarm import AlarmError

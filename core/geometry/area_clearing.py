@@ -8,10 +8,9 @@ of an overlap over the radius would leave peaks standing.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from math import dist
 
-from core.dataclass import dataclass
 from core.geometry.lines_and_arcs import SAME_POINT, Element, Line, Point
 from core.geometry.pocket_area import AreaError, Loop, Winding, Within, goes_round, inset
 

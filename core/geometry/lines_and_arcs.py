@@ -7,9 +7,8 @@ left of a way X+ is Z+, the left of a way Z- is X+.
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from math import atan2, cos, dist, hypot, pi, sin, sqrt
-
-from core.dataclass import dataclass
 
 FULL_TURN = 2 * math.pi
 

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 import numpy.typing as npt
 
-from core.dataclass import dataclass
 from core.geometry.plane_arcs import HelixMove
 from core.geometry.rotary_axes import PivotMove
 from core.geometry.virtual_mill import PlaneMove

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
-from core.dataclass import dataclass
 from core.geometry.lines_and_arcs import Arc
 from core.geometry.rotary_axes import Place
 from core.geometry.rotation_frames import IDENTITY, Matrix

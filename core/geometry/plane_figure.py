@@ -5,7 +5,8 @@ A point of the program is scaled, mirrored, turned about the tool axis, whicheve
 
 from __future__ import annotations
 
-from core.dataclass import dataclass
+from dataclasses import dataclass
+
 from core.geometry.lines_and_arcs import Arc, Point
 from core.geometry.rotation_frames import Matrix, Vector, cos_sin
 

@@ -10,9 +10,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from enum import StrEnum
 
-from core.dataclass import dataclass
 from core.geometry.rotary_axes import TURN, Kinematics
 from core.geometry.rotation_frames import (
     Z_AXIS,

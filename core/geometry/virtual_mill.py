@@ -8,12 +8,11 @@ the part from there.
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
 
-from core.dataclass import dataclass
 from core.geometry.lines_and_arcs import arc_sweep
 
 FloatArray = npt.NDArray[np.float64]

@@ -7,6 +7,7 @@ block of its own costs more than all that is done with it.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from enum import StrEnum
 from math import hypot
 from typing import NamedTuple, overload
@@ -14,7 +15,6 @@ from typing import NamedTuple, overload
 import numpy as np
 import numpy.typing as npt
 
-from core.dataclass import dataclass
 from core.geometry.lines_and_arcs import arc_extent, arc_length
 from core.geometry.machine_travel import Travel
 from core.geometry.virtual_mill import PlaneMove

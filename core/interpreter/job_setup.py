@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 
-from core.dataclass import dataclass
 from core.geometry.rotary_axes import DatumPreset, Kinematics
 from core.interpreter.checkpoint import Begin
 

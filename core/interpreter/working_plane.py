@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
-from core.dataclass import dataclass
 from core.geometry.rotary_axes import Kinematics, Place
 from core.geometry.rotation_frames import IDENTITY, Matrix, Vector
 

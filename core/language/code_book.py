@@ -8,9 +8,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from dataclasses import dataclass
 from functools import cached_property
-
-from core.dataclass import dataclass
 
 _CLOSE = ("", ".", ":", "=", "(", ",")  # such words stand close behind their head
 _NUMBER = re.compile(r"0*([0-9]+)")

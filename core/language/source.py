@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import codecs
 import re
+from dataclasses import dataclass
 from enum import StrEnum
 from functools import cached_property
 from pathlib import Path, PurePath
 
-from core.dataclass import dataclass
 from core.language.diagnostics import Diagnostic, refusal
 
 

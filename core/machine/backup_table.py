@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from core.dataclass import dataclass
+from dataclasses import dataclass
+
 from core.table_schema import Driver, DriverTable, Field, Kind
 
 KEPT = 14

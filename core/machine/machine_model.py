@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from math import inf
 
-from core.dataclass import dataclass
 from core.machine.hardware_model import Hardware
 from core.machine.mill_kinematics import KinematicsModel
 from core.machine.signal_table import LAMPS

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 
-from core.dataclass import dataclass
 from core.table_schema import Field, Finding, Kind, Triple, Unit, Values, read_table, written
 
 TABLE = "kinematics"

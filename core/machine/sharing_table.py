@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
-from core.dataclass import dataclass
 from core.table_schema import Driver, DriverTable, Field, FileReading, Finding, Kind, Unit, written
 
 KINDS = ("folder", "git", "postgresql")

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from ipaddress import ip_address
 
-from core.dataclass import dataclass
 from core.table_schema import Driver, DriverTable, Field, FileReading, Finding, Kind, Unit, written
 
 LEAST_TOKEN = 12  # characters

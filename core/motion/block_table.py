@@ -7,14 +7,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import fields
+from dataclasses import dataclass, fields
 from itertools import chain
 from operator import attrgetter
 from typing import Any, Protocol, TypeGuard
 
 import numpy as np
 
-from core.dataclass import dataclass
 from core.geometry.machine_travel import CurvedMove, Travel
 from core.geometry.virtual_mill import PlaneMove
 from core.motion.axis_limits import BoolArray, FloatArray, IntArray, MotionError

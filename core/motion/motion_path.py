@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
-from core.dataclass import dataclass
 from core.motion.axis_limits import FloatArray, IntArray, MotionError, MotionLimits
 from core.motion.block_table import BlockTable, MotionBlock, Part, table_of
 from core.motion.chord_smoothing import SUPPORT, ends_in_chord, regrown, unrounded

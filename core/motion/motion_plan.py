@@ -7,10 +7,10 @@ acceleration; a jerk limit replaces these three by seven, and ``2·a·length`` b
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 
-from core.dataclass import dataclass
 from core.motion.axis_limits import OVERRIDE_MAX, FloatArray, MotionError
 from core.motion.motion_path import Path
 from core.motion.motion_profile import Phases, Profile

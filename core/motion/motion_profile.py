@@ -5,11 +5,11 @@ Setpoints are what a driver takes: the motion of each axis in pieces of constant
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
-from core.dataclass import dataclass
 from core.motion.axis_limits import BoolArray, FloatArray, IntArray
 from core.motion.motion_path import Path
 

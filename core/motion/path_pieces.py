@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import fields
+from dataclasses import dataclass, fields
 
 import numpy as np
 
-from core.dataclass import dataclass
 from core.motion.axis_limits import BoolArray, FloatArray, IntArray, MotionError
 from core.motion.block_table import BlockTable
 

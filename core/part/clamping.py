@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
-from core.dataclass import dataclass
 from core.part.stock import Point, Stock
 
 _BEHIND = 100.0  # mm of body behind its front

@@ -9,11 +9,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
+from dataclasses import dataclass
 from enum import StrEnum
 
 import numpy as np
 
-from core.dataclass import dataclass
 from core.part.swept_edge import Edge, FloatArray, Point, sweep, towards_axis
 from core.part.turned_part import NOTHING, Cut, TurnedPart
 

@@ -11,8 +11,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-
-from core.dataclass import dataclass
+from dataclasses import dataclass
 
 MM_PER_INCH = 25.4
 

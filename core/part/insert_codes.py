@@ -10,11 +10,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import radians, sin, tan
-
-from core.dataclass import dataclass
 
 MM_PER_INCH = 25.4
 

@@ -7,11 +7,11 @@ the viewer is, towards the top of the picture: so what is seen first has a phi o
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
-from core.dataclass import dataclass
 from core.part.ray_cuts import FloatArray
 
 

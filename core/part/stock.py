@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-
-from core.dataclass import dataclass
 
 FloatArray = npt.NDArray[np.float64]
 Point = tuple[float, float]

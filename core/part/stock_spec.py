@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import io
 import re
+from dataclasses import dataclass
 from itertools import pairwise
 
-from core.dataclass import dataclass
 from core.part.stock import Point, Stock
 from core.part.stock_forms import FORMS
 

@@ -11,11 +11,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 
 import numpy as np
 
-from core.dataclass import dataclass
 from core.part.holder_codes import Holder, holder_of, shank
 from core.part.insert_codes import Insert, decoded, insert_of
 from core.part.tool_polygons import (

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import field
+from dataclasses import dataclass, field
 from itertools import pairwise
 
-from core.dataclass import dataclass
 from core.interpreter.elementary_blocks import Kind
 from core.part.cutter import Cutter, Side
 from core.part.stock import Stock

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 
-from core.dataclass import dataclass
 from core.interpreter.actions import AskInput, Collet, Preset, ProgramEnd, SpindleRun, ToolChange, WaitInput
 from core.interpreter.elementary_blocks import Block, Kind, Series
 from core.interpreter.modal_state import Modal

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import field
+from dataclasses import dataclass, field
 
 import numpy as np
 
-from core.dataclass import dataclass
 from core.interpreter.elementary_blocks import Kind
 from core.part.cutter import Cutter, Side
 from core.part.stock import Stock

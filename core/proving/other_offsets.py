@@ -7,9 +7,8 @@ elsewhere, and the part comes out as much larger, smaller, longer or shorter.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
-from core.dataclass import dataclass
 from core.interpreter.dialects import ReadProgram
 from core.interpreter.job_setup import Setup
 from core.language.diagnostics import Diagnostic

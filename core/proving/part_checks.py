@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
-from core.dataclass import dataclass
 from core.language.diagnostics import Severity
 
 STOCK, TOOL = "stock", "tool"

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from core.dataclass import dataclass
 from core.interpreter.elementary_blocks import Kind
 from core.interpreter.modal_state import Modal
 from core.language.diagnostics import Diagnostic, Severity

@@ -7,13 +7,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 
-from core.dataclass import dataclass
 from core.language.diagnostics import Diagnostic, Severity
 from core.part.clamping import Clamping
 from core.part.field_copies import FieldCopy, copied, restored

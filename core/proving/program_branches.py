@@ -11,11 +11,10 @@ import heapq
 from array import array
 from collections import Counter
 from collections.abc import Callable, Hashable, Iterator, Sequence
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from itertools import count
 from typing import NamedTuple
 
-from core.dataclass import dataclass
 from core.interpreter.actions import AskInput
 from core.interpreter.dialects import ReadProgram
 from core.interpreter.job_setup import Setup

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import field
+from dataclasses import dataclass, field
 
-from core.dataclass import dataclass
 from core.interpreter.machine_requirements import Need
 from core.interpreter.working_plane import Swivel
 from core.language.diagnostics import Diagnostic, Severity

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
-from core.dataclass import dataclass
 from core.interpreter.elementary_blocks import Kind
 from core.part.swept_edge import FloatArray
 from core.part.tool_shape import ToolKind, ToolShape

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
-from core.dataclass import dataclass
 from core.quality.control_charts import charts_of
 from core.quality.quality_errors import QualityError
 

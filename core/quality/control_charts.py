@@ -7,12 +7,12 @@ ASTM E2587 for normally distributed values. Lengths are whatever unit the values
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from core.dataclass import dataclass
 from core.quality.quality_errors import QualityError
 
 FloatArray = npt.NDArray[np.float64]

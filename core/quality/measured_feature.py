@@ -8,9 +8,9 @@ with that of a tool at X negative; a length grows or shrinks with Z by the end a
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from enum import StrEnum
 
-from core.dataclass import dataclass
 from core.quality.control_charts import SAMPLE_SIZES
 from core.quality.quality_errors import QualityError
 

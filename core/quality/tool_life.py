@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from enum import Enum
 
-from core.dataclass import dataclass
 from core.quality.quality_errors import QualityError
 
 PARTS_MOST = 1_000_000

@@ -9,10 +9,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
-from core.dataclass import dataclass
 from core.quality.measured_feature import Feature
 from core.quality.quality_errors import QualityError
 

@@ -7,12 +7,12 @@ motor's encoder the play of the screw behind it is not to be seen, on a scale it
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
 
-from core.dataclass import dataclass
 from core.records.record_errors import AnalysisError
 
 FloatArray = npt.NDArray[np.float64]

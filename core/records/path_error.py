@@ -5,10 +5,11 @@ It is the distance to the path and no following error: a slide that is late on a
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 import numpy.typing as npt
 
-from core.dataclass import dataclass
 from core.records.record_errors import AnalysisError
 
 FloatArray = npt.NDArray[np.float64]

@@ -7,13 +7,11 @@ axes), ``spindle command`` ``spindle speed`` (rpm), ``feed override`` and so on;
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-
-from core.dataclass import dataclass
 
 FloatArray = npt.NDArray[np.float64]
 

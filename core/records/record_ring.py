@@ -7,10 +7,10 @@ written before it is counted, and each ends with its number, so what is half wri
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
-from core.dataclass import dataclass
 from core.records.record import Channel, FloatArray, Record, channels_of
 
 _BITS = 48  # logic channels in one figure, which a float holds exactly

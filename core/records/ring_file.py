@@ -12,11 +12,11 @@ import os
 import struct
 from collections.abc import Callable, Iterator
 from contextlib import suppress
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from core.dataclass import dataclass
 from core.file_lock import lock
 from core.records.record import FloatArray, Record
 from core.records.record_errors import RecordError, why

@@ -7,11 +7,11 @@ line that fits it best: way = lead · turns + entry.
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
-from core.dataclass import dataclass
 from core.records.record_errors import AnalysisError
 
 FloatArray = npt.NDArray[np.float64]

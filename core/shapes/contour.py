@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
 
-from core.dataclass import dataclass
 from core.language.source import Dialect
 from core.shapes.shape_fields import Refusal
 from core.shapes.shape_setting import Setting

@@ -7,9 +7,9 @@ give for uncoated carbide and, for drills and taps, high-speed steel on small ma
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from enum import StrEnum
 
-from core.dataclass import dataclass
 from core.shapes.shape_setting import Setting
 
 FEET = 0.3048  # m

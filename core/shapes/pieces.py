@@ -8,9 +8,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
-from core.dataclass import dataclass
 from core.language.source import Dialect
 from core.shapes.contour import Row, read_contour
 from core.shapes.program_head import MM, RADIUS

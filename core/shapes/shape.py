@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 
-from core.dataclass import dataclass
 from core.language.source import Dialect
 from core.part.tool_shape import ToolKind
 from core.shapes.code_lines import Code

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from enum import StrEnum
 from math import inf
 from typing import TYPE_CHECKING, NamedTuple
-
-from core.dataclass import dataclass
 
 if TYPE_CHECKING:
     from core.shapes.shape_setting import Setting

@@ -7,8 +7,8 @@ B1.20.1, ISO 7-1, ISO 228-1. ACME: B1.5, general purpose.
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
-from core.dataclass import dataclass
 from core.shapes.thread_series import METRIC, TAPERED, UNIFIED, Series, ThreadSize
 
 V60 = math.sqrt(3.0) / 2.0  # height of a sharp V of 60° in pitches

@@ -6,10 +6,9 @@ ISO 261, ISO 228-1 and ISO 7-1.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from enum import StrEnum
 from fractions import Fraction
-
-from core.dataclass import dataclass
 
 
 class Series(StrEnum):

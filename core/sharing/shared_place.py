@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import NamedTuple, Protocol
 
-from core.dataclass import dataclass
 from core.sharing.version_record import DeskState
 from core.store.shared_versions import SharedVersion
 

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from hashlib import sha256
 
-from core.dataclass import dataclass
 from core.store.program_records import check_name
 from core.store.shared_versions import SharedVersion
 from core.store.store_errors import StoreError

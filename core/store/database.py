@@ -6,9 +6,9 @@ import os
 import sqlite3
 from collections.abc import Sequence
 from contextlib import ExitStack, closing, suppress
+from dataclasses import dataclass
 from pathlib import Path
 
-from core.dataclass import dataclass
 from core.file_lock import lock
 from core.file_placing import put_in_place
 from core.store import row_sums

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from math import isfinite
 from typing import get_args, get_type_hints
-
-from core.dataclass import dataclass
 
 MM_PER_INCH = 25.4
 TOOL_REACH = 1270.0  # mm: 50 in, more than any such lathe travels

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import sqlite3
 from collections.abc import Container, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-from core.dataclass import dataclass
 from core.store import row_sums
 from core.store.offset_fields import Field, Sort
 from core.store.store_errors import StoreError

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import sqlite3
 from collections.abc import Collection, Iterable, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from hashlib import sha256
 from typing import NamedTuple
-
-from core.dataclass import dataclass
 
 
 class SharedVersion(NamedTuple):

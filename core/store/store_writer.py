@@ -9,11 +9,10 @@ from collections import deque
 from collections.abc import Callable, Mapping
 from concurrent.futures import Future
 from contextlib import suppress
-from dataclasses import field
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple, TypeVar
 
-from core.dataclass import dataclass
 from core.store import event_log, job_queue, program_records
 from core.store.store_errors import Cause, StoreError, cause_of, why
 from core.store.store_rows import EventRow, utc_now

@@ -6,10 +6,9 @@ import itertools
 import math
 import re
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TypeGuard
 
-from core.dataclass import dataclass
 from core.table_schema import (
     Driver,
     DriverTable,

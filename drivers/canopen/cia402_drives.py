@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import struct
 from contextlib import suppress
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import canopen
 from canopen.emcy import EmcyError
 
-from core.dataclass import dataclass
 from core.ports import DriverError, Fault, FaultCode
 from drivers.canopen import canopen_objects as od
 from drivers.canopen.canopen_bus import Bus

@@ -6,10 +6,9 @@ and Xenus; everything else is a drive of CiA 402 alone, as Schunk's and Pilz's a
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from enum import Enum
 from typing import NamedTuple
-
-from core.dataclass import dataclass
 
 
 class Entry(NamedTuple):

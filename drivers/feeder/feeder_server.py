@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import fields
+from dataclasses import dataclass, fields
 from functools import cache, partial
 
 import numpy as np
 
-from core.dataclass import dataclass
 from core.ports import DriverError, MachinePorts, StationState, Stop, Trip, TrippedError, at_rest
 from drivers.feeder.feeder_messages import (
     NOTHING,

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Generator
-from dataclasses import field
+from dataclasses import dataclass, field
 
-from core.dataclass import dataclass
 from core.ports import Fault, FaultCode
 
 # Bytes of its buffer that are never used. With 100 free ones the firmware's simulator takes nothing more from

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 
-from core.dataclass import dataclass
 from core.table_schema import Driver, DriverTable, Field, FileReading, Finding, Kind, expected_table, written
 
 _SETTINGS, _WHEEL = "grblhal.settings", "io.analog.handwheel"

@@ -8,9 +8,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 
-from core.dataclass import dataclass
 from core.ports import DriverError
 from drivers.hal.hal_config import HalAxis, HalConfig
 

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from pathlib import Path
 
-from core.dataclass import dataclass
 from core.ports import PROBE
 from drivers.hal.hal_table import NEEDS, HalAxisPins, HalSpindlePins
 from drivers.setpoint_queue import AxisFigures

@@ -8,9 +8,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import fields
+from dataclasses import dataclass, fields
 
-from core.dataclass import dataclass
 from core.table_schema import (
     Driver,
     DriverTable,

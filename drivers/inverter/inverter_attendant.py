@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable
+from dataclasses import dataclass
 
-from core.dataclass import dataclass
 from core.ports import Clock, DriverError, Fault, FaultCode
 from drivers.inverter.inverter_family import Family, Look
 from drivers.inverter.inverter_obedience import PRESS, STANDS, Obedience

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 from typing import NamedTuple, Protocol
 
-from core.dataclass import dataclass
 from drivers.inverter.modbus_rtu import Modbus, NoAnswerError, RefusedError
 
 

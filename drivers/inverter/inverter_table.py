@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from core.dataclass import dataclass
 from core.table_schema import Driver, DriverTable, Field, FileReading, Kind, Unit
 
 if TYPE_CHECKING:

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
-from core.dataclass import dataclass
 from core.ports import Clock
 from drivers.lookalikes.grblhal_program import Modes, Program
 from drivers.lookalikes.grblhal_settings import Quirks, Registers

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import re
+from dataclasses import dataclass
 from typing import Protocol
 
-from core.dataclass import dataclass
 from drivers.lookalikes.grblhal_settings import Quirks, Registers
 from drivers.lookalikes.grblhal_slides import Place, PlannedBlock, Shape, Slides, circle, straight
 from drivers.lookalikes.spindle_motor import SpindleMotor

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import field
-
-from core.dataclass import dataclass
+from dataclasses import dataclass, field
 
 # --- What the look-alike does like the real one, or is made to do; each can be switched.
 

@@ -6,8 +6,8 @@ import itertools
 import math
 from collections import deque
 from collections.abc import Callable
+from dataclasses import dataclass
 
-from core.dataclass import dataclass
 from drivers.lookalikes.grblhal_settings import Registers
 
 Place = tuple[float, float]  # X as a radius, Z; mm

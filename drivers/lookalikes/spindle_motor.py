@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 from collections import deque
+from dataclasses import dataclass
 
-from core.dataclass import dataclass
 from drivers.lookalikes.plant_config import SimSpindle
 
 _BEARINGS, _SPEEDS_UP, _IN_CUT = 10.0, 70.0, 30.0  # per cent

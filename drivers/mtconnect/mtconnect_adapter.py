@@ -7,9 +7,9 @@ import selectors
 import socket
 import threading
 from collections.abc import Callable
+from dataclasses import dataclass
 from datetime import UTC, datetime
 
-from core.dataclass import dataclass
 from core.ports import Clock, DriverError
 from drivers.mtconnect.agent_links import AgentLink, GoneError, LostError, accepted, listening
 from drivers.mtconnect.mtconnect_items import DataItem

@@ -11,10 +11,10 @@ import contextlib
 import os
 import struct
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
 
-from core.dataclass import dataclass
 from core.ports import DriverError
 from drivers.pendant.input_codes import ABS, AXES, KEY, KEYS, REL, Control
 from drivers.pendant.pendant_buttons import AxisRange

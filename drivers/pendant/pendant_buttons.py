@@ -6,10 +6,9 @@ A press that comes late moves nothing: it has to be let go and pressed again. A 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from core.dataclass import dataclass
 from drivers.pendant.input_codes import ABS, KEY, REL, Control
 from drivers.pendant.input_events import InputEvent, Packet
 

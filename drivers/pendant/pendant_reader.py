@@ -6,8 +6,8 @@ import contextlib
 import select
 import threading
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 
-from core.dataclass import dataclass
 from core.ports import DriverError
 from drivers.pendant.input_codes import Control
 from drivers.pendant.input_devices import EventSource

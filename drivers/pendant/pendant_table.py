@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from dataclasses import dataclass
 
-from core.dataclass import dataclass
 from core.table_schema import AT_PENDANT, Driver, DriverTable, Field, FileReading, Finding, Kind, written
 from drivers.pendant.input_codes import button_of, wheel_of
 

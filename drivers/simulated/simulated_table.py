@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from core.dataclass import dataclass
 from core.table_schema import (
     Driver,
     DriverTable,

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import re
+from dataclasses import dataclass
 from enum import StrEnum
 from hashlib import sha256
 
-from core.dataclass import dataclass
 from core.ports import DriverError
 from drivers.serial_line import PARITIES, parity_of
 from drivers.transfer.transfer_settings import DC2, DC4, TransferSettings

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import threading
+from dataclasses import dataclass
 
-from core.dataclass import dataclass
 from core.ports import Clock, DriverError
 from drivers.serial_line import FlowWire, table_of
 from drivers.transfer.program_framing import Incoming, IncompleteError, Phase, Program

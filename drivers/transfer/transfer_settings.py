@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
-from core.dataclass import dataclass
 from drivers.serial_line import PARITIES, LineSettings
 
 DC1, DC2, DC3, DC4 = b"\x11", b"\x12", b"\x13", b"\x14"

@@ -10,9 +10,9 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from copy import deepcopy
+from dataclasses import dataclass
 from functools import partial
 
-from core.dataclass import dataclass
 from core.geometry.intersections import intersections
 from core.geometry.lines_and_arcs import Element, Point
 from core.geometry.pocket_area import AreaError, Loop, Winding, boundary, follows, goes_round

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 
-from core.dataclass import dataclass
 from core.geometry.rotation_frames import Vector
 from core.interpreter.diagnostic_log import MOST_OF_A_KIND
 from core.interpreter.klartext.consequent_faults import told_once

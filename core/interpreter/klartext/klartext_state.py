@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
-from core.dataclass import dataclass
 from core.geometry.machine_travel import CurvedMove, Travel
 from core.geometry.plane_figure import XY, Figure, Order
 from core.geometry.rotary_axes import Kinematics, Place, Rotary

@@ -8,9 +8,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 
-from core.dataclass import dataclass
 from core.geometry.lines_and_arcs import (
     SAME_POINT,
     Arc,

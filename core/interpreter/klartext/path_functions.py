@@ -8,9 +8,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
-from core.dataclass import dataclass
 from core.geometry.chamfer_and_rounding import CornerError, chamfer, rounding
 from core.geometry.lines_and_arcs import Arc, Element, Point
 from core.geometry.plane_arcs import HelixMove

@@ -8,9 +8,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
-from core.dataclass import dataclass
 from core.geometry.contour_offset import GougeError, Offset, Piece
 from core.geometry.lines_and_arcs import SAME_POINT, Arc, Element, Point, left_of
 from core.geometry.rotation_frames import Vector

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from enum import Enum, auto
 from math import inf
 from typing import NamedTuple
 
-from core.dataclass import dataclass
 from core.interpreter import units
 
 HEAD = "G90G94F300\nT1\nM03S1000\nX.6Z.1\nG95F.004\n"

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from core.dataclass import dataclass
 from core.geometry.chamfer_and_rounding import (
     CornerError,
     CornerTooLargeError,

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Iterator, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from math import dist
 from typing import NamedTuple
 
-from core.dataclass import dataclass
 from core.geometry.contour_offset import WINDOW, GougeError, Offset, Piece
 from core.geometry.intersections import distance
 from core.geometry.lines_and_arcs import SAME_POINT, Element, Line, Point

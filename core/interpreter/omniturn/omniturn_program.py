@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from itertools import islice
 
-from core.dataclass import dataclass
 from core.interpreter.diagnostic_log import without_repeats
 from core.interpreter.omniturn.code_table import FLOW_CODES
 from core.interpreter.omniturn.loops_and_subroutines import Structure, call_target, find_structure

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import NamedTuple
 
-from core.dataclass import dataclass
 from core.geometry.virtual_mill import PlaneMove
 from core.interpreter.actions import Action, Dwell
 from core.interpreter.diagnostic_log import Log

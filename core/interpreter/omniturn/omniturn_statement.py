@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import field
+from dataclasses import dataclass, field
 
-from core.dataclass import dataclass
 from core.interpreter.omniturn.code_entry import Acts, Code, FWord, SWord
 from core.interpreter.omniturn.code_table import FLOW_CODES, G_CODES, M_CODES, PLAIN
 from core.language.diagnostics import ProgramError, program_error

@@ -6,9 +6,9 @@ All lengths mm, X a radius. The formulas: docs/decisions/0009-threads.md.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from math import ceil, copysign, radians, tan
 
-from core.dataclass import dataclass
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.omniturn.canned_cycles import MOST_PASSES
 from core.interpreter.omniturn.code_rules import check_when, checked, number

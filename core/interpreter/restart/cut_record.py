@@ -8,12 +8,12 @@ the frame of the metal, whatever G10, G92 and D do to the words of the program.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from dataclasses import dataclass
 from math import cos, hypot, inf, nan, pi, sin, sqrt
 
 import numpy as np
 import numpy.typing as npt
 
-from core.dataclass import dataclass
 from core.geometry.lines_and_arcs import arc_sweep
 from core.geometry.virtual_mill import Side
 from core.interpreter.actions import Collet

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from bisect import bisect_left
 from collections.abc import Callable
+from dataclasses import dataclass
 
-from core.dataclass import dataclass
 from core.interpreter.actions import ProgramEnd
 from core.interpreter.checkpoint import FlowPlace
 from core.interpreter.job_setup import Setup

@@ -7,10 +7,9 @@ over the place; spindle and coolant; and in along the tool as it will cut, the l
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from math import inf
 
-from core.dataclass import dataclass
 from core.geometry.rotary_axes import Kinematics
 from core.geometry.rotation_frames import Vector, plus, scaled
 from core.interpreter.actions import ProgramStop, SpindleStop, ToolChange

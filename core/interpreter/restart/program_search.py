@@ -8,11 +8,10 @@ elsewhere in it has not been positioned by the program, and the line is refused 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import inf, isclose
 
-from core.dataclass import dataclass
 from core.interpreter.actions import ProgramEnd
 from core.interpreter.checkpoint import Checkpoint
 from core.interpreter.dialects import ReadProgram

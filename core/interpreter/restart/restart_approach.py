@@ -7,10 +7,9 @@ spindle and coolant; then into the work by the line. Rapids only where no metal 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from math import hypot
 
-from core.dataclass import dataclass
 from core.interpreter.actions import Coolant, Output, SpindleLock, SpindleRun, SpindleStop
 from core.interpreter.checkpoint import ApproachStep, Begin, CTurn, FunctionStep, Leg
 from core.interpreter.modal_state import Modal

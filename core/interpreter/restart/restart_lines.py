@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import field
+from dataclasses import dataclass, field
 from operator import attrgetter
 from typing import NamedTuple
 
-from core.dataclass import dataclass
 from core.interpreter.checkpoint import Checkpoint
 from core.interpreter.omniturn.loops_and_subroutines import call_target
 from core.interpreter.omniturn.omniturn_program import Program

@@ -8,13 +8,13 @@ the tool off so. The rules, and what was taken from nobody's guess: docs/decisio
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from enum import Enum
 from math import hypot, inf, isnan
 from typing import NamedTuple
 
 import numpy as np
 
-from core.dataclass import dataclass
 from core.interpreter.restart.cut_record import (
     FACE,
     FEED,

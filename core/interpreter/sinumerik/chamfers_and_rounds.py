@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 
-from core.dataclass import dataclass
 from core.geometry.chamfer_and_rounding import (
     CornerError,
     CornerTooLargeError,

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from core.dataclass import dataclass
+from dataclasses import dataclass
+
 from core.interpreter.job_setup import ZeroOffset
 from core.interpreter.modal_state import Modal
 from core.interpreter.sinumerik.programmed_frame import ProgrammedFrame

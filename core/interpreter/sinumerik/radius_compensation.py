@@ -7,11 +7,10 @@ nose's centre runs its radius beside the contour, and the tip lies from it as th
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from math import acos, atan2, cos, dist, pi, sin
 from typing import NamedTuple
 
-from core.dataclass import dataclass
 from core.geometry.contour_offset import GougeError, Offset, Piece
 from core.geometry.intersections import clearance
 from core.geometry.lines_and_arcs import SAME_POINT, Arc, Element, Line, Point, turn

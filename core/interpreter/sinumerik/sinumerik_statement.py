@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 
-from core.dataclass import dataclass
 from core.language.diagnostics import Diagnostic, ProgramError, Severity
 from core.language.sinumerik import sinumerik_words as known
 from core.language.sinumerik import word_table as table

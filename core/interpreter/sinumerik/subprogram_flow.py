@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import field
+from dataclasses import dataclass, field
 
-from core.dataclass import dataclass
 from core.interpreter.interpretation import DEEPEST_CALL
 from core.interpreter.sinumerik.control_structures import belonging, find_label, follow
 from core.interpreter.sinumerik.parameter_passing import Saved, handed_over

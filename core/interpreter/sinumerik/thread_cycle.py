@@ -6,9 +6,9 @@ The passes are those of G33; a start angle is the same as beginning so much of t
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from math import radians, sqrt, tan
 
-from core.dataclass import dataclass
 from core.interpreter.elementary_blocks import Block
 from core.interpreter.sinumerik.cycle_parameters import MACHINING_TYPE, MOST_PASSES, RETRACT, Cycle, Step
 from core.interpreter.sinumerik.thread_moves import check_spindle

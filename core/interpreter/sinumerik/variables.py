@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import field
+from dataclasses import dataclass, field
 
-from core.dataclass import dataclass
 from core.language.diagnostics import ProgramError
 from core.language.formulas import Formula, Parameter
 from core.language.sinumerik.sinumerik_alarms import NOT_DEFINED

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import NamedTuple
 
-from core.dataclass import dataclass
 from core.language.diagnostics import Diagnostic
 from core.language.formulas import Formula, Number, Operation, Parameter
 

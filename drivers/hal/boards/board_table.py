@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 
-from core.dataclass import dataclass
 from core.table_schema import (
     Driver,
     DriverTable,

@@ -5,11 +5,10 @@ from __future__ import annotations
 import re
 import textwrap
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from pathlib import PurePath
 from typing import NamedTuple
 
-from core.dataclass import dataclass
 from core.table_schema import Finding, written
 from drivers.hal.boards.board_table import BoardTable
 
