@@ -141,6 +141,43 @@ def test_the_documents_name_only_files_that_are_there() -> None:
     assert [each for each in named if not (HOUSE / each[1]).exists()] == []
 
 
+def test_every_link_of_a_document_leads_somewhere() -> None:
+    linked = [
+        (document, link)
+        for document in [*HOUSE.glob("*.md"), *sorted((HOUSE / "docs").rglob("*.md"))]
+        for link in re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)", document.read_text(encoding="utf-8"))
+    ]
+    assert len(linked) > 150
+    assert [(page.name, link) for page, link in linked if not (page.parent / link).exists()] == []
+
+
+def test_the_records_name_files_by_names_that_are_there() -> None:
+    """In a record a file often stands alone, without its folder."""
+    there = {path.name for room in (*ROOMS, "resources", "tests") for path in (HOUSE / room).rglob("*.py")}
+    records = sorted((HOUSE / "docs" / "decisions").glob("*.md"))
+    named = [
+        (record.name, name)
+        for record in records
+        for name in re.findall(r"`(?:[\w/]+/)?(\w+\.py)`", record.read_text(encoding="utf-8"))
+    ]
+    assert len(named) > 80
+    gone = {"page.py"}  # nine files once, which record 0040 is about
+    assert [(record, name) for record, name in named if name not in there | gone] == []
+
+
+def test_every_record_is_in_the_index_of_decisions() -> None:
+    """A record that is newer than the whole index may wait for its row."""
+    folder = HOUSE / "docs" / "decisions"
+    text = (folder / "README.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| \[(\d{4})\]\((\d{4}-[\w-]+\.md)\) \|", text, re.MULTILINE)
+    listed = [name for _, name in rows]
+    assert [number for number, name in rows if name[:4] != number] == []
+    assert sorted(listed) == sorted(set(listed))
+    known = {path.name for path in folder.glob("0*.md")}
+    assert sorted(set(listed) - known) == []
+    assert sorted(name for name in known - set(listed) if name < max(listed)) == []
+
+
 def test_every_room_is_on_the_map() -> None:
     text = MAP.read_text(encoding="utf-8")
     rooms = {path.parent.relative_to(HOUSE) for room in ROOMS for path in (HOUSE / room).rglob("*.py")}
