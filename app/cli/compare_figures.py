@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from app.cli.proof_job import ProofJob
     from core.language.source import Source
     from core.proving.part_features import Pair
-    from core.proving.part_proof import PartReport
+    from core.proving.part_report import PartReport
     from core.proving.proof_report import Report
 
 _NOUGHT = 5e-5  # in or mm

@@ -28,7 +28,7 @@ from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, EXIT_USAGE, CommandErr
 from core.language.source import Source
 
 if TYPE_CHECKING:
-    from core.proving.part_proof import PartSetting
+    from core.proving.part_setting import PartSetting
 
 
 def prove_many(args: argparse.Namespace, jobs: FittingJobs) -> int:

@@ -10,7 +10,7 @@ from core.language.source import Dialect
 
 if TYPE_CHECKING:
     from core.language.diagnostics import Diagnostic
-    from core.proving.part_proof import PartReport
+    from core.proving.part_report import PartReport
     from core.proving.proof_report import Report
 
 # Checks that interpreting makes by itself, by the code of their findings.

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from app.cli.report_file import ReportFile
     from core.interpreter.job_setup import Setup
     from core.language.source import Source
-    from core.proving.part_proof import PartReport
+    from core.proving.part_report import PartReport
     from core.proving.proof_report import Report
 
 

@@ -11,7 +11,7 @@ from core.language.source import Dialect
 if TYPE_CHECKING:
     from core.part.stock import Stock
     from core.part.turned_part import Profile
-    from core.proving.part_proof import PartReport
+    from core.proving.part_report import PartReport
 
 
 def stock_json(part: PartReport, dialect: Dialect) -> Json | None:

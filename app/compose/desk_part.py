@@ -25,7 +25,8 @@ if TYPE_CHECKING:
     from core.part.tool_shape import ToolShape
     from core.proving.other_offsets import OtherPart
     from core.proving.part_history import PartMoves
-    from core.proving.part_proof import PartReport, PartSetting
+    from core.proving.part_report import PartReport
+    from core.proving.part_setting import PartSetting
 
 Shapes = Callable[[], Mapping[int, "ToolShape"]]
 """The shapes of tools, by T, as they are when it is called; on the worker."""

@@ -17,7 +17,7 @@ from app.jobs.jobs_watch import JobsWatch
 from app.jobs.next_job import JobProofs
 from app.quality.parts_watch import PartsWatch
 from core.machine.machine_model import Machine
-from core.proving.part_proof import PartSetting
+from core.proving.part_setting import PartSetting
 from core.store.store_rows import ToolRow
 
 Before = Callable[[str], tuple[str, dict[int, ToolRow]]]

@@ -10,7 +10,7 @@ from core.interpreter.job_setup import ToolOffset
 from core.machine.machine_model import Machine
 from core.part.clamping import Clamping
 from core.part.tool_shape import ToolShape
-from core.proving.part_proof import PartSetting
+from core.proving.part_setting import PartSetting
 from core.proving.thread_checks import Drives
 
 OF_MACHINE = "by the machine file"

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from core.executor.job import Job
     from core.machine.machine_model import Machine
     from core.part.solid_picture import Image
-    from core.proving.part_proof import PartSetting
+    from core.proving.part_setting import PartSetting
 
 WIDE, HIGH = 168, 112  # pixels
 MOST = 400  # files; of more the oldest fifth goes

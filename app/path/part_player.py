@@ -23,7 +23,8 @@ if TYPE_CHECKING:
     from core.part.solid_picture import Image, SolidPicture
     from core.part.solid_view import SolidView
     from core.part.surface_points import Solid
-    from core.proving.part_history import PartHistory, PartInstant
+    from core.proving.part_history import PartHistory
+    from core.proving.part_instant import PartInstant
 
 FAST = 10.0  # times
 _RESTS = 0.25  # s after which a solid that nobody turns any more is drawn finely

@@ -12,7 +12,7 @@ from app.path.path_projection import Floats, Projection
 if TYPE_CHECKING:
     from core.part.clamping import Clamping
     from core.part.stock import Stock
-    from core.proving.part_history import Half, Hit
+    from core.proving.part_instant import Half, Hit
 
 _METAL = 1e-4  # mm; less is no metal
 _FINE = 4.0  # parts of a pixel that rows are told apart by

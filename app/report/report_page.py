@@ -21,7 +21,7 @@ from core.tool_edges import edge_name
 if TYPE_CHECKING:
     from core.interpreter.job_setup import Setup
     from core.machine.machine_model import Machine
-    from core.proving.part_proof import PartReport
+    from core.proving.part_report import PartReport
     from core.proving.proof_report import Report
 
 _PICTURES = 30  # of findings; each of them stands where its line is told

@@ -9,7 +9,8 @@ from core.interpreter.actions import ProgramStop
 from core.interpreter.elementary_blocks import Block, TimedSeries
 from core.interpreter.working_plane import Corners
 from core.part.turned_part import Piece
-from core.proving.part_proof import PartProof, PartSetting
+from core.proving.part_proof import PartProof
+from core.proving.part_setting import PartSetting
 from core.proving.program_timeline import MotionSpan, RestSpan
 from core.proving.tip_moves import Steps, TipMove
 

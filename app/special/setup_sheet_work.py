@@ -20,7 +20,7 @@ from core.machine.machine_model import Machine
 from core.part.insert_codes import InsertCodeError
 from core.part.tool_outline import ToolOutline, outline
 from core.part.tool_shape import ToolShape
-from core.proving.part_proof import PartSetting
+from core.proving.part_setting import PartSetting
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,7 +12,8 @@ from typing import NamedTuple
 
 from core.interpreter.actions import Collet
 from core.part.surface_points import Solid
-from core.proving.part_history import Half, PartHistory, PartInstant, PartMoves
+from core.proving.part_history import PartHistory, PartMoves
+from core.proving.part_instant import Half, PartInstant
 from core.proving.tip_moves import LiveStep, TipMove
 
 Watch = Callable[[float], None]

@@ -15,7 +15,9 @@ from core.language.diagnostics import Diagnostic
 from core.language.source import Source
 from core.machine.machine_model import Machine
 from core.proving.part_features import Pair, features, matched
-from core.proving.part_proof import PartReport, PartSetting, prove_with_part
+from core.proving.part_proof import prove_with_part
+from core.proving.part_report import PartReport
+from core.proving.part_setting import PartSetting
 from core.proving.proof_report import Report
 from core.proving.prove_program import Progress
 

@@ -9,40 +9,27 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
-from typing import NamedTuple
 
 import numpy as np
 
-from core.language.diagnostics import Diagnostic, Severity
-from core.part.clamping import Clamping
-from core.part.field_copies import FieldCopy, copied, restored
-from core.part.polar_field import Taken
 from core.part.solid_bodies import Round, ToolBody, chuck_solid
 from core.part.solid_picture import Scene
-from core.part.stock import Stock
 from core.part.stock_spec import StockSpec
 from core.part.surface_points import Solid, solid_of, turned_solid
 from core.part.swept_edge import FloatArray, Point
 from core.part.tool_outline import ToolOutline, outline
 from core.part.tool_shape import ToolShape
-from core.part.turned_part import Cut, TurnedPart
-from core.proving.milling import Milling
-from core.proving.part_proof import MOST_MOVES, Making, PartSetting, Tools
+from core.proving.part_copies import PartCopies
+from core.proving.part_hits import hit_of, metal_of
+from core.proving.part_instant import Half, Hit, PartInstant, PlacedTool
+from core.proving.part_making import PartMaking
+from core.proving.part_proof import MOST_MOVES
+from core.proving.part_setting import PartSetting
 from core.proving.program_timeline import MotionSpan, Part, RestSpan
+from core.proving.program_tools import ProgramTools
 from core.proving.tip_moves import LiveStep, Step, Steps, TipMove, zero_of
 
-_EVERY = 16  # blocks from one copy to the next, at first
-_MOST_COPIES = 96
-_MOST_BYTES = 96e6  # of all copies
 _LOOKED = 20  # blocks between two looks at whether the work is still wanted
-_TOUCH = 1e-6  # mm
-
-_PLACES = 40  # along a hit in chuck or tailstock
-_OF_CLAMPING = frozenset({"into-chuck", "into-tailstock"})
-# What a block that is found to be wrong for another reason takes off is what it shall take off.
-_OF_METAL = frozenset(
-    {"rapid-into-stock", "feed-into-holder", "holder-into-stock", "through-part", "neighbour-tool"}
-)
 
 Go = Callable[[], None]
 
@@ -88,64 +75,6 @@ class PartGathering:
         return PartMoves(tuple(self._parts), self.setting) if self._parts else None
 
 
-class Half(NamedTuple):
-    """One side of the section: ``edges`` (columns + 1,) of Z, rising; metal from ``low`` to ``high`` (layers,
-    columns), radii; mm."""
-
-    edges: FloatArray
-    low: FloatArray
-    high: FloatArray
-
-
-class Hit(NamedTuple):
-    """Metal that was met where nothing may be met: ``finding``, and from ``low`` to ``high`` at each ``z``
-    (n,), ``wide`` mm of Z each."""
-
-    finding: Diagnostic
-    z: FloatArray
-    low: FloatArray
-    high: FloatArray
-    wide: float
-
-
-class PlacedTool(NamedTuple):
-    """A tool where it stands: its control point ``at``, its outlines (k, 2) of Z and r, mm.
-
-    ``assumed``: nobody has described it, its body is what such tools have. ``round``: about which axis it is.
-    """
-
-    number: int
-    at: Point
-    cutting: tuple[FloatArray, ...]
-    body: tuple[FloatArray, ...]
-    assumed: bool
-    round: Round = Round.NOT
-
-
-class PartInstant(NamedTuple):
-    """The part when ``block`` blocks are done and ``share`` of the next.
-
-    ``near`` is the side of the section at X+, ``far`` that beyond the axis; None: there is no metal.
-    ``hits`` and ``findings`` are those that have come up by then. ``reach`` is how far the tip may go, from
-    and to which Z and r.
-    """
-
-    block: int
-    share: float
-    line: int
-    near: Half | None
-    far: Half | None
-    stock: Stock | None
-    tool: PlacedTool | None
-    hits: tuple[Hit, ...]
-    findings: tuple[Diagnostic, ...]
-    pieces: int
-    clamping: Clamping | None = None
-    is_open: bool = False
-    reach: tuple[Point, Point] | None = None
-    c: float = 0.0  # degrees at which the part is held, or was last
-
-
 class PartHistory:
     """Goes through a program forwards and, by what it has kept, backwards. For one thread at a time."""
 
@@ -153,21 +82,23 @@ class PartHistory:
         reading = Steps()
         self.steps: list[Step] = [step for part in moves.parts for step in reading.of(part)]
         self._numbers = np.array([_number(step) for step in self.steps], dtype=np.int64)
-        self._tools = Tools(self.steps, moves.setting)
+        self._tools = ProgramTools(self.steps, moves.setting)
         stock = moves.setting.stock or self._tools.assumed_stock()
         self.stock = stock.stock(self._tools.back) if isinstance(stock, StockSpec) else stock
         self._outlines: dict[int, ToolOutline | None] = {}
         self._hits: dict[tuple[str, int], Hit] = {}
-        self._kept = _Copies()
+        self._kept = PartCopies()
         self._clamping = moves.setting.clamping
         self._travel = moves.setting.travel
         self._chuck: Solid | None = None
         held = self._clamping
         if held is not None and (held.diameter or held.quill) and self.stock is not None:
             self._chuck = chuck_solid(held, self.stock)
-        self._making = Making(self._tools, self.stock, moves.setting)
+        self._making = PartMaking(self._tools, self.stock, moves.setting)
         self._seen = self._making  # as it was given out last
-        self._ahead: tuple[int, float, Making] | None = None  # behind so many steps, so much of the next done
+        self._ahead: tuple[int, float, PartMaking] | None = (
+            None  # behind so many steps, so much of the next done
+        )
         self._done = 0  # steps
         self._last: PartInstant | None = None
         self._kept.keep(0, self._making)
@@ -247,35 +178,12 @@ class PartHistory:
     def _see(self, step: Step) -> None:
         """The next block; what it hits is kept, to be seen."""
         making, known = self._making, len(self._making.findings.diagnostics)
-        before = _copy_of(making.part)
+        before = metal_of(making.part)
         making.see(step)
         for found in making.findings.diagnostics[known:]:
-            if found.severity is not Severity.ERROR:
-                continue
-            hit = None
-            if found.check in _OF_CLAMPING:
-                hit = self._held_hit(found, making.findings.into_clamping.get((found.check, found.line)))
-            elif found.check not in _OF_METAL:
-                pass
-            elif isinstance(step, LiveStep):
-                hit = _milled_hit(found, making.milled_last)
-            elif before is not None and making.part is not None:
-                hit = _hit(found, before, making.part)
+            hit = hit_of(found, step, making, before)
             if hit is not None:
                 self._hits[found.check, found.line] = hit
-
-    def _held_hit(self, found: Diagnostic, met: Cut | None) -> Hit | None:
-        """Where a tool would come into chuck, collet or tailstock: from its outside as deep as it does."""
-        held = self._clamping
-        if met is None or held is None or self.stock is None:
-            return None
-        body = held.tailstock if found.check == "into-tailstock" else held.around(self.stock)
-        if body is None:
-            return None
-        low, high = max(min(met.back, met.front), body.back), min(max(met.back, met.front), body.front)
-        z = np.linspace(low, high, _PLACES)
-        outside = body.outside_at(z)
-        return Hit(found, z, np.maximum(outside - met.depth, 0.0), outside, (high - low) / (_PLACES - 1))
 
     # --- what is to be seen
 
@@ -310,7 +218,7 @@ class PartHistory:
             c=self._c(under_way, share),
         )
 
-    def _milled(self, step: LiveStep, share: float) -> Making:
+    def _milled(self, step: LiveStep, share: float) -> PartMaking:
         """The part with a block of a live tool begun, gone on with from where it was seen last."""
         done, gone, ahead = self._ahead or (-1, 0.0, self._making)
         if done != self._done or gone > share:
@@ -371,61 +279,6 @@ def _round(shape: ToolShape | None, axial: bool) -> Round:
     if shape is None or not shape.turns_itself:
         return Round.NOT
     return Round.ALONG if axial else Round.ACROSS
-
-
-class _Copies:
-    """Copies of a part in the making, by how many steps were done; of too many every other goes.
-
-    Of a milled part they share the columns that were not touched between two of them.
-    """
-
-    def __init__(self) -> None:
-        self._copies: dict[int, tuple[Making, FieldCopy | None, float]] = {}
-        self._every = _EVERY
-
-    def before(self, done: int) -> int:
-        """The last copy that is not behind so many steps."""
-        return max(each for each in self._copies if each <= done)
-
-    def copy(self, done: int) -> Making:
-        """One to go on from."""
-        kept, field, even_with = self._copies[done]
-        making = kept.copy()
-        if field is not None and making.part is not None:
-            making.milling = Milling.of(making.part, restored(field), even_with)
-        return making
-
-    def perhaps(self, done: int, making: Making) -> None:
-        """Keep one when it is time."""
-        if done % self._every == 0 and done not in self._copies:
-            self.keep(done, making)
-
-    def keep(self, done: int, making: Making) -> None:
-        """Keep a copy of what there is after so many steps."""
-        milling = making.milling
-        field, even_with = None, 0.0
-        if milling is not None:
-            near = self._copies.get(max((each for each in self._copies if each < done), default=-1))
-            field = copied(milling.field, near[1] if near is not None else None)
-            even_with = milling.even_with
-        making.milling = None
-        self._copies[done] = making.copy(), field, even_with
-        making.milling = milling
-        while len(self._copies) > _MOST_COPIES or (self._size > _MOST_BYTES and len(self._copies) > 2):
-            self._every *= 2
-            for each in [each for each in self._copies if each % self._every]:
-                del self._copies[each]
-
-    @property
-    def _size(self) -> int:
-        """Bytes of all of them; what is shared counts once."""
-        columns = {
-            id(column): column.nbytes
-            for _, field, _ in self._copies.values()
-            if field is not None
-            for column in field.columns.values()
-        }
-        return sum(columns.values()) + sum(making.nbytes for making, _, _ in self._copies.values())
 
 
 def share_along(points: Sequence[Point], at: Point) -> float:
@@ -492,41 +345,7 @@ def _ends(step: LiveStep) -> tuple[Point, Point]:
     return (block.z0 + dz, block.x0 + dx), (block.z + dz, block.x + dx)
 
 
-def _copy_of(part: TurnedPart | None) -> tuple[FloatArray, FloatArray] | None:
-    return None if part is None else (part.low.copy(), part.high.copy())
-
-
-def _hit(found: Diagnostic, before: tuple[FloatArray, FloatArray], part: TurnedPart) -> Hit | None:
-    """What a block has taken off, from the lowest to the highest of each column."""
-    layers = len(before[0])
-    low, high = part.low[:layers], part.high[:layers]
-    was = before[1] > before[0]
-    above = was & (before[1] - high > _TOUCH)
-    below = was & (low - before[0] > _TOUCH)
-    touched = (above | below).any(axis=0)
-    if not touched.any():
-        return None
-    least = np.minimum(
-        np.where(above, np.maximum(high, before[0]), np.inf).min(axis=0),
-        np.where(below, before[0], np.inf).min(axis=0),
-    )
-    most = np.maximum(
-        np.where(above, before[1], 0.0).max(axis=0),
-        np.where(below, np.minimum(low, before[1]), 0.0).max(axis=0),
-    )
-    z = part.columns.middles[touched]
-    return Hit(found, z, least[touched], most[touched], part.columns.step)
-
-
-def _milled_hit(found: Diagnostic, met: Taken) -> Hit | None:
-    """What a live tool has met."""
-    if not met:
-        return None
-    middle, low, high = (np.array([each]) for each in (0.5 * (met.back + met.front), met.low, met.high))
-    return Hit(found, middle, low, high, met.front - met.back)
-
-
-def _halves(making: Making) -> tuple[Half | None, Half | None]:
+def _halves(making: PartMaking) -> tuple[Half | None, Half | None]:
     part = making.part
     if part is None:
         return None, None

@@ -24,7 +24,8 @@ from core.part.turned_part import NOTHING, Cut
 from core.proving.air_checks import AirChecks
 from core.proving.edge_checks import EdgeChecks
 from core.proving.part_findings import PartFindings
-from core.proving.part_proof import PartSetting, prove_with_part
+from core.proving.part_proof import prove_with_part
+from core.proving.part_setting import PartSetting
 from core.proving.prove_program import prove
 from core.proving.thread_checks import ThreadChecks
 

@@ -15,7 +15,7 @@ from core.interpreter.job_setup import MillTool, ToolOffset
 from core.language.source import Source
 from core.part.stock import Stock, bar
 from core.part.tool_shape import ToolKind, ToolShape
-from core.proving.part_proof import PartSetting
+from core.proving.part_setting import PartSetting
 
 TURNED = "G90G94F300\nM03S1500\nT1\nX.6Z.05\nX.4\nG95F.004Z-.5\nX.55\nG94F300Z1\nM30\n"
 SLIP = TURNED.replace("G95F.004Z-.5", "G00Z-.5")

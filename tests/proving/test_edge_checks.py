@@ -11,7 +11,9 @@ from core.language.source import Source
 from core.part.clamping import Clamping
 from core.part.stock import Stock, bar, tube
 from core.part.tool_shape import Hand, ToolKind, ToolShape
-from core.proving.part_proof import PartReport, PartSetting, prove_with_part
+from core.proving.part_proof import prove_with_part
+from core.proving.part_report import PartReport
+from core.proving.part_setting import PartSetting
 from tests.proving.test_part_proof import WAYS, text
 
 # 55° in a holder of 93°: the back of the insert rises at 180 - 93 - 55 = 32°.

@@ -16,9 +16,12 @@ from core.part.clamping import Clamping
 from core.part.solid_bodies import Round
 from core.part.stock import bar
 from core.part.tool_shape import ToolKind, ToolShape
-from core.proving import part_history
-from core.proving.part_history import PartGathering, PartHistory, PartInstant, PartMoves, share_along
-from core.proving.part_proof import Making, PartSetting, Tools
+from core.proving import part_copies, part_history
+from core.proving.part_history import PartGathering, PartHistory, PartMoves, share_along
+from core.proving.part_instant import PartInstant
+from core.proving.part_making import PartMaking
+from core.proving.part_setting import PartSetting
+from core.proving.program_tools import ProgramTools
 from core.proving.prove_program import prove
 
 INCH = 25.4
@@ -45,8 +48,8 @@ def history(text: str, setting: PartSetting = SETTING) -> PartHistory:
     return PartHistory(found)
 
 
-def straight_through(seen: PartHistory, blocks: int) -> Making:
-    making = Making(Tools(seen.steps, SETTING), seen.stock, SETTING)
+def straight_through(seen: PartHistory, blocks: int) -> PartMaking:
+    making = PartMaking(ProgramTools(seen.steps, SETTING), seen.stock, SETTING)
     for step in seen.steps[:blocks]:
         making.see(step)
     return making
@@ -56,7 +59,7 @@ def straight_through(seen: PartHistory, blocks: int) -> Making:
 def test_any_block_in_any_order_is_as_made_straight_through(
     every: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(part_history, "_EVERY", every)
+    monkeypatch.setattr(part_copies, "_EVERY", every)
     seen = history(SHAFT)
     count = len(seen.steps)
     for block in [count, 3, 7, 2, count - 1, 0, 5, 5, 6, count]:
@@ -127,8 +130,8 @@ def test_a_parted_piece_is_gone() -> None:
 
 
 def test_copies_stay_within_their_memory(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(part_history, "_EVERY", 1)
-    monkeypatch.setattr(part_history, "_MOST_COPIES", 4)
+    monkeypatch.setattr(part_copies, "_EVERY", 1)
+    monkeypatch.setattr(part_copies, "_MOST_COPIES", 4)
     seen = history(SHAFT)
     seen.at(len(seen.steps))
     assert len(seen._kept._copies) <= 4
@@ -205,12 +208,12 @@ MILLED = HEAD + (
 
 
 def test_what_is_milled_is_replayed_too(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(part_history, "_EVERY", 2)
+    monkeypatch.setattr(part_copies, "_EVERY", 2)
     seen = history(MILLED, MILL)
     count = len(seen.steps)
     for block in [count, 4, count - 4, count - 3, 0, count]:
         instant = seen.at(block)
-        made = Making(Tools(seen.steps, MILL), seen.stock, MILL)
+        made = PartMaking(ProgramTools(seen.steps, MILL), seen.stock, MILL)
         for step in seen.steps[:block]:
             made.see(step)
         found = seen.solid(instant)
@@ -283,7 +286,7 @@ def test_what_a_live_tool_hits_at_a_rapid_has_its_place() -> None:
 
 
 def test_copies_of_a_milled_part_share_what_nothing_has_touched(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(part_history, "_EVERY", 1)
+    monkeypatch.setattr(part_copies, "_EVERY", 1)
     seen = history(MILLED, MILL)
     seen.at(len(seen.steps))
     kept = [field for _, field, _ in seen._kept._copies.values() if field is not None]

@@ -21,7 +21,9 @@ from core.part.stock import Stock, bar, tube
 from core.part.tool_shape import ToolKind, ToolShape
 from core.proving import part_proof
 from core.proving.assumed_tools import edge_width
-from core.proving.part_proof import PartReport, PartSetting, prove_with_part
+from core.proving.part_proof import prove_with_part
+from core.proving.part_report import PartReport
+from core.proving.part_setting import PartSetting
 from core.proving.proof_report import Report
 from tests.worked import FOLDER, worked
 

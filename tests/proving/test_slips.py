@@ -17,7 +17,8 @@ from app.compose.machine_files import load_machine
 from app.compose.machine_setup import setup_for
 from core.interpreter.job_setup import SecondaryOffset, ToolOffset
 from core.language.source import Source
-from core.proving.part_proof import PartSetting, prove_with_part
+from core.proving.part_proof import prove_with_part
+from core.proving.part_setting import PartSetting
 
 PROGRAMS = Path(__file__).parents[2] / "resources" / "programs"
 _FEED = re.compile(r"(G9[45])?F\.?\d[\d.]*|G01")

@@ -13,7 +13,9 @@ from core.language.source import Source
 from core.machine.machine_model import Machine
 from core.part.stock_spec import stock_spec
 from core.part.tool_shape import ToolShape
-from core.proving.part_proof import PartReport, PartSetting, prove_with_part
+from core.proving.part_proof import prove_with_part
+from core.proving.part_report import PartReport
+from core.proving.part_setting import PartSetting
 from core.proving.proof_report import Report
 from core.shapes.shape_setting import Shop
 

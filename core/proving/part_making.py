@@ -1,0 +1,246 @@
+"""The part while a program makes it, block by block: stock, metal taken off, pieces that came off."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Mapping
+from functools import partial
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+from core.interpreter.actions import AskInput, Collet, Output, ProgramStop, ToolChange, WaitInput
+from core.part.cutter import Cutter
+from core.part.neighbours import Neighbours
+from core.part.polar_field import NOTHING
+from core.part.stock import Stock
+from core.part.turned_part import Piece, TurnedPart
+from core.proving.part_checks import STOCK, TOOL, Check
+from core.proving.part_findings import PartFindings
+from core.proving.part_report import PartReport
+from core.proving.part_setting import PartSetting
+from core.proving.program_tools import ProgramTools
+from core.proving.thread_checks import ThreadChecks
+from core.proving.tip_moves import LiveStep, Step, TipMove
+from core.proving.unchecked_parts import unchecked
+from core.tool_edges import edge_name
+
+if TYPE_CHECKING:
+    from core.proving.mill_moves import MillMove
+    from core.proving.milling import Milling
+
+
+class PartMaking:
+    """The part while the program makes it."""
+
+    def __init__(self, tools: ProgramTools, stock: Stock | None, setting: PartSetting | None = None) -> None:
+        setting = setting or PartSetting()
+        self._tools, self._stock, self._step = tools, stock, setting.step
+        self._stock_said = setting.stock is not None
+        self._cutters: dict[int, Cutter | None] = {}
+        self._tool = 0
+        self._begun = False
+        self._is_open = False
+        self._removed = 0.0
+        self._pieces: list[Piece] = []
+        self._last: Piece | None = None  # the last piece that a collet let go or a parting tool cut off
+        self._milled = False
+        self.findings = PartFindings(
+            tools.shape,
+            stock,
+            setting.clamping,
+            Neighbours(setting.shapes, setting.gang) if setting.gang else None,
+            ThreadChecks(setting.drives, tools.releases),
+            self._not_said,
+            setting.silenced,
+            tools.parted_at,
+        )
+        self._unchecked = unchecked(tools.uses, setting.shapes, setting.clamping, setting.gang)
+        self.milling: Milling | None = None  # from the first cut of a live tool on
+        self.milled_last = NOTHING  # by the last block of a live tool
+        self._turned = False  # the spindle has
+        self._in_cut = False  # of a spindle that stands
+        self._standing: dict[int, int] = {}  # by T: the first line that cuts while it stands again
+        self.part = TurnedPart(stock, self._step) if stock is not None and not tools.feeds_first else None
+
+    @property
+    def tool(self) -> int:
+        """T of the tool that is in work; 0: none."""
+        return self._tool
+
+    @property
+    def stock(self) -> Stock | None:
+        """What is in the chuck before anything is cut; None: nobody knows."""
+        return self._stock
+
+    @property
+    def is_open(self) -> bool:
+        """Whether the collet is."""
+        return self._is_open
+
+    @property
+    def parted_off(self) -> int:
+        """How many pieces have been parted off."""
+        return len(self._pieces) + (len(self.part.pieces) if self.part is not None else 0)
+
+    @property
+    def nbytes(self) -> int:
+        """Memory of the metal, about."""
+        part, milling = self.part, self.milling
+        turned = part.low.nbytes + part.high.nbytes if part is not None else 0
+        return turned + (milling.nbytes if milling is not None else 0)
+
+    def _not_said(self, check: Check) -> tuple[str, ...]:
+        """What a finding of this check rests on and nobody has described, at the tool in work."""
+        stock = (STOCK,) if STOCK in check.rests_on and not self._stock_said else ()
+        assumed = TOOL in check.rests_on and self._tool in self._tools.assumed
+        return (*stock, edge_name(self._tool)) if assumed else stock
+
+    def copy(self) -> PartMaking:
+        """The same once more, to be gone on with later; what never changes is shared."""
+        found = self.findings
+        shared: tuple[object, ...] = (self._tools, self._stock, found.clamping, found.neighbours)
+        shared += (*self._cutters.values(), *found.diagnostics)
+        return copy.deepcopy(self, {id(each): each for each in shared})
+
+    def see(self, step: Step) -> None:
+        """The next block."""
+        if isinstance(step, TipMove):
+            if not self._begun:  # from wherever the slides stand
+                step, self._begun = step._replace(points=step.points[-1:] * 2), True
+            self._turned = self._turned or step.rpm != 0.0
+            if self.part is not None and not self._is_open:
+                self._move(step, self.part)
+            return
+        if isinstance(step, LiveStep):
+            self.mill(step)
+            return
+        match step.action:
+            case ToolChange(tool=tool):
+                self._tool = tool
+            case Collet(closed=closed):
+                self._clamp(closed)
+            case ProgramStop() | Output() | WaitInput() | AskInput():
+                self.findings.pause()
+            case _:
+                pass
+
+    def _clamp(self, closed: bool) -> None:
+        """A collet that opens lets the bar come: behind it stands a new face."""
+        self.findings.pause()
+        if not closed:
+            self._is_open = True
+            return
+        if self._is_open and self._stock is not None:
+            self._finish()
+            self.part = TurnedPart(self._stock, self._step)
+        self._is_open = False
+
+    def mill(self, step: LiveStep, first: float = 0.0, last: float = 1.0) -> None:
+        """A block of a live tool, or the piece of it from one share to another."""
+        move, shape = self.mill_move(step), self._tools.shape(self._tool)
+        if move is None or shape is None or self.part is None or self._is_open:
+            return
+        from core.proving.mill_moves import between
+        from core.proving.milling import Milling
+
+        if last - first < 1.0:
+            move = move._replace(path=between(move.path, first, last))
+        if self.milling is None:
+            self.milling = Milling(self.part)
+        self._milled = True
+        milling = self.milling
+        self.milled_last = milling.cut(move, shape)
+        modal, touches = step.block.modal, partial(milling.touches, move, shape)
+        self.findings.milled(move, self.milled_last, shape, modal, self._tool, touches=touches)
+
+    def mill_move(self, step: LiveStep) -> MillMove | None:
+        """The way of a live tool in the part's frame; None where nothing is known that would cut."""
+        shape = self._tools.shape(self._tool)
+        if shape is None or not shape.diameter:
+            return None
+        from core.proving.mill_moves import mill_move
+
+        return mill_move(step.block, step.place, shape)
+
+    def _cutter(self) -> Cutter | None:
+        if self._tool not in self._cutters:
+            self._cutters[self._tool] = self._tools.cutter(self._tool)
+        return self._cutters[self._tool]
+
+    def _move(self, move: TipMove, part: TurnedPart) -> None:
+        cutter = self._cutter()
+        if cutter is None:
+            return
+        if self._stands(move, cutter, part):
+            return
+        before = len(part.pieces)
+        self.findings.look(move, cutter, part, self._tool)
+        if self.milling is not None:
+            part.pieces[before:] = [self.milling.less_milled(piece) for piece in part.pieces[before:]]
+        for piece in part.pieces[before:]:
+            self.findings.parted(move, piece)
+
+    def _stands(self, move: TipMove, cutter: Cutter, part: TurnedPart) -> bool:
+        """Whether metal is met while the spindle stands again, or left behind such a cut: that turns nothing.
+
+        A spindle that never turns is one that is switched by hand.
+        """
+        behind, self._in_cut = self._in_cut, False
+        shape = self._tools.shape(self._tool)
+        if not self._turned or move.rpm or (shape is not None and shape.turns_itself):
+            return False
+        if move.quick:
+            return behind
+        self._in_cut = any(cutter.meets(part, start, end) for start, end in pairwise(move.points))
+        if self._in_cut:
+            self._standing.setdefault(self._tool, move.line)
+        return self._in_cut
+
+    def _finish(self) -> None:
+        part = self.part
+        if part is None:
+            return
+        pieces = part.pieces
+        if self.milling is None:
+            self._removed += part.removed
+        else:  # a turning tool takes nothing where a live tool was before it
+            self._removed += part.whole - self.milling.left - sum(piece.volume for piece in pieces)
+        self._pieces += pieces
+        if part.removed or self.milling is not None:
+            self._last = pieces[-1] if pieces else part.rest()
+        self.part = self.milling = None
+
+    def report(self) -> PartReport:
+        """What became of the stock."""
+        left = self.part.volume if self.part is not None else 0.0
+        if self.milling is not None:
+            left = self.milling.left
+        self._finish()
+        self.findings.finish()
+        stock = self._stock
+        assumed = [each.words for _, each in sorted(self._tools.assumed.items())]
+        if stock is None and self._tools.uses:
+            assumed.append("no stock is assumed: the feeds cut before Z0, where no face of it can lie")
+        for line, n, text in self._tools.nothing_cut(stock):
+            self.findings.nothing_cut(line, n, text)
+        volume = TurnedPart(stock).volume if stock is not None else 0.0
+        return PartReport(
+            stock=stock,
+            volume=volume,
+            removed=self._removed,
+            left=left,
+            last=self._last,
+            milled=self._milled,
+            pieces=tuple(self._pieces),
+            assumed=tuple(assumed),
+            findings=self.findings.diagnostics,
+            unchecked=(*self._unchecked, *_cut_standing(self._standing)),
+            shapes={n: self._tools.shape(n) for n, use in self._tools.uses.items() if use.moves},
+        )
+
+
+def _cut_standing(lines: Mapping[int, int]) -> list[str]:
+    return [
+        f"what {edge_name(tool)} cuts from line {line} on while the spindle stands"
+        for tool, line in lines.items()
+    ]
