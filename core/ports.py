@@ -286,6 +286,26 @@ class SpindleHold(Protocol):
         ...
 
 
+class SpindleOrientation(Protocol):
+    """The spindle's drive stops it at an angle and holds it there, until it is to turn or is let go."""
+
+    def orient(self, angle: float, sense: int = 0) -> None:
+        """Bring it to ``angle``, degrees from its index, 0 to under 360 and rising as M03 turns.
+
+        ``sense``: 1 it turns there as M03 does, -1 as M04, 0 by the short way. Raises DriverError while it
+        turns, without power or with a fault.
+        """
+        ...
+
+    def release(self) -> None:
+        """Hold it no longer; on its way to an angle it comes to rest."""
+        ...
+
+    def oriented(self) -> bool:
+        """Whether it stands at the angle that was asked for last, and is held there."""
+        ...
+
+
 class Cam(NamedTuple):
     """Motion over the turns of the spindle instead of over time.
 
@@ -474,6 +494,7 @@ class MachinePorts:
     warnings: Sequence[str] = ()
     gear: Gear | None = None  # None: threads follow the spindle by setpoints in time
     lock: SpindleHold | None = None  # None: C has a drive of its own, or needs no change-over
+    orientation: SpindleOrientation | None = None  # None: the spindle stops anywhere
     blocks: BlockSink | None = None  # a controller that plans by itself: it takes no setpoints
     trips: Tripping | None = None  # None: nothing switches off by itself when the control is silent
     untraced: str = ""  # why the drives do not follow every setpoint, but only the end of each move

@@ -400,7 +400,8 @@ class DriverTable:
 class Driver:
     """A driver in the machine file; without ``backend`` it stands beside one.
 
-    ``backend`` and ``spindle`` are its words in machine.backend and spindle.driver, ``count_rate`` the counts
+    ``backend`` and ``spindle`` are its words in machine.backend and spindle.driver, ``orients``: that spindle
+    can be stopped at an angle. ``count_rate`` the counts
     per second that it takes on an axis. ``terminal`` makes two ways to write one terminal equal, None for
     what is no address of this driver; ``inputs`` are the addresses that an input may have, in their order.
     """
@@ -408,6 +409,7 @@ class Driver:
     tables: tuple[DriverTable, ...]
     backend: str = ""
     spindle: str = ""
+    orients: bool = False
     count_rate: float = inf
     terminal: Callable[[FileReading, str], object] | None = None
     inputs: Callable[[], Iterator[str]] | None = None

@@ -81,6 +81,7 @@ def _attended(
         axes=ClearingAxes(ports.axes, spindle.clear_fault),
         spindle=spindle,
         gear=ports.gear if encoder else None,
+        orientation=None,
         samples=SlidesAlone(ports.samples, len(ports.axes.axes), lambda: spindle.load)
         if ports.samples is not None
         else None,

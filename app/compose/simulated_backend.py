@@ -34,7 +34,12 @@ def sim_config(machine: Machine) -> SimConfig:
     return SimConfig(
         axes=tuple(_axis(axis, machine) for axis in machine.axes),
         spindle=SimSpindle(
-            rpm_max=spindle.rpm_max, accel=spindle.accel, decel=spindle.decel, ppr=spindle.encoder_ppr
+            rpm_max=spindle.rpm_max,
+            accel=spindle.accel,
+            decel=spindle.decel,
+            ppr=spindle.encoder_ppr,
+            orients=spindle.oriented,
+            orient_rpm=spindle.orient_rpm,
         ),
         collet=SimCollet(open_time=machine.timing.collet_open, close_time=machine.timing.collet_close),
         outputs={

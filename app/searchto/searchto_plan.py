@@ -16,7 +16,7 @@ from core.executor.interrupted_job import CONTROL_LOST
 from core.executor.job import Job
 from core.executor.snapshot import Snapshot
 from core.geometry.rotary_axes import Kinematics
-from core.interpreter.actions import Coolant, Output, SpindleLock, SpindleRun
+from core.interpreter.actions import Coolant, Output, SpindleLock, SpindleOrient, SpindleRun
 from core.interpreter.checkpoint import ApproachStep, AxesLeg, Begin, Checkpoint, FunctionStep, Leg
 from core.interpreter.restart.cut_record import CutRecord
 from core.interpreter.restart.mill_approach import begin_on_mill, goal_of, why_no_way
@@ -275,6 +275,8 @@ def _words(step: ApproachStep, point: Checkpoint, language: str) -> str:
             return f"{way} {speed}"
         case SpindleLock():
             return tr("SPINDLE LOCKED AS C, TURNED TO ITS ANGLE")
+        case SpindleOrient(angle=angle):
+            return tr("SPINDLE TURNED TO {angle} AND HELD").format(angle=formats.angle(angle))
         case Coolant():
             return tr("COOLANT")
         case Output(name=name):

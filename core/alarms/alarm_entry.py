@@ -19,6 +19,7 @@ OwnCode = Literal[
     "at-speed",
     "spindle-still",
     "c-is-spindle",
+    "spindle-orient",
     "thread-lost",
     # chuck
     "collet-open",

@@ -104,6 +104,17 @@ SPINDLE: Entries = {
         "start the spindle before the thread; without an encoder use a die or tap",
         tells=True,
     ),
+    "spindle-orient": stop(
+        213,
+        "the spindle is not at its angle",
+        (
+            "its drive has not told in time that it has arrived",
+            "something keeps it from turning to its angle, or has turned it away from there",
+            "its index was not found",
+        ),
+        "a bar may stand in its hole: look before any slide is moved; Reset, then try it in MDI",
+        tells=True,
+    ),
     "spindle-slow": hold(
         221,
         "spindle below half its speed",

@@ -90,7 +90,7 @@ def modal_given_up(modal: Modal, language: str = "omniturn") -> Modal:
 
 def modal_interrupted(modal: Modal) -> Modal:
     """A line of MDI that was reset, or ended by an alarm, leaves its modes; nothing holds C any more."""
-    return modal._replace(c_locked=False, c_rpm=None)
+    return modal._replace(c_locked=False, c_rpm=None, oriented=None)
 
 
 def modal_as_machine(modal: Modal, context: MachineContext) -> Modal:
@@ -104,6 +104,7 @@ def modal_as_machine(modal: Modal, context: MachineContext) -> Modal:
     return modal._replace(
         spindle=modal.spindle if asked else 0,
         c_locked=modal.c_locked and not asked,
+        oriented=context.spindle.orientation.at,
         coolant="coolant" in on,
         collet_closed="collet" in on if "collet" in context.machine.outputs else modal.collet_closed,
         outputs=frozenset(on & assigned),

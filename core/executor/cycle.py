@@ -13,7 +13,7 @@ from core.executor.raised_alarm import AlarmError
 from core.executor.read_ahead import ProgramPass, ReadAhead
 from core.executor.snapshot import State
 from core.executor.standstill import Next, Standstill
-from core.interpreter.actions import ProgramEnd, ProgramStop, SpindleLock, SpindleStop
+from core.interpreter.actions import ProgramEnd, ProgramStop, SpindleLock, SpindleOrient, SpindleStop
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.modal_state import Modal
 from core.interpreter.path_sections import needs_speed
@@ -23,7 +23,7 @@ _ACTIONS = 50  # carried out in one tick at most
 _BUFFER = 1.0  # of the look-ahead: seconds of motion kept read beyond what is planned
 _BEHIND_TAP = "FEED HOLD BEHIND THE TAP"
 _GOING = frozenset({State.RUN, State.WAIT})
-_SPINDLE_WORDS = (SpindleStop, SpindleLock, ProgramEnd)  # done whether it turns or not
+_SPINDLE_WORDS = (SpindleStop, SpindleLock, SpindleOrient, ProgramEnd)  # done whether it turns or not
 
 
 class Cycle:

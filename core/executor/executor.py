@@ -88,7 +88,9 @@ class Executor:
         self._due = ports.clock.now()  # when the next tick is expected
         self._missed = False  # the scope could not be told something
         self._late = 0.0  # s, the worst since the last that was handed over
-        spindle = SpindleControl(ports.spindle, machine.spindle, ports.lock, _lay_out(ports))
+        spindle = SpindleControl(
+            ports.spindle, machine.spindle, ports.lock, _lay_out(ports), ports.orientation
+        )
         outputs = CommandedOutputs(ports.io, machine.outputs)
         self._context = MachineContext(
             machine,

@@ -12,10 +12,11 @@ from functools import partial
 from typing import NamedTuple
 
 from core.executor.raised_alarm import AlarmError
+from core.executor.spindle_orientation import Orientation
 from core.geometry.surface_speed import surface_rpm
 from core.interpreter.elementary_blocks import Block
 from core.machine.machine_model import SpindleModel
-from core.ports import Spindle, SpindleHold, code_of
+from core.ports import Spindle, SpindleHold, SpindleOrientation, code_of
 
 # --- the angle of the spindle ---------------------------------------------------------------------------
 
@@ -148,11 +149,13 @@ class SpindleControl:
         model: SpindleModel,
         lock: SpindleHold | None = None,
         lay_out: Callable[[float], None] = lambda _: None,
+        orientation: SpindleOrientation | None = None,
     ) -> None:
         """``lay_out`` hears before each speed up to how many rpm the radius may take it."""
         self._port = port
         self._lay_out = lay_out
         self._lock = lock
+        self.orientation = Orientation(orientation, model.orient_rpm)
         self._model = model
         self.limit: float | None = None  # F10, until restart
         self.command = 0.0  # signed rpm as sent
@@ -195,6 +198,11 @@ class SpindleControl:
     def stopped(self) -> bool:
         """Whether it stands still, measured; of one that nobody hears nobody knows that."""
         return self.known and abs(self.measured) < self._model.stop_below
+
+    @property
+    def stands_or_orients(self) -> bool:
+        """Whether it stands, or its drive turns it to an angle and nothing else does."""
+        return self.known and (self.stopped or self.orientation.turns_at > 0.0)
 
     @property
     def lost(self) -> bool:
@@ -269,7 +277,11 @@ class SpindleControl:
         self._forget_waiting()
         if coast:
             self._coasting = True
-        return [("C", self._let_go), ("the spindle", partial(self._tell_off, coast=coast))]
+        return [
+            ("C", self._free_c),
+            ("the spindle's angle", self.orientation.let_go),
+            ("the spindle", partial(self._tell_off, coast=coast)),
+        ]
 
     def _tell_off(self, *, coast: bool) -> None:
         if coast:
@@ -288,10 +300,21 @@ class SpindleControl:
             self._lock.hold(True, orient)
         return self._lock.held()
 
+    def orient(self, angle: float, sense: int) -> bool:
+        """M19 and SPOS of a drive that orients: True once it is held there. What keeps the spindle from being
+        started keeps it from turning to an angle. Raises AlarmError, DriverError.
+        """
+        if self.start_barred and self.orientation.at is None:
+            self.orientation.let_go()
+            return False
+        return self.orientation.bring(angle, sense)
+
     def break_off(self) -> None:
-        """Feed hold: a change-over that is under way ends; what waits for it asks again."""
+        """Feed hold: a change-over or a way to an angle that is under way ends; what waits asks again."""
         if not self.held:
-            self._let_go()
+            self._free_c()
+        if self.orientation.at is None:
+            self.orientation.let_go()
 
     @property
     def held(self) -> bool:
@@ -299,6 +322,10 @@ class SpindleControl:
         return self._lock is None or self._lock.held()
 
     def _let_go(self) -> None:
+        self.orientation.let_go()
+        self._free_c()
+
+    def _free_c(self) -> None:
         if self._lock is not None:
             self._lock.hold(False)
 
@@ -326,6 +353,7 @@ class SpindleControl:
             self._coasting = True
             raise AlarmError(code_of(fault, "spindle"), fault)
         self._coasting = self._coasting and not self.stopped and self.command == 0.0
+        self.orientation.look()
         if not self._coasting and abs(self.measured) > self._allowed(now):
             turns = f"it turns at {self.measured:.0f} rpm, {self.command:.0f} are commanded"
             raise AlarmError("ignores-stop", turns)
@@ -417,7 +445,7 @@ class SpindleControl:
         """Highest speed that an obeying drive can still have after the command fell."""
         since, speed = self._fell
         ramp = speed - self._model.decel * max(now - since - _GRACE, 0.0)
-        return max(abs(self.command), ramp) * (1.0 + _OVER) + _OVER_RPM
+        return max(abs(self.command), ramp, self.orientation.turns_at) * (1.0 + _OVER) + _OVER_RPM
 
     _now = 0.0
     _radius = 0.0

@@ -22,6 +22,7 @@ from core.interpreter.actions import (
     Output,
     RepeatOff,
     SpindleLock,
+    SpindleOrient,
     SpindleRun,
     SpindleStop,
     WaitInput,
@@ -35,6 +36,7 @@ from core.interpreter.path_sections import needs_speed
 _IN_POSITION = 1.0  # s for a slide that is at rest to arrive
 _COLLET_LATE = 2.0  # s beyond its time
 _CHANGE_OVER = 25.0  # s in which a spindle's drive has become C, its index found
+_TURNS = 3.0  # at the speed of orienting: to its index, to the angle, and one to spare
 
 
 @dataclass(slots=True)
@@ -100,11 +102,8 @@ def carry_out(block: Block, context: MachineContext) -> Wait | None:
     match block.action:
         case SpindleRun():
             _start_spindle(block, context)
-        case SpindleStop(stands=stands):
-            context.spindle.stop()
-            return _until_it_stands(context) if stands else None
-        case SpindleLock(orient=orient):
-            return _lock_spindle(context, orient=orient)
+        case SpindleStop() | SpindleLock() | SpindleOrient() as stopping:
+            return _stop_spindle(stopping, context)
         case Coolant(on=on):
             context.ports.io.write("coolant", on)
         case Output(name=name, on=on):
@@ -121,6 +120,18 @@ def carry_out(block: Block, context: MachineContext) -> Wait | None:
         case _:
             pass
     return None
+
+
+def _stop_spindle(action: SpindleStop | SpindleLock | SpindleOrient, context: MachineContext) -> Wait | None:
+    """To rest, to an axis, or to an angle."""
+    match action:
+        case SpindleLock(orient=orient):
+            return _lock_spindle(context, orient=orient)
+        case SpindleOrient(angle=angle, sense=sense):
+            return _orient_spindle(context, angle, sense)
+        case SpindleStop(stands=stands):
+            context.spindle.stop()
+            return _until_it_stands(context) if stands else None
 
 
 def _start_spindle(block: Block, context: MachineContext) -> None:
@@ -149,6 +160,31 @@ def _lock_spindle(context: MachineContext, *, orient: bool) -> Wait:
         limit,
         "ignores-stop",
     )
+
+
+def _orient_spindle(context: MachineContext, angle: float, sense: int) -> Wait:
+    """The drive brings it to its angle once it stands; nothing goes on before it is held there."""
+    spindle, model = context.spindle, context.machine.spindle
+    if spindle.asked or not spindle.stopped:
+        spindle.stop()
+
+    def label() -> str:
+        return spindle.start_barred or ("SPINDLE ORIENT" if spindle.stands_or_orients else "SPINDLE STOP")
+
+    def done(_: float) -> bool:
+        if spindle.start_barred:
+            wait.since = context.now
+        wait.alarm = "spindle-orient" if spindle.stands_or_orients else "ignores-stop"
+        return spindle.stands_or_orients and spindle.orient(angle, sense)
+
+    wait = Wait(
+        label,
+        done,
+        context.now,
+        model.timeout + _TURNS * 60.0 / model.orient_rpm,
+        "spindle-orient",
+    )
+    return wait
 
 
 def _move_collet(closed: bool, context: MachineContext) -> Wait:

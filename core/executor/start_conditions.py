@@ -15,7 +15,7 @@ from core.executor.job import Job, Proof, outdated
 from core.executor.machine_context import MachineContext
 from core.executor.snapshot import Starts, State
 from core.interpreter.checkpoint import Begin
-from core.interpreter.machine_requirements import THREAD
+from core.interpreter.machine_requirements import ORIENT, THREAD
 from core.interpreter.modal_state import Modal
 from core.tool_edges import edge_name
 
@@ -85,6 +85,8 @@ def lacking(context: MachineContext, proof: Proof | None) -> str:
             return f"line {need.line}: this machine has no {need.words}"
         if blocks is not None and need.what not in blocks.caps:
             return f"line {need.line}: this controller cannot do {need.words}"
+        if blocks is None and need.what == ORIENT and context.ports.orientation is None:
+            return f"line {need.line}: the driver of this machine's spindle cannot stop it at an angle"
         if blocks is None and need.what == THREAD and context.ports.spindle.angle() is None:
             return f"line {need.line}: a thread needs an encoder on the spindle, and there is none"
     return ""

@@ -28,6 +28,17 @@ class SpindleLock:
 
 
 @dataclass(frozen=True, slots=True)
+class SpindleOrient:
+    """M19 of Klartext, SPOS: the spindle stops, and its drive holds it at ``angle``, degrees from its index.
+
+    ``sense``: 1 it turns there as M3 does, -1 as M4, 0 by the short way.
+    """
+
+    angle: float
+    sense: int = 0
+
+
+@dataclass(frozen=True, slots=True)
 class Coolant:
     """M08, M09."""
 
@@ -118,6 +129,7 @@ Action = (
     SpindleRun
     | SpindleStop
     | SpindleLock
+    | SpindleOrient
     | Coolant
     | Collet
     | Output

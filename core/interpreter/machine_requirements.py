@@ -5,7 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
-from core.interpreter.actions import Action, AskInput, Collet, Coolant, Output, SpindleLock, WaitInput
+from core.interpreter.actions import (
+    Action,
+    AskInput,
+    Collet,
+    Coolant,
+    Output,
+    SpindleLock,
+    SpindleOrient,
+    WaitInput,
+)
 from core.interpreter.elementary_blocks import Block, Kind
 
 ARC = "arc"
@@ -15,6 +24,7 @@ THREAD_CHAIN = "thread-chain"
 SURFACE = "surface-speed"
 SURFACE_THREAD = "surface-thread"
 C_AXIS = "c-axis"
+ORIENT = "orient"
 PLANE = "plane"
 AXES = "axes"
 BUILDERS_M = "M"
@@ -28,6 +38,7 @@ _WORDS = {
     SURFACE: "constant surface speed; program the spindle in rpm with G97",
     SURFACE_THREAD: "a thread under constant surface speed; program G97 before it",
     C_AXIS: "the C axis",
+    ORIENT: "a spindle that is stopped at an angle",
     PLANE: "milling in a switched plane",
     AXES: "more axes than X and Z",
 }
@@ -105,6 +116,8 @@ def _of_action(action: Action) -> Iterator[str]:
     match action:
         case SpindleLock():
             yield C_AXIS
+        case SpindleOrient():
+            yield ORIENT
         case Output(name=name):
             yield f"output {name}"
         case Collet():

@@ -62,6 +62,7 @@ class Modal(NamedTuple):
     secondary_z: float = 0.0
     comment: str = ""
     c_locked: bool = False  # M19 or M89: C is an axis, and a C word turns it
+    oriented: float | None = None  # degrees from its index at which the spindle is held; None: it is not
     c_rpm: float | None = None  # S beside M19 or a C word, unsigned
     offset_c: float = 0.0  # machine C minus program C, whole turns: M19 begins to count again at 0
     edge: int | None = None  # SINUMERIK: D in force, 0 without a tool offset; ``tool`` is then the edge's row

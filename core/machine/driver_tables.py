@@ -108,6 +108,7 @@ def broken(file: FileReading, drivers: Sequence[Driver]) -> Iterator[Finding]:
     """Every finding about backend, spindle driver, ports and renewed outputs; then the drivers' own."""
     yield from _backend(file, drivers)
     yield from _spindle(file, drivers)
+    yield from _orients(file, drivers)
     yield from _count_rates(file.values, drivers)
     yield from _renewed(file)
     yield from _guard(file)
@@ -140,6 +141,25 @@ def _spindle(file: FileReading, drivers: Sequence[Driver]) -> Iterator[Finding]:
         yield Finding(path, written(word), expected)
     elif word in beside and beside[word] not in file.tables:
         yield Finding(beside[word], "", f'missing; spindle.driver = "{word}" needs it')
+
+
+def _orients(file: FileReading, drivers: Sequence[Driver]) -> Iterator[Finding]:
+    """Only where the spindle's driver can stop it at an angle, and where no C does that."""
+    values, path = file.values, "spindle.oriented"
+    if not values.has(path, "spindle.driver") or not values.flag(path):
+        return
+    word = values.text("spindle.driver")
+    can = [driver.spindle for driver in drivers if driver.orients]
+    if word not in can:
+        expected = (
+            f"expected false: a spindle can be stopped at an angle with spindle.driver {' or '.join(can)}"
+        )
+        yield Finding(path, "true", expected)
+    lathe = values.has("machine.kind", "axis.C.enabled", "axis.C.own_drive")
+    lathe = lathe and values.says("machine.kind", "lathe")
+    if lathe and values.flag("axis.C.enabled") and not values.flag("axis.C.own_drive"):
+        expected = "expected false: C is the spindle, which is positioned as C; or axis.C.own_drive = true"
+        yield Finding(path, "true", expected)
 
 
 def _count_rates(values: Values, drivers: Sequence[Driver]) -> Iterator[Finding]:

@@ -59,6 +59,8 @@ class SpindleModel:
     stop_below: float
     encoder_ppr: int
     controlled: bool = True  # false: one speed, rpm_max, and no S
+    oriented: bool = False  # its drive stops it at an angle, to which it turns at
+    orient_rpm: float = 60.0
 
 
 @dataclass(frozen=True, slots=True)

@@ -104,6 +104,8 @@ _SPINDLE = (
     Field("stop_below", _NUMBER, Unit.RPM, 0.5, 50.0),
     Field("encoder_ppr", _WHOLE, low=0, high=100000),
     Field("controlled", _FLAG, default=True),  # false: it has one speed, and S none to set
+    Field("oriented", _FLAG, default=False),  # its drive stops it at an angle, for M19, SPOS and back boring
+    Field("orient_rpm", _NUMBER, Unit.RPM, 1.0, 1000.0, default=60.0),  # at which it turns to that
 )
 COLLET = (
     Field("open_s", _NUMBER, Unit.SECONDS, 0.01, 10.0, default=0.5),

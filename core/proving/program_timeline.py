@@ -10,7 +10,16 @@ from dataclasses import replace
 from itertools import chain
 from typing import NamedTuple
 
-from core.interpreter.actions import Action, Collet, Dwell, ProgramEnd, SpindleLock, SpindleRun, SpindleStop
+from core.interpreter.actions import (
+    Action,
+    Collet,
+    Dwell,
+    ProgramEnd,
+    SpindleLock,
+    SpindleOrient,
+    SpindleRun,
+    SpindleStop,
+)
 from core.interpreter.dialects import ReadProgram
 from core.interpreter.elementary_blocks import Block, Kind, Series, TimedSeries
 from core.interpreter.interpretation import Interpretation
@@ -22,7 +31,7 @@ from core.machine.machine_model import Machine
 from core.motion.axis_limits import MotionError, MotionLimits
 from core.motion.window_planner import Chunk, ChunkPlanner
 from core.proving.proof_report import in_order
-from core.proving.spindle_forecast import SETTLING, THREAD_EARLY, SpindleForecast
+from core.proving.spindle_forecast import SETTLING, THREAD_EARLY, SpindleForecast, orienting
 
 # --- blocks that are not timed yet ----------------------------------------------------------------------
 
@@ -298,7 +307,7 @@ class Timeline:
         if isinstance(action, SpindleRun):
             self.spindle.command(self.t, block.rpm)
             self._speed_wanted = True
-        elif isinstance(action, SpindleStop | SpindleLock) or (
+        elif isinstance(action, SpindleStop | SpindleLock | SpindleOrient) or (
             isinstance(action, ProgramEnd) and action.reset
         ):
             self.spindle.command(self.t, 0.0)
@@ -309,10 +318,15 @@ class Timeline:
         if isinstance(action, Dwell):
             return action.seconds
         if isinstance(action, SpindleLock) or (isinstance(action, SpindleStop) and action.stands):
-            return max(0.0, self.spindle.still_at(self._machine.spindle.stop_below) - self.t)
+            return self._until_still()
+        if isinstance(action, SpindleOrient):
+            return self._until_still() + orienting(self._machine.spindle, action.sense)
         if isinstance(action, Collet):
             return timing.collet_close if action.closed else timing.collet_open
         return 0.0
+
+    def _until_still(self) -> float:
+        return max(0.0, self.spindle.still_at(self._machine.spindle.stop_below) - self.t)
 
     def _refuse(self, why: str) -> None:
         line = self._moving.first.line if self._moving.first else 0

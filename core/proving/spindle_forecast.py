@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from itertools import pairwise
 
-from core.machine.machine_model import Machine
+from core.machine.machine_model import Machine, SpindleModel
 
 # Seconds before a drive follows a new command; inverters need 50 to 100 ms.
 DRIVE_LATENCY = 0.08
@@ -16,6 +16,11 @@ SETTLING = 0.035
 
 # Seconds that the executor leaves between the plan of a thread pass and its start.
 THREAD_EARLY = 0.01
+
+
+def orienting(spindle: SpindleModel, sense: int) -> float:
+    """Seconds from standstill to an angle, by the longest way: half a turn, or a whole one in a sense."""
+    return DRIVE_LATENCY + (60.0 if sense else 30.0) / spindle.orient_rpm
 
 
 class SpindleForecast:

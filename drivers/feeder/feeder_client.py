@@ -384,6 +384,22 @@ class FeederLock(_OnLine):
         return self._line.look().get("held") is True and not self._line.lost
 
 
+class FeederOrientation(_OnLine):
+    """``core.ports.SpindleOrientation``."""
+
+    def orient(self, angle: float, sense: int = 0) -> None:
+        """Ask for an angle."""
+        self._line.order("orient", angle=angle, sense=sense)
+
+    def release(self) -> None:
+        """Hold it no longer."""
+        self._line.order("release")
+
+    def oriented(self) -> bool:
+        """Whether it is held at its angle."""
+        return self._line.look().get("oriented") is True and not self._line.lost
+
+
 class FeederIO(_OnLine):
     """``core.ports.DigitalIO``."""
 
@@ -462,6 +478,7 @@ def feeder_ports(line: Line) -> MachinePorts:
         warnings=tuple(texts(hello.get("warnings"))),
         gear=FeederGear(line) if hello.get("gear") is True else None,
         lock=FeederLock(line) if hello.get("lock") is True else None,
+        orientation=FeederOrientation(line) if hello.get("orientation") is True else None,
         trips=FeederTrips(line),
         halt=line.hang_up,
         untraced=str(hello.get("untraced") or ""),

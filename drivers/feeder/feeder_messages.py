@@ -14,7 +14,7 @@ from core.ports import Cam, DriverError, Fault, FaultCode, FloatArray, Segments,
 _LENGTHS = struct.Struct("<II")  # of the head, of the numbers, in bytes
 LARGEST = 64_000_000  # bytes; more is no message
 _HUGE = 1e300  # a number beyond is none, and NaN neither
-VERSION = 4  # of what is asked and answered; both sides say it in their first words
+VERSION = 5  # of what is asked and answered; both sides say it in their first words
 
 
 class Message(NamedTuple):

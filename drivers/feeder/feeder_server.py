@@ -34,6 +34,8 @@ def act(ports: MachinePorts, head: Mapping[str, object]) -> None:
         "run": lambda: ports.spindle.run(number(head, "rpm")),
         "coast": ports.spindle.coast,
         "hold": lambda: _hold(ports, on=on, orient=head.get("orient") is True),
+        "orient": lambda: _orient(ports, number(head, "angle"), int(number(head, "sense"))),
+        "release": lambda: _release(ports),
         "write": lambda: ports.io.write(text(head, "name"), on),
         "safe": ports.io.safe,
         "arm": lambda: _arm(ports),
@@ -60,6 +62,21 @@ def _hold(ports: MachinePorts, *, on: bool, orient: bool) -> None:
     if ports.lock is None:
         raise DriverError("the spindle's drive of this machine is not C")
     ports.lock.hold(on, orient)
+
+
+_UNORIENTED = "the driver of this machine's spindle cannot stop it at an angle"
+
+
+def _orient(ports: MachinePorts, angle: float, sense: int) -> None:
+    if ports.orientation is None:
+        raise DriverError(_UNORIENTED)
+    ports.orientation.orient(angle, sense)
+
+
+def _release(ports: MachinePorts) -> None:
+    if ports.orientation is None:
+        raise DriverError(_UNORIENTED)
+    ports.orientation.release()
 
 
 def _arm(ports: MachinePorts) -> None:
@@ -92,13 +109,13 @@ class TripGuard:
     def demand_allowed(self, message: Message) -> None:
         """Raises TrippedError for what would move, turn or switch on, while a trip is not acknowledged."""
         what = text(message.head, "what")
-        turns = what == "run" and number(message.head, "rpm") != 0.0
+        turns = what == "orient" or (what == "run" and number(message.head, "rpm") != 0.0)
         switches = what == "write" and message.head.get("on") is True
         if self.tripped is not None and (
             text(message.head, "do") in _MOVES or what == "home" or turns or switches
         ):
             raise TrippedError(f"the feeder has heard nothing for {self.tripped.away:.2f} s and stopped")
-        if what in {"run", "coast"}:
+        if what in {"run", "coast", "orient", "release"}:
             self._turns = turns
 
     def trip(self, away: float, outputs: Sequence[str], *, spindle: bool) -> None:
@@ -354,6 +371,7 @@ class Feeder:
             "commit": axes.commit,
             "gear": self._ports.gear is not None,
             "lock": self._ports.lock is not None,
+            "orientation": self._ports.orientation is not None,
             "touch": self._ports.touch is not None,
             "samples": self._ports.samples.rate if self._ports.samples is not None else 0.0,
             "untraced": self._ports.untraced,
@@ -375,6 +393,7 @@ class Feeder:
             "station": {name: getattr(station, name) for name in _STATION},
             "geared": ports.gear.geared() if ports.gear is not None else None,
             "held": ports.lock is not None and ports.lock.held(),
+            "oriented": ports.orientation is not None and ports.orientation.oriented(),
             "trip": self._guard.tripped,
             "latch": ports.touch.latched() if ports.touch is not None else None,
             "notes": self._notes,

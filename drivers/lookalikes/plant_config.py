@@ -29,6 +29,8 @@ class SimSpindle:
     coast: float = 600.0
     latency: float = 0.08
     ppr: int = 1024
+    orients: bool = False  # its drive stops it at an angle, to which it turns at
+    orient_rpm: float = 60.0
 
 
 @dataclass(frozen=True, slots=True)

@@ -125,6 +125,12 @@ class PlantHands(StationHands):
             self._plant.advance()
             self._plant.spindle.faults.fault = text
 
+    def spindle_never_oriented(self, on: bool = True) -> None:
+        """The drive does not say that the spindle stands at its angle, whether it does or not."""
+        with self._plant.touch:
+            self._plant.advance()
+            self._plant.spindle.faults.never_oriented = on
+
     def collet_sensor_stuck(self, on: bool = True) -> None:
         """The collet's switch stays where it is."""
         with self._plant.touch:
@@ -210,6 +216,7 @@ def _acts(machine: PlantHands, fault: PlannedFault) -> tuple[Callable[[], None],
         "spindle_wander": ((value,), (0.0,)),
         "spindle_ignores_stop": ((), (False,)),
         "spindle_fault": ((text or "spindle drive fault",), ("",)),
+        "spindle_never_oriented": ((), (False,)),
         "collet_sensor_stuck": ((), (False,)),
         "station_silent": ((), (False,)),
         "pot_noise": ((value,), (0.0,)),

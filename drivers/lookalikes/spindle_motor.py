@@ -5,10 +5,12 @@ from __future__ import annotations
 import math
 from collections import deque
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from drivers.lookalikes.plant_config import SimSpindle
 
 _BEARINGS, _SPEEDS_UP, _IN_CUT = 10.0, 70.0, 30.0  # per cent
+_THERE = 1e-9  # turns
 _GRABS = 5.0  # a second: a belt that slips
 
 
@@ -22,6 +24,23 @@ class SpindleFaults:
     wander_period: float = 2.0  # s
     belt: float = 0.0  # fraction of the speed that a slipping belt loses in the cut
     fault: str = ""
+    never_oriented: bool = False  # it turns to its angle, and does not say that it is there
+
+
+class OrientOrder(NamedTuple):
+    """To ``angle``, degrees from the index: by the short way, or in a sense."""
+
+    angle: float
+    sense: int
+
+    def way(self, turns: float) -> float:
+        """Turns from there on, signed."""
+        left = (self.angle / 360.0 - turns) % 1.0
+        if left > 1.0 - _THERE:
+            left = 0.0
+        if self.sense > 0 or (not self.sense and left <= 0.5):
+            return left
+        return left - 1.0 if left else 0.0
 
 
 class SpindleMotor:
@@ -38,12 +57,14 @@ class SpindleMotor:
         self._target = 0.0
         self._coasting = False
         self._orders: deque[tuple[float, float, bool]] = deque()
+        self._orient: OrientOrder | None = None  # it is held at this angle, or on its way there
+        self._begins = 0.0  # from when on
 
     @property
     def speed(self) -> float:
         """rpm, signed."""
         faults = self.faults
-        even = self._even * (1.0 - self.slips)
+        even = self._even * (1.0 - self.slips) + self._turning_there
         if not faults.wander:
             return even
         swing = math.sin(2.0 * math.pi * self.t / faults.wander_period)
@@ -64,7 +85,7 @@ class SpindleMotor:
     @property
     def still(self) -> bool:
         """It stands, and nothing is ordered."""
-        return not self._even and not self._target and not self._orders
+        return not self._even and not self._target and not self._orders and not self._turning_there
 
     @property
     def counted(self) -> float:
@@ -77,12 +98,52 @@ class SpindleMotor:
         if self.faults.ignores_stop and abs(rpm) < abs(self._target):
             return
         limit = self.config.rpm_max
+        self.release()
         self._orders.append((now + self.config.latency, min(max(rpm, -limit), limit), coast))
 
     def cut(self, now: float) -> None:
         """Power off by hardware: coasts, whatever was ordered."""
         self._orders.clear()
+        self.release()
         self._orders.append((now, 0.0, True))
+
+    # --- held at an angle ---------------------------------------------------------------------------------
+
+    def orient(self, now: float, angle: float, sense: int) -> None:
+        """From standstill to an angle, in which it is then held; obeyed after the same latency."""
+        self._orient, self._begins = OrientOrder(angle, sense), now + self.config.latency
+
+    def release(self) -> None:
+        """Whatever is ordered else ends it; it stands where it has come to."""
+        self._orient = None
+
+    @property
+    def oriented(self) -> bool:
+        """Whether it stands where it was sent, and says so."""
+        order = self._orient
+        there = order is not None and self.t >= self._begins and not order.way(self.turns)
+        return there and not self.faults.never_oriented and not self.faults.fault
+
+    @property
+    def _turning_there(self) -> float:
+        """rpm, signed, while it turns to its angle."""
+        order = self._orient
+        if order is None or self.t < self._begins or self._even or self.faults.fault:
+            return 0.0
+        way = order.way(self.turns)
+        return math.copysign(self.config.orient_rpm, way) if way else 0.0
+
+    def _turn_there(self, now: float) -> None:
+        """On its way at an even speed: what little it accelerates at such a speed is left out."""
+        order, begins = self._orient, max(self.t, self._begins)
+        if order is None or self._even or self.faults.fault or now <= begins:
+            return
+        way = order.way(self.turns)
+        done = self.config.orient_rpm / 60.0 * (now - begins)
+        if done >= abs(way):
+            self.turns = round(self.turns + way - order.angle / 360.0) + order.angle / 360.0
+        else:
+            self.turns += math.copysign(done, way)
 
     def advance(self, now: float) -> None:
         """Move on to ``now``, order by order."""
@@ -92,6 +153,7 @@ class SpindleMotor:
             self.t = max(self.t, at)
             self._target, self._coasting = rpm, coast
         self._ramp(now - self.t)
+        self._turn_there(now)
         self.t = now
 
     def cut_load(self, now: float, *, cutting: bool) -> None:

@@ -169,6 +169,35 @@ class SimSpindlePort(_OnPlant):
         return self._plant.spindle.faults.fault
 
 
+class SimOrientation(_OnPlant):
+    """``core.ports.SpindleOrientation`` on the plant."""
+
+    def orient(self, angle: float, sense: int = 0) -> None:
+        """Bring it to an angle; raises DriverError while it turns, in E-stop or with a fault."""
+        plant = self._plant
+        with plant.lock:
+            now = plant.advance()
+            if plant.panel.estop:
+                raise DriverError(
+                    "the spindle stays off while E-stop is pressed; release it first", "spindle-off"
+                )
+            if plant.spindle.faults.fault:
+                raise DriverError(f"the spindle stays off: {plant.spindle.faults.fault}", "spindle-off")
+            plant.spindle.orient(now, angle, sense)
+
+    def release(self) -> None:
+        """Hold it no longer."""
+        with self._plant.lock:
+            self._plant.advance()
+            self._plant.spindle.release()
+
+    def oriented(self) -> bool:
+        """Whether it is held at its angle."""
+        with self._plant.lock:
+            self._plant.advance()
+            return self._plant.spindle.oriented
+
+
 class SimIO(_OnPlant):
     """``core.ports.DigitalIO`` on the plant."""
 
@@ -241,6 +270,7 @@ def build_simulation(config: SimConfig, clock: Clock) -> Simulation:
         io=SimIO(plant),
         station=SimStation(plant),
         gear=SimGear(plant),
+        orientation=SimOrientation(plant) if config.spindle.orients else None,
         halt=plant.halt,
         wakeup=plant.wakeup,
         samples=SimSamples(plant),

@@ -34,6 +34,7 @@ FAULTS = (
     "spindle_wander",
     "spindle_ignores_stop",
     "spindle_fault",
+    "spindle_never_oriented",
     "collet_sensor_stuck",
     "station_silent",
     "pot_noise",
@@ -119,5 +120,6 @@ DRIVER = Driver(
     tables=(DriverTable("sim", _FIELDS, _table, ("faults", "tips"), _read, _rules, always=True),),
     backend="sim",
     spindle="sim",
+    orients=True,
     count_rate=1e6,
 )

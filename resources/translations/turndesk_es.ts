@@ -685,8 +685,8 @@
     </message>
     <message>
       <location filename="" />
-      <source>As SPOS.</source>
-      <translation>Como SPOS.</translation>
+      <source>As SPOS: the block ends when the spindle is at its angle.</source>
+      <translation>Como SPOS: la secuencia termina cuando el cabezal está en su ángulo.</translation>
     </message>
     <message>
       <location filename="" />
@@ -740,8 +740,8 @@
     </message>
     <message>
       <location filename="" />
-      <source>Bores, stops the spindle, frees the edge, out.</source>
-      <translation>Mandrina, para el husillo, libera el filo, sale.</translation>
+      <source>Bores, stops the spindle at Q336, frees the edge by Q214, out.</source>
+      <translation>Mandrina, para el cabezal en Q336, libera el filo según Q214 y sale.</translation>
     </message>
     <message>
       <location filename="" />
@@ -2795,6 +2795,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>Spindle stopped and held at the angle of cycle 13, else at 0.</source>
+      <translation>Cabezal parado y retenido en el ángulo del ciclo 13, si no en 0.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>Spindle stops; also M1=5.</source>
       <translation>El husillo para; también M1=5.</translation>
     </message>
@@ -2847,11 +2852,6 @@
       <location filename="" />
       <source>Stop where the switch for it is on.</source>
       <translation>Para donde su interruptor está activo.</translation>
-    </message>
-    <message>
-      <location filename="" />
-      <source>Stops the spindle at an angle.</source>
-      <translation>Para el husillo en un ángulo.</translation>
     </message>
     <message>
       <location filename="" />
@@ -3100,6 +3100,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>The angle at which M19 stops the spindle.</source>
+      <translation>El ángulo en el que M19 para el cabezal.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>The arc has R and %1.</source>
       <translation>El arco tiene R y %1.</translation>
     </message>
@@ -3230,13 +3235,13 @@
     </message>
     <message>
       <location filename="" />
-      <source>The spindle stops at 0 degrees, as SPOS=0.</source>
-      <translation>El husillo para a 0 grados, como SPOS=0.</translation>
+      <source>The spindle stops and is held at this angle, by its drive or as C.</source>
+      <translation>El cabezal se para y queda retenido en este ángulo, por su accionamiento o como C.</translation>
     </message>
     <message>
       <location filename="" />
-      <source>The spindle stops at this angle, where it is C.</source>
-      <translation>El husillo se detiene en este ángulo, donde es C.</translation>
+      <source>The spindle stops at 0 degrees, as SPOS=0.</source>
+      <translation>El husillo para a 0 grados, como SPOS=0.</translation>
     </message>
     <message>
       <location filename="" />
@@ -3502,6 +3507,11 @@
       <location filename="" />
       <source>WORK</source>
       <translation>TRABAJO</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Waits for SPOSA, which has waited itself.</source>
+      <translation>Espera a SPOSA, que ya ha esperado por sí mismo.</translation>
     </message>
     <message>
       <location filename="" />
@@ -12185,6 +12195,11 @@
     </message>
     <message>
       <location filename="app/searchto/searchto_plan.py" />
+      <source>SPINDLE TURNED TO {angle} AND HELD</source>
+      <translation>CABEZAL GIRADO A {angle} Y RETENIDO</translation>
+    </message>
+    <message>
+      <location filename="app/searchto/searchto_plan.py" />
       <source>THE COLLET IS CLOSED AND MUST BE OPEN AT THIS LINE: M13 IN MDI</source>
       <translation>LA BOQUILLA ESTÁ CERRADA Y DEBE ESTAR ABIERTA EN ESTA LÍNEA: M13 EN MDI</translation>
     </message>
@@ -15405,6 +15420,11 @@
     </message>
     <message>
       <location filename="core/alarms/spindle_alarms.py" />
+      <source>a bar may stand in its hole: look before any slide is moved; Reset, then try it in MDI</source>
+      <translation>puede haber una barra en su agujero: mire antes de mover un carro; Reset, y pruébelo en MDI</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>a fault of its drive stands</source>
       <translation>hay una falla de su variador</translation>
     </message>
@@ -15500,6 +15520,11 @@
     </message>
     <message>
       <location filename="core/alarms/spindle_alarms.py" />
+      <source>its drive has not told in time that it has arrived</source>
+      <translation>su accionamiento no ha avisado a tiempo de que ha llegado</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>its index was not found</source>
       <translation>no se encontró su índice</translation>
     </message>
@@ -15592,6 +15617,11 @@
       <location filename="core/alarms/spindle_alarms.py" />
       <source>something between control and spindle has switched it off: safety circuit, guard, its drive</source>
       <translation>algo entre control y husillo lo apagó: circuito de seguridad, guarda, su variador</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle_alarms.py" />
+      <source>something keeps it from turning to its angle, or has turned it away from there</source>
+      <translation>algo le impide girar a su ángulo, o lo ha girado fuera de él</translation>
     </message>
     <message>
       <location filename="core/alarms/spindle_alarms.py" />
@@ -15747,6 +15777,11 @@
       <location filename="core/alarms/spindle_alarms.py" />
       <source>the spindle drive has tripped: its display says why</source>
       <translation>el variador del husillo se disparó: su pantalla dice por qué</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle_alarms.py" />
+      <source>the spindle is not at its angle</source>
+      <translation>el cabezal no está en su ángulo</translation>
     </message>
     <message>
       <location filename="core/alarms/spindle_alarms.py" />
@@ -17050,8 +17085,28 @@
     </message>
     <message>
       <location filename="core/executor/spindle_control.py" />
+      <source>the spindle's angle</source>
+      <translation>el ángulo del cabezal</translation>
+    </message>
+    <message>
+      <location filename="core/executor/spindle_control.py" />
       <source>the spindle's drive tells a speed that is no number</source>
       <translation>el variador del husillo da una velocidad que no es un número</translation>
+    </message>
+    <message>
+      <location filename="core/executor/spindle_orientation.py" />
+      <source>nothing at this machine stops the spindle at an angle</source>
+      <translation>nada en esta máquina para el cabezal en un ángulo</translation>
+    </message>
+    <message>
+      <location filename="core/executor/spindle_orientation.py" />
+      <source>the drive no longer holds it at %1 degrees</source>
+      <translation>el accionamiento ya no lo retiene a %1 grados</translation>
+    </message>
+    <message>
+      <location filename="core/executor/standstill.py" />
+      <source>SPINDLE ORIENT</source>
+      <translation>ORIENTAR CABEZAL</translation>
     </message>
     <message>
       <location filename="core/executor/standstill.py" />
@@ -17102,6 +17157,11 @@
       <location filename="core/executor/start_conditions.py" />
       <source>line %1: nothing on this machine answers %2</source>
       <translation>línea %1: nada en esta máquina responde a %2</translation>
+    </message>
+    <message>
+      <location filename="core/executor/start_conditions.py" />
+      <source>line %1: the driver of this machine's spindle cannot stop it at an angle</source>
+      <translation>línea %1: el controlador del cabezal de esta máquina no puede pararlo en un ángulo</translation>
     </message>
     <message>
       <location filename="core/executor/start_conditions.py" />
@@ -17905,6 +17965,11 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/cycle_moves.py" />
+      <source>%1 is no angle of a spindle.</source>
+      <translation>%1 no es un ángulo de un cabezal.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycle_moves.py" />
       <source>%1 of cycle %2 is no feed.</source>
       <translation>%1 del ciclo %2 no es un avance.</translation>
     </message>
@@ -17920,8 +17985,8 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/cycle_moves.py" />
-      <source>Cycle %1 frees the edge aside, and nothing here stops the spindle at an angle.</source>
-      <translation>El ciclo %1 aparta el filo, y aquí nada para el husillo en un ángulo.</translation>
+      <source>Cycle %1 frees the edge aside, and %2.</source>
+      <translation>El ciclo %1 libera el filo hacia un lado, y %2.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/cycle_moves.py" />
@@ -17965,6 +18030,11 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/cycle_moves.py" />
+      <source>Write -360 to 360.</source>
+      <translation>Escriba de -360 a 360.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycle_moves.py" />
       <source>Write 8 for on and 9 for off.</source>
       <translation>Escriba 8 para conectar y 9 para desconectar.</translation>
     </message>
@@ -17997,6 +18067,16 @@
       <location filename="core/interpreter/klartext/cycle_moves.py" />
       <source>Write it into the tool table, or Q343=+0 and Q201.</source>
       <translation>Escríbalo en la tabla de herramientas, o Q343=+0 y Q201.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycle_moves.py" />
+      <source>this machine's spindle is not oriented</source>
+      <translation>el cabezal de esta máquina no se orienta</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycle_moves.py" />
+      <source>write oriented = true under [spindle] of the machine file where its drive can stop it at an angle</source>
+      <translation>escriba oriented = true en [spindle] del archivo de máquina si su accionamiento puede pararlo en un ángulo</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/cycles.py" />
@@ -18062,6 +18142,11 @@
       <location filename="core/interpreter/klartext/cycles.py" />
       <source>Cycle %1 needs a machining cycle before it.</source>
       <translation>El ciclo %1 necesita antes un ciclo de mecanizado.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles.py" />
+      <source>Cycle 13 names no angle.</source>
+      <translation>El ciclo 13 no dice ningún ángulo.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/cycles.py" />
@@ -18152,6 +18237,11 @@
       <location filename="core/interpreter/klartext/cycles.py" />
       <source>Take it out.</source>
       <translation>Quítelo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/cycles.py" />
+      <source>Write ANGLE and degrees.</source>
+      <translation>Escriba ANGLE y los grados.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/cycles.py" />
@@ -18325,8 +18415,8 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/hole_cycles.py" />
-      <source>Bore from the other side.</source>
-      <translation>Mandrine desde el otro lado.</translation>
+      <source>Bore from the other side, or %1.</source>
+      <translation>Mandrine desde el otro lado, o %1.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/hole_cycles.py" />
@@ -18335,8 +18425,8 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/hole_cycles.py" />
-      <source>Cycle 204 goes through the hole with the spindle at an angle, and nothing here orients it.</source>
-      <translation>El ciclo 204 pasa por el agujero con el husillo en un ángulo, y aquí nada lo orienta.</translation>
+      <source>Cycle 204 goes through the hole with the spindle at an angle, and %1.</source>
+      <translation>El ciclo 204 pasa por el agujero con el cabezal en un ángulo, y %1.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/hole_cycles.py" />
@@ -18365,13 +18455,18 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/hole_cycles.py" />
-      <source>Q214 is not between 0 and 4.</source>
-      <translation>Q214 no está entre 0 y 4.</translation>
+      <source>Q214 is not between %1 and %2.</source>
+      <translation>Q214 no está entre %1 y %2.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/hole_cycles.py" />
       <source>Q239 is no pitch.</source>
       <translation>Q239 no es un paso.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/hole_cycles.py" />
+      <source>Q249 %1 mm bores away from the part.</source>
+      <translation>Q249 %1 mm mandrina alejándose de la pieza.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/hole_cycles.py" />
@@ -18397,6 +18492,11 @@
       <location filename="core/interpreter/klartext/hole_cycles.py" />
       <source>Write the M function of the direction.</source>
       <translation>Escriba la función M del sentido.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/hole_cycles.py" />
+      <source>Write the depth without a minus.</source>
+      <translation>Escriba la profundidad sin signo menos.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/hole_cycles.py" />
@@ -18580,6 +18680,11 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/m_functions.py" />
+      <source>%1, or take it out.</source>
+      <translation>%1, o quítelo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/m_functions.py" />
       <source>It has no second datum of the machine: count from the machine's zero with M91.</source>
       <translation>No tiene segundo origen de máquina: cuente desde el cero de máquina con M91.</translation>
     </message>
@@ -18612,6 +18717,11 @@
       <location filename="core/interpreter/klartext/m_functions.py" />
       <source>M101 changes to no replacement tool here: the tool that was called goes on.</source>
       <translation>M101 no cambia aquí a ninguna herramienta gemela: sigue la que se llamó.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/m_functions.py" />
+      <source>M19 stops the spindle at an angle, and %1.</source>
+      <translation>M19 para el cabezal en un ángulo, y %1.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/m_functions.py" />
@@ -19447,6 +19557,11 @@
       <location filename="core/interpreter/klartext/word_values.py" />
       <source>Write F or FMAX.</source>
       <translation>Escriba F o FMAX.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/machine_requirements.py" />
+      <source>a spindle that is stopped at an angle</source>
+      <translation>un cabezal que se para en un ángulo</translation>
     </message>
     <message>
       <location filename="core/interpreter/machine_requirements.py" />
@@ -22465,6 +22580,11 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
+      <source>%1 counts from an angle, and the spindle is held at none.</source>
+      <translation>%1 cuenta desde un ángulo, y el cabezal no está retenido en ninguno.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
       <source>%1 is a dwell of %2 s; %3 are the most.</source>
       <translation>%1 es una espera de %2 s; lo más son %3.</translation>
     </message>
@@ -22500,8 +22620,18 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
+      <source>%1: %2 is no angle of a spindle.</source>
+      <translation>%1: %2 no es un ángulo de un cabezal.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
       <source>%1: a dwell is 0 or longer.</source>
       <translation>%1: una espera es 0 o más.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
+      <source>%1: the drive turns less than once to an angle.</source>
+      <translation>%1: el accionamiento gira menos de una vuelta hasta un ángulo.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
@@ -22545,13 +22675,33 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
-      <source>Write M5, and index the part by C; on the machine sinumerik-live the spindle is C.</source>
-      <translation>Escriba M5, y posicione la pieza con C; en la máquina sinumerik-live el husillo es C.</translation>
+      <source>Take the machine sinumerik-live, whose spindle is C.</source>
+      <translation>Tome la máquina sinumerik-live, cuyo cabezal es C.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
+      <source>Write 0 to under 360.</source>
+      <translation>Escriba de 0 a menos de 360.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
       <source>Write S in the block.</source>
       <translation>Escriba S en el bloque.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
+      <source>Write SPOS with an angle before it.</source>
+      <translation>Escriba antes SPOS con un ángulo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
+      <source>Write less than 360.</source>
+      <translation>Escriba menos de 360.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
+      <source>Write oriented = true under [spindle] of the machine file where its drive can; or M5, and index the part by C.</source>
+      <translation>Escriba oriented = true en [spindle] del archivo de máquina si su accionamiento puede; o M5, y divida la pieza con C.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
@@ -22565,8 +22715,13 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
-      <source>the spindle of this machine cannot be positioned: %1.</source>
-      <translation>el husillo de esta máquina no se puede posicionar: %1.</translation>
+      <source>the spindle of this machine is no axis C: %1, and its drive only brings it to an angle.</source>
+      <translation>el cabezal de esta máquina no es un eje C: %1, y su accionamiento solo lo lleva a un ángulo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
+      <source>the spindle of this machine is not oriented: %1, and nothing else brings it to an angle.</source>
+      <translation>el cabezal de esta máquina no se orienta: %1, y nada más lo lleva a un ángulo.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/stock_removal.py" />
@@ -24130,8 +24285,8 @@
     </message>
     <message>
       <location filename="core/language/klartext/klartext_milling_book.py" />
-      <source>Bores from below; where it is called it is refused: nothing stops the spindle at an angle.</source>
-      <translation>Mandrina desde abajo; al llamarlo se rechaza: nada para el husillo en un ángulo.</translation>
+      <source>Bores from below: through the hole with the spindle at Q336 and beside the centre by Q251.</source>
+      <translation>Mandrina desde abajo: por el agujero con el cabezal en Q336 y a Q251 del centro.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/klartext_milling_book.py" />
@@ -24147,11 +24302,6 @@
       <location filename="core/language/klartext/klartext_milling_book.py" />
       <source>CIRCULAR SLOT</source>
       <translation>CIRCULAR SLOT</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_milling_book.py" />
-      <source>CYCL DEF 204</source>
-      <translation>CYCL DEF 204</translation>
     </message>
     <message>
       <location filename="core/language/klartext/klartext_milling_book.py" />

@@ -108,6 +108,8 @@ def switch_words(action: actions.Action) -> Row:
             words = ["output", name, "on" if on else "off"]
         case actions.SpindleLock(orient):
             words = ["lock", "orient"] if orient else ["lock"]
+        case actions.SpindleOrient(angle, sense):
+            words = ["oriented", angle, *(["as", "M3" if sense > 0 else "M4"] if sense else [])]
     return words
 
 

@@ -4,6 +4,8 @@ turned the edge where Q214 frees it.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from app.compose.machine_files import shipped_machine
@@ -17,7 +19,8 @@ from core.language.source import Source
 from core.proving.prove_program import prove
 from tests.executor.rig import Rig
 
-MILL = shipped_machine("ac-table-mill")
+ORIENTED = shipped_machine("ac-table-mill")
+MILL = replace(ORIENTED, spindle=replace(ORIENTED.spindle, oriented=False))  # whose spindle stops anywhere
 PROGRAM = (
     "BEGIN PGM T MM\nTOOL CALL 1 Z S3000 F500\nL X+0 Y+0 Z+5 R0 FMAX M3\n"
     "CYCL DEF 202 BORING Q200=+2 Q201=-6 Q206=+300 Q211=+0 Q208=+300 Q203=+0 Q204=+2 Q214={} Q336=+0\n"

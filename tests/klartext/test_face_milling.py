@@ -220,7 +220,7 @@ def test_back_boring_is_refused_however_it_is_called_because_nothing_orients_the
     lines = "".join(f" ~\n  {name}={value:+g}" for name, value in BACK.items())
     ran = run(f"CYCL DEF 204 BACK BORING{lines}\n{call}", tool=TOOL)
     assert ran.codes == ["Input value incorrect"]
-    assert "orients" in ran.errors[0].message
+    assert "not oriented" in ran.errors[0].message
     assert min(block.swivel.end[2] for block in ran.blocks if block.swivel) >= 0.0
 
 

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 from core.geometry.lines_and_arcs import Arc, Point
 from core.geometry.plane_arcs import HelixMove
-from core.interpreter.actions import Coolant, Dwell, ProgramStop, SpindleRun, SpindleStop
+from core.interpreter.actions import Coolant, Dwell, ProgramStop, SpindleOrient, SpindleRun, SpindleStop
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.klartext.feed_rates import per_minute
 from core.interpreter.klartext.klartext_state import SLIDES, State
@@ -17,8 +17,20 @@ from core.language.diagnostics import ProgramError, Severity
 from core.language.klartext.klartext_faults import CYCLE_MISSING, INPUT_VALUE, WRONG_RPM
 from core.language.klartext.q_parameters import MAX_FEED, TOOL_FEED
 
+_TURN = 360.0
+UNORIENTED = "this machine's spindle is not oriented"
+HOW_ORIENTED = (
+    "write oriented = true under [spindle] of the machine file where its drive can stop it at an angle"
+)
+
 Parameters = Mapping[int, int | float | None]
 """Numbers of Q parameters: that of another cycle as an int, a value of its own as a float."""
+
+
+def oriented(state: State, angle: float) -> Block:
+    """The spindle held at an angle, degrees from its index, the short way."""
+    state.modal = state.modal._replace(spindle=0, oriented=angle % _TURN)
+    return state.action(SpindleOrient(angle % _TURN))
 
 
 class CycleTool:
@@ -165,8 +177,8 @@ class CycleTool:
         self._state.tell_once(self._column, Severity.WARNING, "tapping-uncoupled", text, hint)
 
     def warn_unoriented(self) -> None:
-        """Nothing stops the spindle of a mill at an angle here: the edge may point anywhere."""
-        text = f"Cycle {self._number} frees the edge aside, and nothing here stops the spindle at an angle."
+        """Nothing stops the spindle of this mill at an angle: the edge may point anywhere."""
+        text = f"Cycle {self._number} frees the edge aside, and {UNORIENTED}."
         hint = "Write Q214=0, or turn the edge by hand where the program stops for it."
         self._state.tell_once(self._column, Severity.WARNING, "spindle-not-oriented", text, hint)
 
@@ -222,7 +234,7 @@ class CycleTool:
     def turn(self, rpm: float, *, in_hole: bool = False) -> Block:
         """The spindle at this speed and in this direction."""
         state = self._state
-        state.modal = state.modal._replace(spindle=1 if rpm > 0.0 else -1)
+        state.modal = state.modal._replace(spindle=1 if rpm > 0.0 else -1, oriented=None)
         return replace(state.action(SpindleRun(rpm)), in_hole=in_hole)
 
     def turning(self, rpm: float) -> list[Block]:
@@ -245,8 +257,20 @@ class CycleTool:
     def stop(self, *, stands: bool = False) -> Block:
         """The spindle off; with ``stands`` it is waited for."""
         state = self._state
-        state.modal = state.modal._replace(spindle=0)
+        state.modal = state.modal._replace(spindle=0, oriented=None)
         return state.action(SpindleStop(stands))
+
+    @property
+    def orients(self) -> bool:
+        """Whether the spindle of this machine can be stopped at an angle."""
+        return self._state.setup.limits.spindle_oriented
+
+    def orient(self, q: int) -> Block:
+        """The spindle held at the angle of a parameter. Raises ProgramError."""
+        angle = self.plain(q, 0.0)
+        if not -_TURN <= angle <= _TURN:
+            raise self.refuse(f"{self.named(q)} is no angle of a spindle.", "Write -360 to 360.")
+        return oriented(self._state, angle)
 
     def halt(self, message: str) -> Block:
         """For what the operator has to do by hand; Cycle Start goes on."""

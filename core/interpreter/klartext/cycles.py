@@ -276,8 +276,25 @@ class Cycles:
             self._name_contours(node)
         elif node.number == _TILT and node.part == 1:
             yield from plane(self._state, self._tilted(node))
-        elif node.number in {_ORIENT, _TOLERANCE}:
+        elif node.number == _TOLERANCE or (node.number == _ORIENT and not self._orients):
             self._state.unheeded(f"Cycle {node.number}", node.column)
+        elif node.number == _ORIENT and node.part == 1:
+            self._state.spindle_angle = self._angle(node)
+
+    @property
+    def _orients(self) -> bool:
+        return self._state.setup.limits.spindle_oriented
+
+    def _angle(self, node: CycleLine) -> float:
+        """The angle of cycle 13, to which M19 brings the spindle. Raises ProgramError."""
+        if not node.words:
+            text = "Cycle 13 names no angle."
+            raise self._state.refuse(node.column, CYCLE_MISSING, text, "Write ANGLE and degrees.")
+        angle = value(self._state, node.words[-1].value.formula)
+        if not -360.0 <= angle <= 360.0:
+            text = f"{angle:g} is no angle of a spindle."
+            raise self._state.refuse(node.words[-1].column, INPUT_VALUE, text, "Write -360 to 360.")
+        return angle
 
     def _name_contours(self, node: CycleLine) -> None:
         """14: the labels of its contours; lines behind the first go on. Raises ProgramError."""

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 
 from core.geometry.lines_and_arcs import Arc
 from core.interpreter.elementary_blocks import Block
-from core.interpreter.klartext.cycle_moves import CycleTool
+from core.interpreter.klartext.cycle_moves import HOW_ORIENTED, UNORIENTED, CycleTool
 
 SMALLEST = 1e-6  # mm; less is no depth
 _ASIDE = 0.2  # mm that a boring bar goes aside before it is drawn out
@@ -53,27 +53,24 @@ def reaming(tool: CycleTool) -> Iterator[Block]:
 
 
 def boring(tool: CycleTool) -> Iterator[Block]:
-    """202: down, the spindle at rest, aside where Q214 says so, out, the spindle on again.
+    """202: down, the spindle stopped at Q336, aside where Q214 says so, out, the spindle on again.
 
-    No spindle here is stopped at an angle: the program stops for the hand that turns the edge away from
-    where it goes.
+    Where the spindle is not oriented it is stopped anywhere, and the program stops for the hand that turns
+    the edge away from where it goes.
     """
     surface, clear, bottom = heights(tool)
-    rpm = tool.rpm
-    aside = {0: (0.0, 0.0), 1: (-1.0, 0.0), 2: (0.0, -1.0), 3: (1.0, 0.0), 4: (0.0, 1.0)}
-    way = aside.get(int(tool.plain(214, 0.0)))
-    if way is None:
-        raise tool.refuse("Q214 is not between 0 and 4.", "Correct the direction.")
+    rpm, way = tool.rpm, aside(tool, (0, 1, 2, 3, 4))
     x, y = tool.here
     yield tool.to(clear)
     if abs(bottom - surface) < SMALLEST:
         return
     yield tool.to(bottom, tool.feed(206))
     yield from tool.dwell(tool.plain(211, 0.0))
-    yield tool.stop(stands=True)
+    yield tool.orient(336) if tool.orients else tool.stop(stands=True)
     if way != (0.0, 0.0):
-        tool.warn_unoriented()
-        yield tool.halt(_EDGE[way])
+        if not tool.orients:
+            tool.warn_unoriented()
+            yield tool.halt(_EDGE[way])
         yield tool.across((x + way[0] * _ASIDE, y + way[1] * _ASIDE), None, tool.feed(206))
     yield from out(tool, surface, clear, tool.feed(208) if tool.plain(208, 0.0) else None)
     if way != (0.0, 0.0):
@@ -81,10 +78,51 @@ def boring(tool: CycleTool) -> Iterator[Block]:
     yield tool.turn(rpm)
 
 
+def aside(tool: CycleTool, directions: tuple[int, ...]) -> tuple[float, float]:
+    """Q214: which way the tool leaves the wall, along X or Y. Raises ProgramError for another number."""
+    number = tool.plain(214, 0.0)
+    if number not in directions:
+        text = f"Q214 is not between {directions[0]} and {directions[-1]}."
+        raise tool.refuse(text, "Correct the direction.")
+    return {0: (0.0, 0.0), 1: (-1.0, 0.0), 2: (0.0, -1.0), 3: (1.0, 0.0), 4: (0.0, 1.0)}[int(number)]
+
+
 def back_boring(tool: CycleTool) -> Iterator[Block]:
-    """204 goes through a hole with its edge turned aside, which no spindle here is: refused."""
-    text = "Cycle 204 goes through the hole with the spindle at an angle, and nothing here orients it."
-    raise tool.refuse(text, "Bore from the other side.")
+    """204: through the hole beside its centre with the spindle at Q336, centred below the part, bored
+    upwards by Q249, and out as it came in.
+
+    Q252 is how far the edge stands over the tip, Q250 how thick the part is, Q251 how far the tool goes
+    beside the centre.
+    """
+    if not tool.orients:
+        text = f"Cycle 204 goes through the hole with the spindle at an angle, and {UNORIENTED}."
+        raise tool.refuse(text, f"Bore from the other side, or {HOW_ORIENTED}.")
+    rpm, (along_x, along_y) = tool.rpm, aside(tool, (1, 2, 3, 4))
+    surface, depth = tool.length(203, 0.0), tool.length(249)
+    if depth < 0.0:
+        raise tool.refuse(
+            f"Q249 {depth:+.10g} mm bores away from the part.", "Write the depth without a minus."
+        )
+    clear, through, slow = surface + tool.length(200), tool.length(250) + tool.length(252), tool.feed(253)
+    lowest, end = surface - through - tool.length(200), surface - through + depth
+    (x, y), off = tool.here, tool.length(251)
+    beside = x + along_x * off, y + along_y * off
+    yield tool.to(clear)
+    if depth < SMALLEST:
+        return
+    yield tool.orient(336)
+    yield tool.across(beside)
+    yield tool.to(lowest, slow)
+    yield tool.across((x, y), None, slow)
+    yield tool.turn(rpm)
+    yield tool.to(end, tool.cut(254))
+    yield from tool.dwell(tool.plain(255, 0.0))
+    yield tool.to(lowest, slow)
+    yield tool.orient(336)
+    yield tool.across(beside, None, slow)
+    yield from out(tool, surface, clear, slow)
+    yield tool.across((x, y))
+    yield tool.turn(rpm)
 
 
 def universal_drilling(tool: CycleTool) -> Iterator[Block]:

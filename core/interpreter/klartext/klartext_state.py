@@ -77,6 +77,7 @@ class State:
         self.per_revolution = False  # M136: F counts a revolution
         self.rotary_by_way = False  # M116: F of rotary axes alone counts mm of the tip on the workpiece
         self.plunging: float | None = None  # M103: the share of F that is left for Z on the way down
+        self.spindle_angle = 0.0  # of cycle 13, for M19
         self.q: dict[int, float] = {}
         self.q_beside: dict[tuple[str, int], float] = {}  # QL and QR
         self.texts: dict[int, str | None] = {}  # QS; None: one of the control, which is not known here

@@ -8,6 +8,7 @@ from core.geometry.plane_figure import Figure
 from core.interpreter import actions
 from core.interpreter.elementary_blocks import Block
 from core.interpreter.klartext import word_values
+from core.interpreter.klartext.cycle_moves import HOW_ORIENTED, UNORIENTED, oriented
 from core.interpreter.klartext.klartext_state import State
 from core.interpreter.klartext.plane_functions import retract, retract_way
 from core.interpreter.klartext.tip_control import switch
@@ -22,13 +23,13 @@ from core.language.klartext.klartext_faults import (
 )
 from core.language.klartext.klartext_nodes import MCode
 
-M89, M91, M99 = 89, 91, 99
+M19, M89, M91, M99 = 19, 89, 91, 99
 FEEDS = frozenset({103, 136, 137})  # of ``feed_rates``: they count as soon as they are read
 ENDS_NOTHING = frozenset({102, 115, 145})  # they end what is not built
 SISTER_TOOL = 101
 BEFORE = frozenset({3, 4, 8, 13, 14, SISTER_TOOL, 116, 117, 126, 127, 128, 129, 140}) | FEEDS | ENDS_NOTHING
 ENDS = frozenset({2, 30})
-_BEHIND = frozenset({0, 1, 2, 5, 6, 9, 30})
+_BEHIND = frozenset({0, 1, 2, 5, 6, 9, M19, 30})
 _OF_THE_BLOCK = frozenset({M89, M91, M99})
 
 # They steer what this control does in its own way anyhow: smoothing and look-ahead (90, 112, 113, 120, 124),
@@ -55,6 +56,11 @@ def check(state: State, codes: Sequence[MCode]) -> None:
         if code.number in {M91, 92} and state.m128:
             text = f"M{code.number} while M128 is on."
             raise state.refuse(code.column, NOT_WITH_M128, text, "Switch it off with M129 before.")
+        if code.number == M19 and not limits.spindle_oriented:
+            text = f"M19 stops the spindle at an angle, and {UNORIENTED}."
+            raise state.refuse(
+                code.column, M_UNDEFINED, text, f"{HOW_ORIENTED.capitalize()}, or take it out."
+            )
         if code.number in _NOT_BUILT - known:
             raise unsupported(state.line, code.column, f"M{code.number}")
         if code.number not in known:
@@ -69,7 +75,7 @@ def check(state: State, codes: Sequence[MCode]) -> None:
         if any(other.number == code.number for other in codes[:position]):
             text = f"M{code.number} stands twice in the block."
             raise syntax(state.line, code.column, text, "Take one out.")
-    turning = [code for code in codes if code.number in {*_TURNS, 5}]
+    turning = [code for code in codes if code.number in {*_TURNS, 5, M19}]
     if len(turning) > 1:
         text = "More than one M function of the block steers the spindle."
         raise state.refuse(turning[1].column, CONTRADICTION, text, "Take one out.")
@@ -101,6 +107,8 @@ def behind(state: State, codes: Sequence[MCode], comment: str) -> Iterator[Block
         output = state.setup.limits.m_outputs.get(code.number)
         if code.number in {0, 5, 6} and state.modal.spindle:
             yield _stop(state)
+        if code.number == M19:
+            yield oriented(state, state.spindle_angle)
         if code.number == 9 or (code.number == 0 and state.modal.coolant):
             yield _coolant(state, on=False)
         if output is not None and not output[1]:
@@ -120,7 +128,7 @@ def end(state: State) -> Block:
     state.short_way = True
     state.per_revolution, state.plunging, state.rotary_by_way = False, None, False
     state.set_plane(None)
-    state.modal = state.modal._replace(spindle=0, coolant=False, outputs=frozenset())
+    state.modal = state.modal._replace(spindle=0, oriented=None, coolant=False, outputs=frozenset())
     return state.action(actions.ProgramEnd(reset=True))
 
 
@@ -128,12 +136,12 @@ def _start(state: State, code: MCode) -> Block:
     if not state.modal.rpm:
         why = f"M{code.number} starts the spindle, and no TOOL CALL has given S."
         raise state.refuse(code.column, WRONG_RPM, why, "Write S behind TOOL CALL.")
-    state.modal = state.modal._replace(spindle=_TURNS[code.number])
+    state.modal = state.modal._replace(spindle=_TURNS[code.number], oriented=None)
     return state.action(actions.SpindleRun(state.modal.rpm * state.modal.spindle))
 
 
 def _stop(state: State) -> Block:
-    state.modal = state.modal._replace(spindle=0)
+    state.modal = state.modal._replace(spindle=0, oriented=None)
     return state.action(actions.SpindleStop())
 
 

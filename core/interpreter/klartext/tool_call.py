@@ -87,7 +87,7 @@ def _change(
     """Another tool: the spindle stops, and where one was in it before, somebody has to change it."""
     before = state.modal.tool
     if state.modal.spindle:
-        state.modal = state.modal._replace(spindle=0)
+        state.modal = state.modal._replace(spindle=0, oriented=None)
         yield state.action(SpindleStop())
     state.modal = state.modal._replace(tool=tool)
     _measure(state, tool, longer, thicker, use, column)

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from math import hypot
 
-from core.interpreter.actions import Coolant, Output, SpindleLock, SpindleRun, SpindleStop
+from core.interpreter.actions import Coolant, Output, SpindleLock, SpindleOrient, SpindleRun, SpindleStop
 from core.interpreter.checkpoint import ApproachStep, Begin, CTurn, FunctionStep, Leg
 from core.interpreter.modal_state import Modal
 from core.interpreter.restart.cut_record import CutRecord
@@ -189,6 +189,8 @@ def _starts(found: RestartPoint, now: MachineNow, choices: Choices) -> Iterator[
         yield CTurn(_near(point.c + wanted.offset_c, now.at[2]), (wanted.c_rpm or 10.0) * 6.0, "C")
     elif point.at:  # C has a drive of its own, and the program has positioned it
         yield CTurn(_own_c(point.at[2], now.at[2]), _OWN_C, "C")
+    if wanted.oriented is not None:
+        yield FunctionStep(SpindleOrient(wanted.oriented), f"M19 {wanted.oriented:g}")
     if wanted.spindle and not wanted.c_locked:
         surface = wanted.surface_speed if wanted.css else None
         text = f"{'M03' if wanted.spindle > 0 else 'M04'}"

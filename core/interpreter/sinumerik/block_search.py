@@ -53,6 +53,7 @@ def take_up(state: State, begin: Begin) -> None:
         outputs=now.outputs,
         comment=now.comment,
         c_locked=now.c_locked,
+        oriented=now.oriented,
     )
     state.settable = state.setup.zero.get(was.settable, NO_OFFSET)
     state.edge = state.setup.tools.get(now.tool, ToolOffset()) if now.tool else ToolOffset()

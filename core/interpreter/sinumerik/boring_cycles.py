@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from core.interpreter.actions import ProgramStop, SpindleLock, SpindleRun, SpindleStop
+from core.interpreter.actions import ProgramStop, SpindleLock, SpindleOrient, SpindleRun, SpindleStop
 from core.interpreter.elementary_blocks import Block
 from core.interpreter.sinumerik.cycle_parameters import Cycle, Step, dwell
-from core.interpreter.sinumerik.drilling_cycles import approach, hole_of, needed_feed, seconds
-from core.interpreter.sinumerik.spindle_and_dwell import demand_position, shortest_turn
+from core.interpreter.sinumerik.drilling_cycles import Hole, approach, hole_of, needed_feed, seconds
+from core.interpreter.sinumerik.spindle_and_dwell import demand_position, oriented_by_drive, shortest_turn
 
 NO_DIRECTION = 61102
 
@@ -40,12 +40,21 @@ def lift_off(cycle: Cycle) -> Iterator[Block]:
     x = cycle.x
     steps = [
         *approach(cycle, hole), *_turning(cycle), Step(x, hole.bottom, needed_feed(cycle)),
-        *dwell(seconds(cycle, "DTB")), Step(0.0, 0.0, action=SpindleLock(orient=False), spindle=0),
+        *dwell(seconds(cycle, "DTB")), *_held_at(cycle, hole, angle),
     ]  # fmt: skip
-    if turn := shortest_turn(state, angle):
-        steps.append(Step(x, hole.bottom, state.setup.limits.speeds[2], turn=turn))
     steps += [Step(x + aside, hole.bottom + up), Step(x + aside, hole.retract), Step(x, hole.retract)]
     return cycle.blocks(steps)
+
+
+def _held_at(cycle: Cycle, hole: Hole, angle: float) -> list[Step]:
+    """The spindle at an angle: by its drive, or held as C and turned there."""
+    state = cycle.state
+    if oriented_by_drive(state):
+        return [Step(0.0, 0.0, action=SpindleOrient(angle), spindle=0)]
+    steps = [Step(0.0, 0.0, action=SpindleLock(orient=False), spindle=0)]
+    if turn := shortest_turn(state, angle):
+        steps.append(Step(cycle.x, hole.bottom, state.setup.limits.speeds[2], turn=turn))
+    return steps
 
 
 def stop(cycle: Cycle) -> Iterator[Block]:

@@ -7,7 +7,7 @@ from math import hypot
 from typing import NamedTuple
 
 from core.geometry.lines_and_arcs import Point
-from core.interpreter.actions import Action, Dwell, SpindleLock, SpindleRun, SpindleStop
+from core.interpreter.actions import Action, Dwell, SpindleLock, SpindleOrient, SpindleRun, SpindleStop
 from core.interpreter.contour_passes import Move
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.sinumerik.linear_moves import AxisTravel, block_of
@@ -210,8 +210,9 @@ class Cycle:
         state, modal = self.state, self.state.modal
         if step.action is not None:
             if step.spindle is not None:
-                locked = isinstance(step.action, SpindleLock)
-                state.adopt(modal._replace(spindle=step.spindle, c_locked=locked))
+                action, locked = step.action, isinstance(step.action, SpindleLock)
+                at = action.angle if isinstance(action, SpindleOrient) else None
+                state.adopt(modal._replace(spindle=step.spindle, c_locked=locked, oriented=at))
             done = state.action(self.line.number, _told(step), step.action)
             done.in_hole = step.in_hole
             return done
@@ -273,5 +274,7 @@ def _told(step: Step) -> str:
             return "M5"
         case SpindleLock():
             return "M70"
+        case SpindleOrient(angle=angle):
+            return f"SPOS={angle:g}"
         case _:
             return "M0"

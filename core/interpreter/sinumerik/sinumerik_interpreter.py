@@ -393,7 +393,7 @@ class Interpreter(Interpretation):
                 yield state.action(line.number, f"M{code}", ProgramStop(optional=code == 1))
         if statement.ends and not self._flow.called:
             leave_offsets(state)
-            state.adopt(state.modal._replace(spindle=0))
+            state.adopt(state.modal._replace(spindle=0, oriented=None))
             code = next(code for code in (2, 17, 30) if code in statement.m)
             yield state.action(line.number, f"M{code}", ProgramEnd(reset=True))
 

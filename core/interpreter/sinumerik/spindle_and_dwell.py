@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from math import copysign
 
-from core.interpreter.actions import Dwell, SpindleLock, SpindleRun, SpindleStop
+from core.interpreter.actions import Dwell, SpindleLock, SpindleOrient, SpindleRun, SpindleStop
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.sinumerik.linear_moves import AxisTravel, block_of, turn_of_c
 from core.interpreter.sinumerik.sinumerik_state import State, positive
 from core.interpreter.sinumerik.sinumerik_statement import Statement
-from core.interpreter.sinumerik.third_axis import modulo_travel
+from core.interpreter.sinumerik.third_axis import WRONG_MODULO, modulo_travel
 from core.interpreter.units import METRES_PER_MINUTE, MM_PER_INCH
 from core.language.diagnostics import ProgramError
 from core.language.sinumerik.sinumerik_words import Form, Word
@@ -18,6 +18,8 @@ from core.language.sinumerik.word_table import BLOCKWISE, FEED_AND_SPEED
 
 _FASTEST_SURFACE = 100_000.0  # mm/s; ten times what any tool stands
 _LONGEST_DWELL = 3600.0  # s
+_AXIS_MODE = 70  # M70
+_TURN = 360.0
 _SURFACE = frozenset({96, 961, 962})
 _FEET = 12.0 * MM_PER_INCH / 60.0  # mm/s of a foot a minute
 
@@ -38,7 +40,7 @@ def spindle_words(state: State, statement: Statement) -> Iterator[Block]:
     if statement.code(BLOCKWISE) not in {25, 26}:
         _speed(state, statement)
     if 5 in statement.m:
-        state.adopt(state.modal._replace(spindle=0, c_locked=False))
+        state.adopt(state.modal._replace(spindle=0, c_locked=False, oriented=None))
         yield state.action(statement.line.number, "M5", SpindleStop())
     elif word := _positions(statement):
         yield from _position(state, statement, word)
@@ -50,7 +52,7 @@ def _run(state: State, statement: Statement, before: tuple[int, float, float | N
     direction = next((m for m in (3, 4) if m in statement.m), 0)
     if direction:
         _check_start(state, statement, statement.m[direction])
-        state.adopt(state.modal._replace(spindle=1 if direction == 3 else -1, c_locked=False))
+        state.adopt(state.modal._replace(spindle=1 if direction == 3 else -1, c_locked=False, oriented=None))
     if direction or (state.modal.spindle and before != (state.modal.spindle, state.rpm, state.css)):
         yield state.action(statement.line.number, _text(statement), SpindleRun(state.rpm, state.css))
 
@@ -72,15 +74,25 @@ def _positions(statement: Statement) -> Word | None:
 
 
 def _position(state: State, statement: Statement, word: Word) -> Iterator[Block]:
-    """The spindle stops, is held as C, and turns to its angle. Raises ProgramError."""
+    """The spindle stops, and its drive brings it to its angle, or holds it as C. Raises ProgramError."""
+
+    def refuse(text: str, hint: str) -> ProgramError:
+        return statement.refuse(word, "spindle-position", f"{word.text}: {text}", hint)
+
+    if word.name == "M" and word.value == _AXIS_MODE:
+        demand_spindle_as_c(state, refuse)
+        state.adopt(state.modal._replace(spindle=0, c_locked=True))
+        yield state.action(statement.line.number, word.text, SpindleLock(orient=False))
+        return
+    demand_position(state, refuse)
+    if oriented_by_drive(state):
+        action = _orient(state, statement, word)
+        state.adopt(state.modal._replace(spindle=0, oriented=action.angle))
+        yield state.action(statement.line.number, word.text, action)
+        return
     limits = state.setup.limits
-    demand_position(
-        state, lambda text, hint: statement.refuse(word, "spindle-position", f"{word.text}: {text}", hint)
-    )
     state.adopt(state.modal._replace(spindle=0, c_locked=True))
     yield state.action(statement.line.number, word.text, SpindleLock(orient=False))
-    if word.name == "M" and word.value == 70:
-        return
     turn = _spindle_turn(state, statement, word)
     if turn:
         x, z, c, modal = state.x, state.z, state.c, state.modal
@@ -90,14 +102,56 @@ def _position(state: State, statement: Statement, word: Word) -> Iterator[Block]
         yield made
 
 
+def oriented_by_drive(state: State) -> bool:
+    """Whether the spindle's drive brings it to an angle, and not C, which it is not."""
+    limits = state.setup.limits
+    return limits.spindle_oriented and not (limits.c_enabled and limits.spindle_is_c)
+
+
 def demand_position(state: State, refuse: Callable[[str, str], ProgramError]) -> None:
-    """Raises what ``refuse`` makes of text and hint where the spindle cannot be positioned."""
+    """Raises what ``refuse`` makes of text and hint where nothing brings the spindle to an angle."""
+    if not oriented_by_drive(state):
+        demand_spindle_as_c(state, refuse)
+
+
+def demand_spindle_as_c(state: State, refuse: Callable[[str, str], ProgramError]) -> None:
+    """The same where the spindle cannot be turned as C."""
     limits = state.setup.limits
     if limits.c_enabled and limits.spindle_is_c:
         return
     why = "C is a drive of its own" if limits.c_enabled else "it has no C"
-    text = f"the spindle of this machine cannot be positioned: {why}."
-    raise refuse(text, "Write M5, and index the part by C; on the machine sinumerik-live the spindle is C.")
+    if limits.spindle_oriented:
+        text = f"the spindle of this machine is no axis C: {why}, and its drive only brings it to an angle."
+        raise refuse(text, "Take the machine sinumerik-live, whose spindle is C.")
+    text = f"the spindle of this machine is not oriented: {why}, and nothing else brings it to an angle."
+    hint = (
+        "Write oriented = true under [spindle] of the machine file where its drive can; "
+        "or M5, and index the part by C."
+    )
+    raise refuse(text, hint)
+
+
+def _orient(state: State, statement: Statement, word: Word) -> SpindleOrient:
+    """Angle and sense of M19 and SPOS. The spindle counts 0 to under 360, however C counts."""
+    if word.name == "M":
+        return SpindleOrient(0.0)
+    form, at = word.form, state.modal.oriented
+    value = state.number(statement, word)
+    if form is Form.IC:
+        if at is None:
+            text = f"{word.text} counts from an angle, and the spindle is held at none."
+            raise statement.refuse(word, "spindle-position", text, "Write SPOS with an angle before it.")
+        if abs(value) >= _TURN:
+            text = f"{word.text}: the drive turns less than once to an angle."
+            raise statement.refuse(word, "spindle-position", text, "Write less than 360.")
+        return SpindleOrient((at + value) % _TURN, int(copysign(1, value)) if value else 0)
+    if not 0.0 <= value < _TURN:
+        text = f"{word.text}: {value:g} is no angle of a spindle."
+        raise statement.refuse(word, WRONG_MODULO, text, "Write 0 to under 360.")
+    sense = {Form.ACP: 1, Form.ACN: -1}.get(form, 0)
+    if form is Form.AC and at is not None:  # never across 0
+        sense = int(copysign(1, value - at)) if value != at else 0
+    return SpindleOrient(value, sense)
 
 
 def shortest_turn(state: State, angle: float) -> float:

@@ -16,7 +16,7 @@ from core.interpreter.sinumerik.drilling_cycles import Hole, approach, hole_of, 
 from core.interpreter.sinumerik.linear_moves import block_of, travel_of
 from core.interpreter.sinumerik.sinumerik_state import Motion, State
 from core.interpreter.sinumerik.sinumerik_statement import Statement
-from core.interpreter.sinumerik.spindle_and_dwell import demand_position, shortest_turn
+from core.interpreter.sinumerik.spindle_and_dwell import demand_spindle_as_c, shortest_turn
 from core.interpreter.sinumerik.thread_cycle import COARSE_LEADS, WRONG_LEAD
 
 NO_DIRECTION = 61102
@@ -48,7 +48,7 @@ def lead_of_tap(cycle: Cycle) -> float:
 def rigid(cycle: Cycle) -> Iterator[Block]:
     """CYCLE84: the spindle stops at POSS, turns in with Z by SST, and out by SST1. Raises ProgramError."""
     hole, state = hole_of(cycle), cycle.state
-    demand_position(state, lambda text, hint: cycle.refused("spindle-position", text, hint))
+    demand_spindle_as_c(state, lambda text, hint: cycle.refused("spindle-position", text, hint))
     lead = lead_of_tap(cycle)
     if not lead:
         raise cycle.wrong("PIT", "says no lead", "Write PIT, or MPIT as 3 to 68 of M3 to M68.", WRONG_LEAD)
@@ -158,7 +158,7 @@ def tap(state: State, statement: Statement) -> Block:
     """G331 into the hole, G332 out of it, with C held: lead K, speed S. Raises ProgramError."""
     word = statement.g.get("motion")
     code = f"G{int(state.motion)}"
-    demand_position(state, lambda text, hint: statement.refuse(word, "spindle-position", text, hint))
+    demand_spindle_as_c(state, lambda text, hint: statement.refuse(word, "spindle-position", text, hint))
     if not state.modal.c_locked:
         text = f"{code} turns the spindle as C, and it is not held as one."
         raise statement.refuse(word, "spindle-position", text, "Write SPOS=0 before it.")

@@ -85,7 +85,7 @@ _OF_A_CYCLE = {
     201: ("REAMING", "Reams; out at a feed.", f"{_HOLE} Q211=0 Q208=300 {_HEIGHTS}"),
     202: (
         "BORING",
-        "Bores, stops the spindle, frees the edge, out.",
+        "Bores, stops the spindle at Q336, frees the edge by Q214, out.",
         f"{_HOLE} Q211=0 Q208=300 {_HEIGHTS} Q214=0 Q336=+0",
     ),
     203: (
@@ -253,8 +253,10 @@ def cycles() -> tuple[Entry, ...]:
         Entry(
             "CYCL DEF 13",
             ".0 ORIENTATION",
-            "Stops the spindle at an angle.",
-            "CYCL DEF 13.0 ORIENTATION\nCYCL DEF 13.1 ANGLE 90",
+            "The angle at which M19 stops the spindle.",
+            "CYCL DEF 13.0 ORIENTATION\nCYCL DEF 13.1 ANGLE 90\nM19",
+            "CYCL DEF 13.0 ORIENTATION\nCYCL DEF 13.1 ANGLE 400",
+            "angle",
         ),
         Entry(
             "CYCL DEF 32",
@@ -325,6 +327,7 @@ def m_functions() -> tuple[Entry, ...]:
         code(9, "Coolant off."),
         code(13, "Spindle on, clockwise, and coolant on."),
         code(14, "Spindle on, counter-clockwise, and coolant on."),
+        code(19, "Spindle stopped and held at the angle of cycle 13, else at 0.", "M19", "M19 M3", "spindle"),
         code(30, "End of the program."),
         code(
             89,

@@ -12,6 +12,12 @@ _FACE = "Q202=2 Q369=0.2 Q370=1 Q207=500 Q385=250 Q253=750 Q200=2 Q357=2 Q204=30
 _RAPID = ("Q207=500", "Q207=99999", "rapid")
 _UPWARDS = ("Q201=-", "Q201=+", "leads upwards")
 _OF_A_CYCLE = {
+    204: (
+        "BACK BORING",
+        "Bores from below: through the hole with the spindle at Q336 and beside the centre by Q251.",
+        "Q200=2 Q249=+5 Q250=20 Q251=3.5 Q252=15 Q253=750 Q254=200 Q255=0 Q203=+0 Q204=50 Q214=1 Q336=+0",
+        ("Q214=1", "Q214=0", "Q214"),
+    ),
     262: (
         "THREAD MILLING",
         "Mills an inside thread: Q355 0 one turn, 1 over the whole depth, n every n pitches.",
@@ -116,7 +122,7 @@ _OF_A_CYCLE = {
 
 
 def milling() -> tuple[Entry, ...]:
-    """Cycles 210 to 215, 230 to 233, 254, 262 to 267."""
+    """Cycles 204, 210 to 215, 230 to 233, 254, 262 to 267."""
 
     def entry(number: int, name: str, what: str, parameters: str, spoilt: tuple[str, str, str]) -> Entry:
         before, after, why = spoilt
@@ -125,15 +131,4 @@ def milling() -> tuple[Entry, ...]:
         wrong = body.replace(before, after) + call
         return Entry(f"CYCL DEF {number}", name, what, body + call, wrong, why, insert=body)
 
-    back = "CYCL DEF 204 BACK BORING ~\n  Q200=2 ~\n  Q249=+5 ~\n  Q250=20 ~\n  Q251=3.5 ~\n  Q252=15"
-    return (
-        *(entry(number, *told) for number, told in sorted(_OF_A_CYCLE.items())),
-        Entry(
-            "CYCL DEF 204",
-            "BACK BORING",
-            "Bores from below; where it is called it is refused: nothing stops the spindle at an angle.",
-            back,
-            f"{back}\nL X+10 Y+20 R0 FMAX M99",
-            "orients",
-        ),
-    )
+    return tuple(entry(number, *told) for number, told in sorted(_OF_A_CYCLE.items()))

@@ -39,7 +39,7 @@ STANDARD_CYCLES = (
         "left-hand) or MPIT, in at SST, out at SST1, rpm; _VARI 1 and 2 in steps of _DAM. SDAC: 3, 4, or 5 "
         "for a spindle that stands then.",
         "G94 F100 G17\nG0 X0 Z5\nCYCLE84(5, 0, 2, -12, , , 5, , 1, 0, 100, 100)",
-        _HOLE + "CYCLE84(5, 0, 2, -12, , , 5, , 1, 0, 100, 100)", "positioned",
+        _HOLE + "CYCLE84(5, 0, 2, -12, , , 5, , 1, 0, 100, 100)", "axis C",
     ),
     _entry(
         "CYCLE840",
@@ -51,7 +51,7 @@ STANDARD_CYCLES = (
         "CYCLE86",
         "Boring: at the bottom the spindle is held at POSS, the edge lifted by RPA along X and RPAP along Z.",
         _HOLE + "CYCLE86(5, 0, 2, -12, , 0, 3, -1, 0, 1, 0)",
-        _HOLE + "CYCLE86(5, 0, 2, -12, , 0, 3, -1, 0, 1, 0)", "positioned",
+        _HOLE + "CYCLE86(5, 0, 2, -12, , 0, 5, -1, 0, 1, 0)", "61102",
     ),
     _entry(
         "CYCLE87", "Boring: at the bottom the spindle stops, and the program until Cycle Start.",

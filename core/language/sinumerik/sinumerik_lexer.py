@@ -88,7 +88,7 @@ _OF_SPINDLE = re.compile(r"([MSTD])([0-9]+)")
 _INDEXED = re.compile(r"(SPOSA?|LIMS)\s*\[\s*([A-Z0-9]+)\s*\]\s*=(?!=)\s*")
 _QUOTED = re.compile(r'"([^"]*)"')
 _BLANK = re.compile(r"\s*\([^()]*\)")
-_MASTER = re.compile(r"\s*\(\s*([0-9]*)\s*\)")
+_NUMBERED = re.compile(r"\s*\(\s*([0-9]*)\s*\)")
 _ELEMENT = re.compile(r"(R|[A-Z_][A-Z_][A-Z0-9_]*)\s*\[\s*")
 _SYSTEM = re.compile(r"\$[A-Z0-9_]+")
 _BRACKET = re.compile(r"\s*\(")
@@ -250,8 +250,8 @@ class _Scanner:
         name, at, end = match[0], match.start(), match.end()
         if name in known.KEYS:
             return self._key(name, at, end)
-        if name == "SETMS":
-            return self._master(at, end)
+        if name in known.OF_A_SPINDLE:
+            return self._of_a_spindle(name, at, end)
         if name in _CALLS and not self.words:
             return self._behind_call(name, at, end)
         if name in known.NAMES_OUTSIDE:
@@ -290,11 +290,11 @@ class _Scanner:
         self.words.append(Word(name, None, at + 1, name, arguments=arguments))
         return end
 
-    def _master(self, at: int, end: int) -> int:
-        """SETMS, SETMS(1): which spindle the words without a number mean."""
-        match = _MASTER.match(self._text, end)
+    def _of_a_spindle(self, name: str, at: int, end: int) -> int:
+        """SETMS, WAITS, SETMS(1): with the number of a spindle behind, or meant for the first."""
+        match = _NUMBERED.match(self._text, end)
         number = int(match[1] or 1) if match is not None else 1
-        word = Word("SETMS", float(number), at + 1, f"SETMS({number})", spindle=number)
+        word = Word(name, float(number), at + 1, f"{name}({number})", spindle=number)
         self.words.append(word)
         return match.end() if match is not None else end
 

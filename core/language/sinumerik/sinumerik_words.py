@@ -103,7 +103,10 @@ POLAR = frozenset({"RP", "AP"})
 PLACES = frozenset({"X", "Y", "Z", "C", "RP", "AP", "ANG"})
 """Words that move, or turn, something."""
 
-ASSIGNED = frozenset(WORDS) - {"SETMS"}
+OF_A_SPINDLE = frozenset({"SETMS", "WAITS"})
+"""Words that take the number of a spindle in brackets."""
+
+ASSIGNED = frozenset(WORDS) - OF_A_SPINDLE
 """Words that take a value behind =."""
 
 FRAMES = frozenset({"TRANS", "ATRANS", "ROT", "AROT", "SCALE", "ASCALE", "MIRROR", "AMIRROR"})
@@ -118,7 +121,7 @@ FORMS: dict[str, frozenset[str]] = {
 }
 """Which words take a target in brackets."""
 
-VOCABULARY = LETTERS | ASSIGNED | KEYS | {"SETMS"}
+VOCABULARY = LETTERS | ASSIGNED | KEYS | OF_A_SPINDLE
 """Words that are no variable of the program."""
 
 REACH: dict[str, tuple[float, float]] = {
@@ -156,7 +159,7 @@ LETTERS_OUTSIDE = {
 
 _OUTSIDE = """
     AROTS ASPOS CYCLE DEFAULT DEFINE ENDPROC GOTOC OEMIPO POLF POS POSA REPOS ROTS SAVE SPCOF SPCON
-    VELOLIM WAITM WAITP WAITS
+    VELOLIM WAITM WAITP
 """
 NAMES_OUTSIDE = (frozenset(_OUTSIDE.split()) | OUTSIDE.keys()) - ASSIGNED
 """Names of the language that are no subprograms, and that this control does not execute."""

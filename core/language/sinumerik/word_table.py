@@ -255,8 +255,9 @@ WORDS: Mapping[str, Entry] = {
     "OVR": Entry("feed", "Feed in per cent of F, 1 to 200.", "OVR=50 G1 X40 F200|OVR=100"),
     "S": Entry("spindle", "Speed: rpm, or m/min under G96.", "S500 M3"),
     "LIMS": Entry("spindle", "Highest speed under G96, G961, G97.", "LIMS=2000"),
-    "SPOS": Entry("spindle", "The spindle stops at this angle, where it is C.", "SPOS=90"),
-    "SPOSA": Entry("spindle", "As SPOS.", "SPOSA=90"),
+    "SPOS": Entry("spindle", "The spindle stops and is held at this angle, by its drive or as C.", "SPOS=90"),
+    "SPOSA": Entry("spindle", "As SPOS: the block ends when the spindle is at its angle.", "SPOSA=90"),
+    "WAITS": Entry("spindle", "Waits for SPOSA, which has waited itself.", "SPOSA=90|WAITS(1)"),
     "SETMS": Entry("spindle", "Which spindle is the master: only spindle 1.", "SETMS(1)"),
     "SF": Entry(
         "thread",

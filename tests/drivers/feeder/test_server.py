@@ -227,7 +227,7 @@ def test_a_feeder_of_another_version_is_not_driven(bench: Bench) -> None:
             answer = super().ask(message)
             return Message({k: v for k, v in answer.head.items() if k != "version"}, answer.numbers)
 
-    with pytest.raises(DriverError, match="speaks version None, this control 4"):
+    with pytest.raises(DriverError, match="speaks version None, this control 5"):
         feeder_ports(Line(Older(bench.feeder), bench.clock))
 
 

@@ -1,0 +1,177 @@
+"""A spindle that its drive stops at an angle: nothing moves before it is held there."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from app.compose.machine_files import shipped_machine
+from app.compose.machine_setup import setup_for
+from core.executor.commands import CycleStart, FeedHold, Reset
+from core.executor.job import Proof
+from core.executor.snapshot import State
+from core.executor.start_conditions import lacking
+from core.interpreter.dialects import interpretation
+from core.interpreter.elementary_blocks import Block
+from core.interpreter.job_setup import ToolOffset
+from core.interpreter.machine_requirements import ORIENT, first_needs, needs_of
+from core.language.source import Source
+from core.proving.prove_program import prove
+from tests.executor.rig import Rig
+
+MILL = shipped_machine("ac-table-mill")
+ANGLE = 90.0
+BACK = (
+    "CYCL DEF 204 BACK BORING Q200=+2 Q249=+5 Q250=+20 Q251=+3.5 Q252=+15 Q253=+3000 Q254=+900 Q255=+0 "
+    "Q203=+0 Q204=+2 Q214=+1 Q336=+90\nCYCL CALL\n"
+)
+PROGRAM = (
+    "BEGIN PGM T MM\nTOOL CALL 1 Z S3000 F500\nL X+0 Y+0 Z+5 R0 FMAX M3\n" + BACK + "M30\nEND PGM T MM\n"
+)
+X, Z = 0, 2
+LOW = -350.0 - 37.0  # Z0 lies at -350 without a preset; the tip 2 below the part, the edge 15 above it
+
+
+def blocks_of(program: str = PROGRAM) -> list[Block]:
+    setup = setup_for(MILL, tools={1: ToolOffset()}, secondary={})
+    return list(interpretation(Source("T.H", program), setup).blocks())
+
+
+def begun() -> Rig:
+    rig = Rig(machine=MILL, made=blocks_of())
+    rig.start("anything")
+    return rig
+
+
+def orienting() -> Rig:
+    """The spindle turns to its angle, above the part."""
+    rig = begun()
+    rig.until_true(lambda shot: shot.waiting_for == "SPINDLE ORIENT")
+    return rig
+
+
+def angle(rig: Rig) -> float:
+    return rig.sim.machine.spindle_turns() % 1.0 * 360.0
+
+
+def held(rig: Rig) -> bool:
+    return rig.sim.machine.spindle_rpm() == 0.0 and abs(angle(rig) - ANGLE) < 1e-6
+
+
+def test_the_bar_goes_beside_the_centre_only_while_the_spindle_is_held_at_its_angle() -> None:
+    rig = begun()
+    rig.until_true(lambda shot: shot.rpm_actual > 2000.0)
+    rig.until_true(lambda shot: shot.waiting_for == "SPINDLE STOP")
+    waited: list[str] = []
+    beside: list[bool] = []
+    centre = rig.shot.actual[X]
+
+    def watch(shot: object) -> None:
+        waited.append(rig.shot.waiting_for)
+        if rig.shot.actual[Z] < -351.0 and abs(rig.shot.actual[X] - centre) > 0.02:
+            beside.append(held(rig))
+
+    rig.watch.append(watch)
+    rig.until(State.IDLE)
+    assert "SPINDLE ORIENT" in waited
+    assert len(beside) > 20
+    assert all(beside)
+
+
+@pytest.mark.parametrize("how", ["hold", "reset", "estop"])
+def test_whatever_stops_the_cycle_stops_the_spindle_on_its_way_to_the_angle(how: str) -> None:
+    rig = orienting()
+    rig.until_true(lambda _: rig.sim.machine.spindle_rpm() != 0.0)
+    at = rig.shot.actual
+    if how == "estop":
+        rig.sim.machine.press_estop()
+        rig.run(0.1)
+    else:
+        rig.post(FeedHold() if how == "hold" else Reset())
+    rig.run(0.1)
+    turns = rig.sim.machine.spindle_turns()
+    rig.run(2.0)
+    assert rig.sim.machine.spindle_turns() == turns
+    assert rig.shot.actual == pytest.approx(at, abs=0.01)
+    assert rig.state in {State.HOLD, State.IDLE, State.ESTOP}
+
+
+def test_behind_a_hold_the_angle_is_asked_for_again_and_the_part_is_finished() -> None:
+    rig = orienting()
+    rig.post(FeedHold())
+    rig.run(1.0)
+    assert rig.state is State.HOLD
+    rig.post(CycleStart())
+    rig.until_true(lambda shot: shot.actual[Z] < -352.0)
+    assert held(rig)
+    rig.until(State.IDLE)
+    assert rig.shot.alarms == ()
+
+
+def test_held_in_its_hole_the_bar_stays_at_its_angle() -> None:
+    rig = begun()
+    rig.until_true(lambda shot: shot.actual[Z] < -360.0)
+    rig.post(FeedHold())
+    rig.run(1.0)
+    assert (rig.state, held(rig)) == (State.HOLD, True)
+    rig.post(CycleStart())
+    rig.until(State.IDLE)
+    assert rig.shot.alarms == ()
+
+
+def test_a_drive_that_never_arrives_is_one_alarm_and_nothing_has_moved() -> None:
+    rig = begun()
+    rig.sim.machine.spindle_never_oriented()
+    rig.until_true(lambda shot: shot.waiting_for == "SPINDLE ORIENT")
+    at = rig.shot.actual
+    took = rig.until(State.FAULT)
+    assert took == pytest.approx(MILL.spindle.timeout + 3.0 * 60.0 / MILL.spindle.orient_rpm, abs=3.0)
+    assert [alarm.code for alarm in rig.shot.alarms] == ["spindle-orient"]
+    assert rig.shot.actual == pytest.approx(at, abs=0.01)
+
+
+def test_a_drive_that_lets_its_angle_go_stops_the_bar_in_its_hole() -> None:
+    rig = begun()
+    rig.until_true(lambda shot: shot.actual[Z] < -360.0)
+    rig.sim.machine.spindle_never_oriented()
+    rig.until(State.FAULT, limit=1.0)
+    assert [alarm.code for alarm in rig.shot.alarms] == ["spindle-orient"]
+    rig.run(0.3)
+    assert rig.shot.actual[Z] > LOW + 5.0
+
+
+def test_the_spindle_switch_keeps_it_from_turning_to_an_angle() -> None:
+    rig = begun()
+    rig.until_true(lambda shot: shot.waiting_for == "SPINDLE STOP")
+    rig.sim.machine.set_spindle_auto(False)
+    rig.run(3.0)
+    turns = rig.sim.machine.spindle_turns()
+    rig.run(10.0)
+    assert rig.sim.machine.spindle_turns() == turns
+    assert rig.shot.waiting_for == "SPINDLE SWITCH OFF"
+    rig.sim.machine.set_spindle_auto(True)
+    rig.until_true(lambda shot: shot.actual[Z] < -352.0)
+    assert held(rig)
+
+
+def test_a_driver_that_cannot_is_refused_before_the_start() -> None:
+    needs = first_needs(needs_of(blocks_of()))
+    assert ORIENT in {need.what for need in needs}
+    rig = Rig(machine=replace(MILL, spindle=replace(MILL.spindle, oriented=False)))
+    context = rig.executor._context
+    assert "cannot stop it at an angle" in lacking(context, Proof("x", (), needs=needs))
+    able = Rig(machine=MILL).executor._context
+    assert lacking(able, Proof("x", (), needs=needs)) == ""
+
+
+def test_the_proof_counts_stop_and_the_longest_way_to_the_angle() -> None:
+    """M19 at 3000 rpm: down to the speed that counts as rest, .08 s of the drive, half a turn at 100 rpm."""
+    setup = setup_for(MILL, tools={1: ToolOffset()}, secondary={})
+    head = "BEGIN PGM T MM\nTOOL CALL 1 Z S3000 F500\nL Z+5 R0 FMAX M3\n"
+    whole = head + "CYCL DEF 9.0 D\nCYCL DEF 9.1 D 5\n{}M30\nEND PGM T MM\n"
+    with_it = prove(Source("T.H", whole.format("M19\n")), setup, MILL)
+    without = prove(Source("T.H", whole.format("")), setup, MILL)
+    down = 0.08 + (3000.0 - MILL.spindle.stop_below) / MILL.spindle.decel
+    assert with_it.errors == ()
+    assert with_it.times.cycle - without.times.cycle == pytest.approx(down + 0.08 + 0.3, abs=0.01)
