@@ -43,6 +43,7 @@ def soak(parts: int, seed: int, say: Callable[[str], object], keep: Callable[[Fi
         marks: dict[str, Footprint] = {}
         for number in range(LINES):
             operator.make(parts * (number + 1) // LINES - shift.shot.parts)
+            shift.saved()
             marks[str(shift.shot.parts)] = mark = footprint(data_folder())
             say(f"{shift.shot.parts:6d} parts, {shift.clock.now() / 3600:5.2f} h, {mark}\n")
             keep({**_figures(shift, operator, marks), "seed": seed})

@@ -28,6 +28,9 @@ EVERY, SAMPLE = 25, 3  # parts between two readings; readings behind which a cor
 STUCK = 300.0  # s of the machine in which somebody who does what he can must get a part
 LONGEST = 6.0  # s of a part, and somewhat more
 LOOKS = 15.0  # s after which the operator mends what he finds
+COLLET_OPEN = (
+    "with the collet open"  # the spindle was stopped while the feeder pushed: it is not started there
+)
 FEATURE = FeatureRow(0, NAME, "PIN", "diameter", 0.4 * INCH, -0.001 * INCH, 0.001 * INCH, "tool", 1, 1, 0, 1)
 CHANCES = {  # of a thousand parts so many meet it
     "hold": 20, "single block": 8, "feed pot": 25, "spindle pot": 10, "no count": 5, "give up": 5,
@@ -79,7 +82,7 @@ class Operator:
         """Until so many more are counted. Raises StuckError when none comes for long."""
         end = self.shift.shot.parts + parts
         while self.shift.shot.parts < end:
-            self._step()
+            self.step()
             if self.shift.clock.now() - self._since > STUCK:
                 raise StuckError(f"no part for {STUCK:g} s: {self.desk.notice!r} {self.shift.shot}")
 
@@ -93,13 +96,13 @@ class Operator:
             self.desk.switch("cycle_repeat")
         self._plan = None
         while self.shift.shot.state is not State.IDLE:
-            self._step()
+            self.step()
         self.shift.saved()
-        self.shift.frame()
 
     # --- what he sees, and what he does about it ------------------------------------------------------------
 
-    def _step(self) -> None:
+    def step(self) -> None:
+        """What he does about the machine of now, and a tick of it."""
         shot = self.shift.shot
         if shot.ends != self._ends:
             self._part_made()
@@ -153,8 +156,9 @@ class Operator:
         """Both palms, when the program is ready and what stands in the way was done."""
         desk, shot = self.desk, self.shift.shot
         self._loaded()
-        if shot.next_barred or "LIFE" in desk.notice or "life of T1" in shot.start_refused:
-            self._fresh_insert()
+        told = "LIFE" in desk.notice and "FRESH INSERT" not in desk.notice
+        if shot.next_barred or told or "life of T1" in shot.start_refused:
+            self.fresh_insert()
         if not shot.cycle_repeat:
             desk.switch("cycle_repeat")
         if shot.interrupted is not None:
@@ -166,7 +170,7 @@ class Operator:
         self._palms()
 
     def _go_on(self) -> None:
-        if self._gives_up:
+        if self._gives_up or COLLET_OPEN in self.shift.shot.start_refused:
             self._gives_up = False
             self.desk.reset()
             self.shift.run(0.6)
@@ -256,7 +260,7 @@ class Operator:
         worker = desk.rebuilding.renewing.worker
         self.shift.settle(lambda: book.settled and not desk.book.busy and not worker.busy)
 
-    def _fresh_insert(self) -> None:
+    def fresh_insert(self) -> None:
         """The insert has made its parts: a new one, and its wear is nought again."""
         found = self.desk.attached(QualityFunctions)
         assert found is not None
@@ -270,6 +274,8 @@ class Operator:
             self._kept()
             if self.shift.parts_book.now.lives[1].parts < made:
                 break
+        else:
+            raise StuckError(f"the insert cannot be changed: {self.desk.notice!r}")
         why = self.desk.book.change(Kind.TOOL, 1, {"wear_x": 0.0}, "fresh insert")
         assert not why, why
         self._kept()

@@ -204,8 +204,9 @@ class NightShift:
             self.frame()
 
     def saved(self) -> None:
-        """All that was posted is on the disk."""
+        """All that was posted is on the disk, and the desk has seen the machine as it is now."""
         self.store.write(lambda _connection: None).result(PATIENCE)
+        self.frame()
 
     def _jobs(self) -> dict[str, float]:
         """X of T1 of the job on the desk, by its digest; the last few that were."""

@@ -7,11 +7,12 @@ from pathlib import Path
 
 import pytest
 
+from app.desk.desk import Desk
 from core.executor.snapshot import State
 from tests.benchmarks import night_operator
 from tests.benchmarks.bench_night_shift import counted, disagreeing, drift
-from tests.benchmarks.night_operator import Operator
-from tests.benchmarks.night_shift import INCH, TOOLS, NightShift, night_shift
+from tests.benchmarks.night_operator import Operator, StuckError
+from tests.benchmarks.night_shift import INCH, PUSHING, TOOLS, NightShift, night_shift
 
 
 @pytest.fixture
@@ -25,6 +26,8 @@ def test_what_was_made_is_what_everybody_counts_and_nothing_drifts(shift: NightS
     operator = Operator(shift, 1, {})
     operator.begin()
     operator.make(2)
+    shift.saved()  # between two frames the desk would still show the part before
+    assert disagreeing(shift, operator, counted(shift)) == []
     operator.meets("E-stop")
     operator.make(1)
     operator.meets("no count")
@@ -55,6 +58,29 @@ def test_a_count_that_is_not_what_was_made_is_told(shift: NightShift) -> None:
         f"desk: {made + 1} of {made}",
         f"store: {made + 1} of {made}",
     ]
+
+
+def test_a_spindle_that_was_off_while_the_feeder_pushed_is_given_up_and_begun_anew(shift: NightShift) -> None:
+    operator = Operator(shift, 1, {})
+    operator.begin()
+    shift.run(0.3)
+    while shift.shot.line != PUSHING + 1:
+        operator.step()
+    operator.meets("spindle switch", after=0.0)
+    operator.make(1)
+    assert operator.did["start"] == 3  # in the evening; with the collet open, which is an alarm; behind it
+    assert shift.witness.truth.alarms == {"collet-open": 1}
+
+
+def test_an_insert_that_cannot_be_changed_is_told_and_not_counted(
+    shift: NightShift, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    operator = Operator(shift, 1, {})
+    operator.begin()
+    monkeypatch.setattr(Desk, "answer", Desk.clear)  # something else is always said meanwhile
+    with pytest.raises(StuckError, match="the insert cannot be changed"):
+        operator.fresh_insert()
+    assert operator.did["insert"] == 0
 
 
 def test_whoever_cannot_get_a_part_says_so_instead_of_going_on_for_ever(
