@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import gc
 import os
+from operator import itemgetter
 from pathlib import Path
 
 import pytest
@@ -70,13 +71,14 @@ def _spread(items: list[pytest.Item], folder: Path) -> list[pytest.Item]:
 
     None is among the last, where the other workers would wait for whoever has it.
     """
-    few = [item for item in items if folder in item.path.parents]
-    many = [item for item in items if folder not in item.path.parents]
+    inside = {path: folder in path.parents for path in {item.path for item in items}}
+    few = [item for item in items if inside[item.path]]
+    many = [item for item in items if not inside[item.path]]
     if not few or not many:
         return items
-    place = {item: (k + 0.5) / len(many) for k, item in enumerate(many)}
-    place |= {item: 0.95 * (k + 0.5) / len(few) for k, item in enumerate(few)}
-    return sorted(items, key=lambda item: place[item])
+    places = [((k + 0.5) / len(many), item) for k, item in enumerate(many)]
+    places += [(0.95 * (k + 0.5) / len(few), item) for k, item in enumerate(few)]
+    return [item for _place, item in sorted(places, key=itemgetter(0))]
 
 
 @pytest.hookimpl(tryfirst=True)

@@ -14,11 +14,13 @@ from typing import Any
 
 from core.store.store import Store
 from tests.stories.fork_server import ForkServer
-from tests.stories.patience import PATIENCE, throughout, until
+from tests.stories.patience import LOOK, PATIENCE, throughout, until
 from tests.stories.x11 import MODIFIERS, Server
 
 INCH = 25.4  # mm
 READS = 1.2  # s of looking at the prompt before the palms
+READ = 0.6  # s in which a question is read
+AGAIN = 3.0  # s behind which somebody does again what has done nothing
 MEANS = {"y", "F10"}
 _TRIES = 20  # of a hand that the screen has forgotten behind a stall
 NEAR = 0.01  # mm: what a slide at rest may tremble
@@ -231,6 +233,57 @@ class Operator:
         """One after the other."""
         for key in keys:
             self.key(key)
+
+    def presses(self, key: str, then: Callable[[], bool]) -> None:
+        """A key until it has done what it shall; the desk forgets what is pressed while it stands still."""
+
+        def done() -> bool:
+            if not then():
+                self.key(key)
+            return self.soon(then)
+
+        self.until(done, key)
+
+    def answers(self, key: str, question: str, then: Callable[[], bool]) -> None:
+        """A key that asks, and Y to what it asks; once more where the desk stood still meanwhile."""
+
+        def done() -> bool:
+            if then():
+                return True
+            if not self.shows(question):
+                self.key(key)
+            return self.soon(lambda: self.shows(question)) and self.says_yes(then)
+
+        self.until(done, question)
+
+    def says_yes(self, then: Callable[[], bool]) -> bool:
+        """Y to the question that stands; nobody has read one sooner than half a second after it came."""
+        self.during(READ)
+        self.key("y")
+        return self.soon(then)
+
+    def soon(self, true: Callable[[], bool]) -> bool:
+        """Whether it becomes so while somebody would wait before he does it again."""
+        end = time.monotonic() + AGAIN
+        while not true():
+            if time.monotonic() > end:
+                return False
+            self.during(LOOK)
+        return True
+
+    def jogs(self, key: str, true: Callable[[], bool], what: str) -> None:
+        """An arrow held until it is so; pressed anew where a screen that stood still has ended the jog."""
+        self.down(key)
+
+        def there() -> bool:
+            if "THE JOG HAS ENDED" in self.prompt and not true():
+                self.up(key)
+                self.during(0.1)
+                self.down(key)
+            return true()
+
+        self.until(there, what)
+        self.up(key)
 
     def down(self, *keys: str | int) -> None:
         """Keys go down and stay; the server repeats the last one. Forgotten ones are pressed anew."""

@@ -6,7 +6,7 @@ from core.alarms import CATALOGUE, Code
 from tests.stories.conftest import Story
 from tests.stories.operator import Operator, Told
 
-LONG = "G90G94F300G72\nT3\nX1.2Z.2\nM03S900\nX.8\nG94F4Z-.2\nZ-1.4\nX1.2\nG94F300Z.2\nM05\nX2Z2\nM30\n"
+LONG = "G90G94F300G72\nT3\nX1.2Z.2\nM03S900\nX.8\nG94F100Z-.2\nF4Z-.9\nX1.2\nG94F300Z.2\nM05\nX2Z2\nM30\n"
 STOPS = "G90G94F300G72\nT3\nX1.2Z.2\nM00(CHECK THE BORE)\nX1.3\nM01\nX2Z2\nM30\n"
 TOOLS = {3: (-0.5, -2.0)}
 PAGES = (
@@ -120,11 +120,7 @@ def test_every_stop_is_in_f7_with_who_or_what_stopped(story: Story) -> None:
     operator.during(0.4)
     operator.cycle_start()
     operator.reaches("PROGRAM STOP")
-    operator.key("r")
-    operator.sees("PRESS Y TO GIVE THE PROGRAM UP")
-    operator.during(0.6)  # long enough to have been read
-    operator.key("y")
-    operator.reaches("READY")
+    operator.answers("r", "PRESS Y TO GIVE THE PROGRAM UP", lambda: operator.state == "READY")
     operator.key("F7")
     for text in ("703  ·  RESET", "part.nc was given up", "705  ·  OPTIONAL STOP", "706  ·  SINGLE BLOCK"):
         operator.sees(text)

@@ -11,7 +11,7 @@ from tests.stories.conftest import Story
 from tests.stories.operator import Operator
 from tests.stories.x11 import another_client
 
-PART = "G90G94F300G72\nT3\nX1.2Z.2\nM03S900\nX.8\nG95F.005Z-.2\nZ-1.4\nX1.2\nG94F300Z.2\nM05\nX2Z2\nM30\n"
+PART = "G90G94F300G72\nT3\nX1.2Z.2\nM03S900\nX.8\nG95F.05Z-.2\nF.005Z-1\nX1.2\nG94F300Z.2\nM05\nX2Z2\nM30\n"
 TOOLS = {3: (-0.5, -2.0)}
 CUT = (-2.0 - 0.3) * 25.4  # machine Z in the middle of line 7
 
@@ -22,11 +22,8 @@ def in_the_cut(operator: Operator) -> None:
     operator.until(lambda: operator.machine["line"] == 7 and operator.slides[1] < CUT, "the cut")
 
 
-def answers_yes(operator: Operator, question: str) -> None:
-    """Nobody has read a question sooner than half a second after it came."""
-    operator.sees(question)
-    operator.during(0.6)
-    operator.key("y")
+def twists_the_estop_out(operator: Operator) -> None:
+    operator.answers("u", "PRESS Y TO TWIST THE E-STOP OUT", lambda: operator.state != "E-STOP")
 
 
 def shows_the_job_on_every_page(operator: Operator) -> None:
@@ -57,8 +54,7 @@ def test_after_an_estop_in_the_cut_both_palms_begin_nothing_and_the_job_is_shown
     in_the_cut(operator)
     operator.key("e")
     operator.reaches("E-STOP")
-    operator.key("u")
-    answers_yes(operator, "PRESS Y TO TWIST THE E-STOP OUT")
+    twists_the_estop_out(operator)
     operator.drives_on()
     shows_the_job_on_every_page(operator)
     is_not_begun_by_the_palms(operator)
@@ -78,9 +74,7 @@ def test_a_program_given_up_leaves_the_same_job_and_y_then_the_palms_begin_it_an
     in_the_cut(operator)
     operator.key("h")
     operator.reaches("FEED HOLD")
-    operator.key("r")
-    answers_yes(operator, "PRESS Y TO GIVE THE PROGRAM UP")
-    operator.reaches("READY")
+    operator.answers("r", "PRESS Y TO GIVE THE PROGRAM UP", lambda: operator.state == "READY")
     is_not_begun_by_the_palms(operator)
     operator.key("y")
     operator.sees("BEGINS AT LINE 1")
@@ -124,8 +118,7 @@ def test_the_part_is_finished_by_searchto_and_the_row_goes(story: Story) -> None
     in_the_cut(operator)
     operator.key("e")
     operator.reaches("E-STOP")
-    operator.key("u")
-    answers_yes(operator, "PRESS Y TO TWIST THE E-STOP OUT")
+    twists_the_estop_out(operator)
     operator.drives_on()
     operator.key("F6")
     operator.opens("SEARCHTO")
@@ -151,8 +144,7 @@ def test_an_answer_and_the_palms_in_one_slap_begin_nothing(story: Story, keys: t
     in_the_cut(operator)
     operator.key("e")
     operator.reaches("E-STOP")
-    operator.key("u")
-    answers_yes(operator, "PRESS Y TO TWIST THE E-STOP OUT")
+    twists_the_estop_out(operator)
     operator.drives_on()
     operator.sees("INTERRUPTED: part.nc LINE 7")
     operator.during(1.0)
@@ -174,8 +166,7 @@ def test_under_an_estop_the_prompt_of_a_field_names_keys_that_work_there(story: 
     operator.sees("U WRITES HERE; F1 LEAVES THE PAGE")
     operator.key("F1")
     operator.sees("RELEASE THE BUTTON (U), THEN PRESS D")
-    operator.key("u")
-    answers_yes(operator, "PRESS Y TO TWIST THE E-STOP OUT")
+    twists_the_estop_out(operator)
     operator.reaches("DRIVES OFF")
 
 
@@ -208,8 +199,8 @@ def test_another_program_takes_its_place_only_when_that_is_meant(story: Story) -
     operator.key("Escape")
     operator.key("F2")
     operator.enters("other.nc")
-    answers_yes(operator, "Y GIVES THAT JOB UP FOR other.nc")
-    operator.until(lambda: not operator.shows("INTERRUPTED:"), "it is given up")
+    operator.sees("Y GIVES THAT JOB UP FOR other.nc")
+    operator.until(lambda: operator.says_yes(lambda: not operator.shows("INTERRUPTED:")), "it is given up")
     assert operator.events("cleared") == [
         "part.nc line 7, T3, part 1: E-STOP; other.nc was loaded in its place"
     ]

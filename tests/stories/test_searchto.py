@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import os
 import signal
-from collections.abc import Callable
 
 import pytest
 
@@ -29,28 +28,15 @@ def tip(operator: Operator) -> tuple[float, float]:
     return 2 * (x / INCH + 0.5), z / INCH + 2.0
 
 
-def presses(operator: Operator, key: str, then: Callable[[], bool]) -> None:
-    """Once more where the desk stood still: what was pressed meanwhile was forgotten, and that is told."""
-
-    def done() -> bool:
-        if then():
-            return True
-        operator.key(key)
-        operator.during(1.5)
-        return then()
-
-    operator.until(done, key)
-
-
 def wakes(operator: Operator) -> None:
     operator.reaches("DRIVES OFF", "ALARM")
     if operator.state == "ALARM":  # a computer that stood still at its start
-        presses(operator, "r", lambda: operator.state != "ALARM")
-    presses(operator, "d", lambda: operator.state == "READY")
+        operator.presses("r", lambda: operator.state != "ALARM")
+    operator.presses("d", lambda: operator.state == "READY")
 
 
 def to_searchto(operator: Operator) -> None:
-    presses(operator, "F6", lambda: operator.page == "SEARCHTO")
+    operator.presses("F6", lambda: operator.page == "SEARCHTO")
 
 
 def in_the_second_groove(operator: Operator) -> None:
@@ -69,15 +55,13 @@ def stopped_there(operator: Operator) -> None:
     in_the_second_groove(operator)
     operator.key("e")
     operator.reaches("E-STOP")
-    presses(operator, "u", lambda: operator.shows("PRESS Y TO TWIST THE E-STOP OUT"))
-    operator.during(0.6)
-    presses(operator, "y", lambda: operator.state != "E-STOP")
+    operator.answers("u", "PRESS Y TO TWIST THE E-STOP OUT", lambda: operator.state != "E-STOP")
     wakes(operator)
     assert 0.7 < tip(operator)[0] < 1.0
 
 
 def confirms(operator: Operator) -> None:
-    presses(operator, "F10", lambda: operator.shows("CONFIRMED"))
+    operator.presses("F10", lambda: operator.shows("CONFIRMED"))
     operator.during(1.0)  # what starts was read before it starts
     operator.cycle_start()
     operator.until(lambda: operator.state != "READY", "the start")
@@ -112,7 +96,7 @@ def test_only_the_way_out_is_asked_for_held_and_asked_for_again(story: Story) ->
     stopped_there(operator)
     since, stood = len(operator.seen), operator.rests()
     to_searchto(operator)
-    presses(operator, "F4", lambda: operator.shows("LOOK AT THE WAY OUT"))
+    operator.presses("F4", lambda: operator.shows("LOOK AT THE WAY OUT"))
     operator.sees("LOOK AT THE WAY OUT OF THE PART")
     operator.sees("THE TOOL LEAVES THE PART AT 20.00 in/min")
     operator.cycle_start()  # not before it was confirmed

@@ -49,11 +49,7 @@ def test_the_letters_that_stop_do_so_with_any_modifier(story: Story) -> None:
 
 def released(operator: Operator) -> None:
     """The E-stop is twisted out by its own two keys, and the drives are on again."""
-    operator.key("u")
-    operator.sees("PRESS Y TO TWIST")
-    operator.during(0.6)
-    operator.key("y")
-    operator.reaches("DRIVES OFF")
+    operator.answers("u", "PRESS Y TO TWIST", lambda: operator.state == "DRIVES OFF")
     operator.key("d")
     operator.reaches("READY")
 
