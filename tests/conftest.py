@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import gc
 import os
-from operator import itemgetter
+from itertools import groupby
+from operator import attrgetter, itemgetter
 from pathlib import Path
 
 import pytest
@@ -19,6 +20,16 @@ from tests.named import SAFETY, not_run
 from tests.steady_examples import same_examples_whatever_is_loaded
 
 HERE = Path(__file__).parent
+STORIES = "stories"
+WAIT = (
+    STORIES,
+    "killed",
+    "shopfloor",
+    "drivers/feeder",
+    "drivers/grblhal",
+    "drivers/hal",
+    "drivers/transfer",
+)
 settings.register_profile("steady", derandomize=True, deadline=None)
 settings.register_profile("search", deadline=None)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "steady"))
@@ -53,8 +64,8 @@ class SafetyRan:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Tells a story among other tests: it mostly waits, and they reckon."""
-    items[:] = _spread(items, HERE / "stories")
+    """Tells what mostly waits, for a machine or another process, among the tests that reckon."""
+    items[:] = _spread(items)
 
 
 def pytest_collection_finish() -> None:
@@ -66,19 +77,27 @@ def pytest_collection_finish() -> None:
     gc.freeze()
 
 
-def _spread(items: list[pytest.Item], folder: Path) -> list[pytest.Item]:
-    """The same items, those of a folder at even distances among the others; each kind in its order.
+def _spread(items: list[pytest.Item]) -> list[pytest.Item]:
+    """The same items, stories and files of tests that wait at even distances among the others.
 
-    None is among the last, where the other workers would wait for whoever has it.
+    Each kind is in its order. None is among the last, where the other workers would wait for whoever has it.
     """
-    inside = {path: folder in path.parents for path in {item.path for item in items}}
-    few = [item for item in items if inside[item.path]]
-    many = [item for item in items if not inside[item.path]]
-    if not few or not many:
-        return items
-    places = [((k + 0.5) / len(many), item) for k, item in enumerate(many)]
-    places += [(0.95 * (k + 0.5) / len(few), item) for k, item in enumerate(few)]
-    return [item for _place, item in sorted(places, key=itemgetter(0))]
+    waits = {path: _kind(path) for path in {item.path for item in items}}
+    reckoning = [[item] for item in items if not waits[item.path]]
+    stories = [[item] for item in items if waits[item.path] == STORIES]
+    others = [item for item in items if waits[item.path] not in {"", STORIES}]
+    files = [list(group) for _path, group in groupby(others, key=attrgetter("path"))]
+    places = [
+        (last * (k + 0.5) / len(groups), group)
+        for groups, last in ((reckoning, 1.0), (stories, 0.95), (files, 0.95))
+        for k, group in enumerate(groups)
+    ]
+    return [item for _place, group in sorted(places, key=itemgetter(0)) for item in group]
+
+
+def _kind(path: Path) -> str:
+    """The folder of ``WAIT`` in which it lies, or empty."""
+    return next((name for name in WAIT if HERE / name in path.parents), "")
 
 
 @pytest.hookimpl(tryfirst=True)

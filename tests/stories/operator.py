@@ -244,22 +244,22 @@ class Operator:
 
         self.until(done, key)
 
-    def answers(self, key: str, question: str, then: Callable[[], bool]) -> None:
-        """A key that asks, and Y to what it asks; once more where the desk stood still meanwhile."""
+    def answers(self, key: str, question: str, then: Callable[[], bool], yes: str = "y") -> None:
+        """A key that asks, and yes to what it asks; once more where the desk stood still meanwhile."""
 
         def done() -> bool:
             if then():
                 return True
             if not self.shows(question):
                 self.key(key)
-            return self.soon(lambda: self.shows(question)) and self.says_yes(then)
+            return self.soon(lambda: self.shows(question)) and self.says_yes(then, yes)
 
         self.until(done, question)
 
-    def says_yes(self, then: Callable[[], bool]) -> bool:
-        """Y to the question that stands; nobody has read one sooner than half a second after it came."""
+    def says_yes(self, then: Callable[[], bool], yes: str = "y") -> bool:
+        """Yes to the question that stands; nobody has read one sooner than half a second after it came."""
         self.during(READ)
-        self.key("y")
+        self.key(yes)
         return self.soon(then)
 
     def soon(self, true: Callable[[], bool]) -> bool:

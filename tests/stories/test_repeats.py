@@ -11,6 +11,7 @@ from tests.stories.operator import Operator
 PART = "G90G94T1\nM03S600\nG01X.5Z.5F5\nX0Z0\nM30\n"
 TOOLS = {1: (0.0, 0.0)}
 HELD = 2.0  # s: dozens of repeats
+TRIES = 8  # of what a computer that stands still ends, and rightly
 
 
 def ready(story: Story) -> Operator:
@@ -73,8 +74,7 @@ def test_reset_held_never_gives_a_program_up(story: Story) -> None:
     operator.key("y")  # while the key that asked is down it is no answer
     operator.up("r")
     operator.keeps(lambda: operator.state == "FEED HOLD", 0.5, "the program")
-    operator.key("y")
-    operator.reaches("READY")
+    operator.answers("r", "PRESS Y TO GIVE THE PROGRAM UP", lambda: operator.state == "READY")
 
 
 def test_an_answer_typed_with_the_question_is_none(story: Story) -> None:
@@ -104,12 +104,20 @@ def test_a_held_jog_goes_on_as_long_as_it_is_held(story: Story) -> None:
     operator = ready(story)
     operator.keys("F1", "F5")
     operator.opens("JOG")
+    assert any(jogs_through(operator) for _ in range(TRIES)), "the jog through its repeats"
+    operator.rests()
+
+
+def jogs_through(operator: Operator) -> bool:
+    """Whether the jog has gone on all the while; a computer that stands still ends it, and rightly."""
     operator.down("Right")
-    operator.reaches("JOG")
-    operator.keeps(lambda: operator.state == "JOG", HELD, "the jog through its repeats")
+    operator.until(lambda: operator.state == "JOG" or "HAS ENDED" in operator.prompt, "the jog")
+    since = len(operator.seen) - 1
+    operator.during(HELD)
+    went_on = all(each["state"] == "JOG" for each in operator.seen[since:])
     operator.up("Right")
     operator.reaches("READY")
-    operator.rests()
+    return went_on
 
 
 def test_return_held_switches_no_output(story: Story) -> None:
@@ -119,11 +127,10 @@ def test_return_held_switches_no_output(story: Story) -> None:
     before = operator.machine["outputs"]
     operator.holds("Return", HELD)
     operator.keys("Return", "Return")
-    operator.sees("PRESS Y TO SWITCH coolant ON")
+    asked = "PRESS Y TO SWITCH coolant ON"
+    operator.sees(asked)
     assert operator.machine["outputs"] == before
-    operator.during(0.6)
-    operator.key("y")
-    operator.until(lambda: "coolant" in operator.machine["outputs"], "coolant")
+    operator.answers("Return", asked, lambda: "coolant" in operator.machine["outputs"])
 
 
 def test_delete_held_deletes_nothing(story: Story) -> None:
@@ -139,9 +146,7 @@ def test_delete_held_deletes_nothing(story: Story) -> None:
     operator.keys("F6", "F6")
     operator.sees("PRESS Y TO DELETE mine.nc")
     assert (programs / "mine.nc").exists()
-    operator.during(0.6)
-    operator.key("y")
-    operator.until(lambda: not (programs / "mine.nc").exists(), "deleted")
+    operator.answers("F6", "PRESS Y TO DELETE mine.nc", lambda: not (programs / "mine.nc").exists())
 
 
 def test_f10_held_leaves_no_text_unsaved(story: Story) -> None:
@@ -171,14 +176,12 @@ def test_offsets_are_not_cleared_by_a_held_key(story: Story) -> None:
     operator.sees("PRESS Y TO CLEAR ALL 32")
     with operator.store() as store:
         assert 5 in store.secondary()
-    operator.during(0.6)
-    operator.key("y")
 
     def cleared() -> bool:
         with operator.store() as store:
             return not store.secondary()
 
-    operator.until(cleared, "the offsets cleared")
+    operator.answers("c", "PRESS Y TO CLEAR ALL 32", cleared)
 
 
 def test_a_switch_held_turns_once(story: Story) -> None:
@@ -212,6 +215,5 @@ def test_home_held_homes_nothing(story: Story) -> None:
     operator.keys("Home", "Home")
     operator.sees("PRESS RETURN FOR ALL")
     assert operator.state == "READY"
-    operator.during(0.6)
-    operator.key("Return")
+    operator.answers("Home", "PRESS RETURN FOR ALL", lambda: operator.state != "READY", yes="Return")
     operator.reaches("HOMING")
