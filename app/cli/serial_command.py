@@ -221,8 +221,7 @@ def _tell(told: str, reach: TransferProgress) -> str:
 
 def carry(transfer: Transfer[T], what: str) -> T | None:
     """What it answers; None when it came to nothing, which has then been said in one sentence."""
-    from concurrent.futures import ThreadPoolExecutor
-    from concurrent.futures import TimeoutError as NotYetError
+    from concurrent.futures import ThreadPoolExecutor, wait
 
     from app.cli.progress_bar import Progress
     from app.programs.whole_file import FileError
@@ -231,15 +230,11 @@ def carry(transfer: Transfer[T], what: str) -> T | None:
     with ThreadPoolExecutor(1, thread_name_prefix="serial") as pool, Progress(what) as progress:
         future, told = pool.submit(transfer.run), ""
         try:
-            while True:
-                try:
-                    return future.result(_LOOK)
-                except NotYetError:
-                    if future.done():
-                        raise
-                    progress.total = transfer.reach.total
-                    progress.reach(transfer.reach.done)
-                    told = _tell(told, transfer.reach)
+            while not wait([future], _LOOK).done:
+                progress.total = transfer.reach.total
+                progress.reach(transfer.reach.done)
+                told = _tell(told, transfer.reach)
+            return future.result()
         except (DriverError, FileError) as error:
             sys.stderr.write(f"turndesk: {error}\n")
             return None

@@ -65,7 +65,7 @@ from core.ports import Clock, DriverError
 from core.store.backup import problems as backup_problems
 from core.store.store_errors import StoreError
 from core.store.store_rows import EventRow
-from drivers.clocks import RealClock, StepClock
+from drivers.clocks import RealClock
 
 # Threads beside the executor, and what an operator misses when they end.
 SUPERVISED = {
@@ -340,8 +340,3 @@ def _editor(work: LoadingSteps, journal: Journal | None, machine: Machine) -> Ed
     """The editor proves what is being typed without keeping a version of every key."""
     ending = usual_ending(Dialect(machine.language))
     return Editor(work, journal or NoArchive(), data_folder() / "programs", samples(), usual_ending=ending)
-
-
-def step_clock() -> StepClock:
-    """A clock for scripts that move time themselves."""
-    return StepClock()

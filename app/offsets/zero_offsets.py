@@ -9,9 +9,7 @@ from app.desk.prompt_line import UNDER_WAY
 from app.desk.translation import tr
 from app.offsets.cell_table import CellTable
 from core.executor.snapshot import Snapshot, State
-from core.store.store_rows import FIELDS, ZERO_CODES, Kind
-
-ZERO_FIELDS = tuple(FIELDS[Kind.ZERO])
+from core.store.store_rows import ZERO_CODES, Kind
 
 
 class ZeroOffsets(CellTable):

@@ -13,7 +13,6 @@ from app.path.part_player import PartPlayer
 from app.screen.look import CENTRE, LEFT, Look, draw_sign, put
 from app.screen.panel import Press
 
-HEIGHT = 6.8  # units
 _KEY = 6.6  # units: width of a key
 _STOCK = 9.0  # the one that opens the stock
 _WORDS = 15.0  # units: time and line at the right

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple, TypeVar
 
-from app.desk.formats import file_size, local_time
+from app.desk.formats import file_size
 from core.file_placing import put_in_place
 from core.records.record import Record
 from core.records.record_file import ENDING
@@ -173,8 +173,3 @@ def instant_of(record: Record) -> float:
         return float(record.times[0]) + float(told)
     except ValueError:
         return float(record.times[-1])
-
-
-def day_of(record: Record) -> str:
-    """When its first sample was taken, in words."""
-    return local_time(time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime(record.started)))

@@ -227,8 +227,3 @@ def extent(elements: Iterable[Element]) -> tuple[float, float]:
     """Least and greatest Z."""
     boxes = [each.box for each in elements]
     return min((b[2] for b in boxes), default=0.0), max((b[3] for b in boxes), default=0.0)
-
-
-def angle_of(way: Point) -> float:
-    """Of a direction: from Z+ towards r+, rad."""
-    return math.atan2(way[0], way[1])

@@ -44,15 +44,21 @@ def _calls_of(dialect: Dialect) -> Callable[[Source], Iterator[str]] | None:
 
 
 def _read(name: str, folders: Sequence[Path], dialect: Dialect) -> Source | None:
+    for path in _places(name, folders, dialect):
+        try:
+            if path.is_file():
+                return load_source(path, dialect)
+        except SourceError:
+            return None
+    return None
+
+
+def _places(name: str, folders: Sequence[Path], dialect: Dialect) -> Iterator[Path]:
+    """Where a file of this name may lie, the likeliest first: no folder is listed without need."""
     for each in (name, *_also(name, dialect)):
         for folder in folders:
-            for path in (folder / each.lower(), *_same_name(folder, each)):
-                try:
-                    if path.is_file():
-                        return load_source(path, dialect)
-                except SourceError:
-                    return None
-    return None
+            yield folder / each.lower()
+            yield from _same_name(folder, each)
 
 
 def _also(name: str, dialect: Dialect) -> tuple[str, ...]:

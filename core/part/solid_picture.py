@@ -20,7 +20,6 @@ from core.part.surface_points import AWAY, Floats, IntArray, Patch, Solid, Surfa
 Image = npt.NDArray[np.uint32]
 Numbers = npt.NDArray[np.int64]
 Bools = npt.NDArray[np.bool_]
-Doubles = npt.NDArray[np.float64]
 Codes = npt.NDArray[np.int16]
 Spans = tuple[tuple[float, float], ...]
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 from core.language.source import Dialect
 from core.part.tool_shape import ToolKind
@@ -150,8 +150,3 @@ def _read(each: Field, said: str) -> Value | None:
     if each.kind in WORDS:
         return next((choice for choice in each.choices if choice.replace(" ", "") == said), None)
     return from_comment(said)
-
-
-def with_rows(one: Filled, rows: tuple[Row, ...]) -> Filled:
-    """The same with another contour."""
-    return replace(one, rows=rows)

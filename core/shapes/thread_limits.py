@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from core.shapes.thread_series import METRIC, TAPERED, UNIFIED, Series, ThreadSize
 
 V60 = math.sqrt(3.0) / 2.0  # height of a sharp V of 60° in pitches
-V55 = 0.960491  # of 55°
 _PIPE_HEIGHT = 0.8  # of an NPT thread, in pitches; ASME B1.20.1
 _WHITWORTH = 0.640327  # of a 55° thread; ISO 228-1
 _TAPER = 1.0 / 16.0  # on the diameter

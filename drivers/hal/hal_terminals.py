@@ -10,7 +10,6 @@ from drivers.hal.hal_config import HalConfig
 from drivers.hal.hal_index import SpindleIndex
 from drivers.hal.hal_link import HalLink
 
-_TAKES = 0.3  # s in which HAL must have taken an order
 _STANDS = 5.0  # rpm
 
 

@@ -103,7 +103,6 @@ class PowerStates:
 
 
 QUEUE = 64  # records
-LOW = 4
 EMCY_UNDERFLOW, EMCY_OVERFLOW, EMCY_FOLLOWING = 0xFF0C, 0xFF0D, 0x8611
 _MODES = 0x01 | 0x20 | 0x40 | 0x80  # PP, HM, IP, CSP in 0x6502
 _HOME_SETTLE = 0.1  # s

@@ -20,7 +20,7 @@ from PySide6.QtGui import QImage
 from PySide6.QtWidgets import QApplication
 
 from app.compose.journal import Journal
-from app.compose.screen_desk import desk_and_executor, step_clock
+from app.compose.screen_desk import desk_and_executor
 from app.compose.stored_offsets import read_offsets
 from app.compose.workshop import samples
 from app.desk.desk import Desk
@@ -37,6 +37,7 @@ from core.store.part_cycles import CycleRow, StopRow
 from core.store.store import Store
 from core.store.store_rows import Kind
 from core.store.tool_lives import LifeRow
+from drivers.clocks import StepClock
 from tests.screen.picture_shop import put_drawing, share_with_another
 
 SIZES = ((1024, 600), (1920, 1080), (3840, 2160))
@@ -60,7 +61,7 @@ class Stage:
     """One desk on the simulated lathe, moved by hand."""
 
     def __init__(self, journal: Journal | None = None, machine: str | None = None) -> None:
-        self.clock = step_clock()
+        self.clock = StepClock()
         self.desk, self._executor = desk_and_executor(
             machine, lambda: read_offsets(samples() / "offsets.toml"), self.clock, journal
         )

@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QApplication
 
 from app.compose.machine_files import load_machine
 from app.compose.machine_setup import setup_for
-from app.compose.screen_desk import desk_and_executor, step_clock
+from app.compose.screen_desk import desk_and_executor
 from app.compose.stored_offsets import Offsets
 from app.screen.look import Look
 from app.screen.main_window import MainWindow
@@ -21,6 +21,7 @@ from core.interpreter.job_setup import SecondaryOffset, ToolOffset
 from core.language.source import load_source
 from core.proving.proof_report import Report
 from core.proving.prove_program import prove
+from drivers.clocks import StepClock
 from tests.screen.hands import Key
 from tests.worked import worked
 
@@ -52,7 +53,7 @@ class Lathe:
     """The desk with its window, on a clock that the test moves; a frame is drawn every few ticks."""
 
     def __init__(self) -> None:
-        self.clock = step_clock()
+        self.clock = StepClock()
         self.desk, self._executor = desk_and_executor(None, lambda: OFFSETS, self.clock)
         self.desk.hands.clock = self.clock.now
         self.window = MainWindow(Look(DARK))

@@ -12,7 +12,7 @@ from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from app.automatic.automatic_view import AutomaticPage
-from app.compose.screen_desk import desk_and_executor, step_clock
+from app.compose.screen_desk import desk_and_executor
 from app.compose.stored_offsets import read_offsets
 from app.compose.workshop import samples
 from app.editor.editor_view import EditorPage
@@ -24,6 +24,7 @@ from app.screen.theme import DARK
 from app.searchto.searchto_view import SearchtoPage
 from core.executor.snapshot import Snapshot, State
 from core.store.store import Store
+from drivers.clocks import StepClock
 from tests.screen.hands import Key
 from tests.screen.yes import yes
 
@@ -35,7 +36,7 @@ class Mill:
     """The desk on the simulated mill, on a clock that the test moves, and the window in front of it."""
 
     def __init__(self, folder: Path, machine: str = "ac-table-mill") -> None:
-        self._clock = step_clock()
+        self._clock = StepClock()
         offsets = samples() / "offsets.toml"
         self.desk, self._executor = desk_and_executor(machine, lambda: read_offsets(offsets), self._clock)
         self._store = Store.open(folder)

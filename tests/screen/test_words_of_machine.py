@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from app.compose.machine_files import shipped_machine
-from app.compose.screen_desk import desk_and_executor, step_clock
+from app.compose.screen_desk import desk_and_executor
 from app.compose.stored_offsets import read_offsets
 from app.compose.workshop import samples
 from app.desk.readouts import spindle_figures
@@ -17,6 +17,7 @@ from app.quality.trends_section import TrendsSection
 from app.screen.page_table import menu_keys
 from app.special.inputs_outputs import InputsOutputs
 from core.executor.snapshot import Snapshot
+from drivers.clocks import StepClock
 from tests.screen.hands import Hands
 
 
@@ -76,7 +77,7 @@ def test_a_feature_is_corrected_by_what_this_machine_has(
     found = {}
     for name in ("gt75", "sinumerik-live", "ac-table-mill"):
         desk, _executor = desk_and_executor(
-            name, lambda: read_offsets(samples() / "offsets.toml"), step_clock()
+            name, lambda: read_offsets(samples() / "offsets.toml"), StepClock()
         )
         pages = desk.attached(QualityFunctions)
         features, readings, *_, trends = pages.functions

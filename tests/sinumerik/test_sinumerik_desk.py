@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from app.compose.journal import Journal
-from app.compose.screen_desk import desk_and_executor, step_clock
+from app.compose.screen_desk import desk_and_executor
 from app.compose.stored_offsets import stored_offsets
 from app.desk.desk import Desk
 from app.desk.machine_status import status_of
@@ -41,7 +41,7 @@ class Bench:
         (home / "programs").mkdir(parents=True)
         (home / "programs" / "part.mpf").write_text(MAIN)
         (home / "programs" / "facet.spf").write_text(SUB)
-        self.clock: StepClock = step_clock()
+        self.clock: StepClock = StepClock()
         self.journal = Journal(home)
         made = desk_and_executor("sinumerik-modulo", stored_offsets, self.clock, self.journal)
         self.desk: Desk = made[0]

@@ -68,11 +68,6 @@ class PathRunner:
         self._direction: Point | None = None  # in which the path has come there
 
     @property
-    def compensated(self) -> bool:
-        """Whether radius compensation is on."""
-        return bool(self._side)
-
-    @property
     def waits_for(self) -> str:
         """What the path waits for, so that no pass can begin here; empty where it waits for nothing."""
         if self._side:

@@ -102,7 +102,6 @@ class Program:
     names_units: bool  # G70 or G71 stands somewhere
     m_codes: tuple[Statement, ...]  # lines whose M code only the machine file can know
     asks: tuple[Statement, ...] = ()  # lines that call a subroutine by an input
-    deletes: bool = False  # / stands somewhere
     calls: tuple[tuple[int, int], ...] = ()  # line of each call or contour by a subroutine, and its number
 
     def for_one_pass(self) -> Program:
@@ -217,7 +216,6 @@ def read_program(source: Source, strict: bool = False) -> Program:
         names_units=any({70, 71}.intersection(statement.modal) for statement in reader.statements),
         m_codes=tuple(statement for statement in reader.statements if of_machine_file(statement)),
         asks=tuple(statement for statement in reader.statements if statement.asks),
-        deletes=any(statement.block_delete for statement in reader.statements),
         calls=tuple(_calls(reader.statements)),
     )
 

@@ -75,11 +75,6 @@ class RowStreams:
         """Rows written and not yet played."""
         return self.last - self.played
 
-    @property
-    def changing(self) -> bool:
-        """Whether a change to the other stream is under way."""
-        return self._change is not None
-
     def write(self, t: float, values: tuple[float, ...]) -> bool:
         """One more row, due at ``t``; False where the stream is full."""
         stream = self._streams[self._active if self._change is None else 1 - self._active]
@@ -190,10 +185,6 @@ class RowStreams:
         self._drain(1 - plays)
         self._active = plays
         return changed
-
-    def drained(self) -> bool:
-        """Whether the stream that plays has nothing left."""
-        return not self._streams[self._active].depth
 
     def _drain(self, which: int) -> None:
         stream = self._streams[which]

@@ -12,7 +12,7 @@ from PySide6.QtWidgets import QWidget
 from pytestqt.qtbot import QtBot
 
 from app.compose.journal import Journal
-from app.compose.screen_desk import desk_and_executor, step_clock
+from app.compose.screen_desk import desk_and_executor
 from app.compose.stored_offsets import NONE
 from app.editor.editor import Editor, Stage, enter
 from app.editor.heading_view import editor_places
@@ -21,6 +21,7 @@ from app.editor.versions_view import local_time
 from app.screen.look import Look
 from app.screen.theme import DARK, LIGHT
 from core.language.source import Dialect
+from drivers.clocks import StepClock
 from tests.editor.shop import GOOD
 
 
@@ -103,7 +104,7 @@ def test_nothing_overlaps(width: int, height: int, u: float, asking: bool) -> No
 def test_versions_are_in_the_store(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("TURNDESK_HOME", str(tmp_path))
     journal = Journal.at_home()
-    desk, executor = desk_and_executor(None, lambda: NONE, step_clock(), journal)
+    desk, executor = desk_and_executor(None, lambda: NONE, StepClock(), journal)
     executor.tick()
     editor = desk.attached(Editor)
     assert editor is not None
