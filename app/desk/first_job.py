@@ -12,6 +12,7 @@ from app.desk.translation import tr
 from core.executor.snapshot import CYCLE, Snapshot
 
 CLOSE = "×"  # what the card's key presses, and shows
+_COUNTED = (("P", "NO COUNT"),)  # no lamp shows it while it is off, so a finger has it here
 
 
 class Step(NamedTuple):
@@ -19,6 +20,7 @@ class Step(NamedTuple):
 
     title: str
     how: str
+    keys: tuple[tuple[str, str], ...] = ()
 
 
 STEPS = (
@@ -28,8 +30,8 @@ STEPS = (
         "F8 NAMES THOSE THAT NOBODY HAS SET; F1, F5: T AND ITS NUMBER, THEN X AND Z, OR C FOR A SKIM CUT",
     ),
     Step("PROVE IT", "WITH THE NEW OFFSET IT IS PROVED BY ITSELF; WHAT IS FOUND STANDS ON B (PART)"),
-    Step("DRY RUN", "P (NO COUNT), D, THEN BOTH PALMS; H HOLDS. LOOK AT EVERY MOVE, WITHOUT STOCK"),
-    Step("FIRST PART", "P AGAIN, PUT STOCK IN, BOTH PALMS; THEN MEASURE IT: F9 CORRECTS WEAR"),
+    Step("DRY RUN", "P (NO COUNT), D, THEN BOTH PALMS; H HOLDS. LOOK AT EVERY MOVE, WITHOUT STOCK", _COUNTED),
+    Step("FIRST PART", "P AGAIN, PUT STOCK IN, BOTH PALMS; THEN MEASURE IT: F9 CORRECTS WEAR", _COUNTED),
 )
 
 
@@ -68,4 +70,5 @@ class FirstJob:
             return NoticeRow(tr("FIRST JOB: DONE"), tr("F10, 7 SHOWS THIS CARD AGAIN"), keys, "run")
         step = STEPS[self.at]
         head = tr("FIRST JOB, STEP {number} OF {count}").format(number=self.at + 1, count=len(STEPS))
-        return NoticeRow(f"{head}: {tr(step.title)}", tr(step.how), keys, "wait")
+        own = tuple((name, tr(label)) for name, label in step.keys)
+        return NoticeRow(f"{head}: {tr(step.title)}", tr(step.how), (*own, *keys), "wait")

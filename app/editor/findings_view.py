@@ -69,16 +69,22 @@ class FindingList(Panel):
 
     def wheelEvent(self, event: QWheelEvent) -> None:
         """One row a notch."""
+        self._leaf_by(-round(event.angleDelta().y() / 120))
+
+    def _leaf_by(self, rows: int) -> None:
         most = max(0, len(self.findings.diagnostics) - self._rows)
-        self._top = max(0, min(most, self._top - round(event.angleDelta().y() / 120)))
+        self._top = max(0, min(most, self._top + rows))
         self.update()
 
     def draw(self, painter: Painter) -> None:
         u, high = self.look.u, self._high
         self.frame(painter, self.words)
         shown = self.findings.diagnostics[self._top : self._top + self._rows]
+        room = QRectF(0.6 * u, 2.3 * u, self.width() - 1.2 * u, self.height() - 2.5 * u)
+        seen = (self._top, self._rows, len(self.findings.diagnostics))
+        room = self.leaf(painter, room, seen, self._leaf_by)
         for place, found in enumerate(shown):
-            box = QRectF(0.6 * u, 2.3 * u + place * high, self.width() - 1.2 * u, high)
+            box = QRectF(room.x(), room.y() + place * high, room.width(), high)
             self._row(painter, box, found)
 
     def _row(self, painter: Painter, box: QRectF, found: Diagnostic) -> None:

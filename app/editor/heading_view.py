@@ -13,7 +13,7 @@ from app.desk.translation import tr
 from app.screen.code_choices_view import CODE_LINE
 from app.screen.look import CENTRE, RIGHT, Look, Painter
 from app.screen.panel import Panel, Shown
-from app.screen.window_layout import Rect
+from app.screen.window_layout import FINGER, Rect
 
 KEYS = 14.0  # units: width of the place that shows the keyboard, and of that which opens the shapes
 
@@ -110,7 +110,7 @@ def editor_places(width: int, height: int, u: float, *, asking: bool, keys: floa
         return EditorPlaces(head, body, NOWHERE, NOWHERE, NOWHERE, NOWHERE, ask, keyboard, body)
     text = Rect(0, top, round(0.56 * width), body.h)
     x = text.right + gap
-    findings_h, code_h = round(min(0.34 * body.h, 24 * u)), round(CODE_LINE * u)
+    findings_h, code_h = round(min(0.34 * body.h, 24 * u)), max(FINGER, round(CODE_LINE * u))
     path = Rect(x, top, width - x, body.h - findings_h - code_h - 2 * gap)
     findings = Rect(x, path.bottom + gap, path.w, findings_h)
     code = Rect(x, findings.bottom + gap, path.w, code_h)

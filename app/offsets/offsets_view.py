@@ -90,13 +90,19 @@ class HistoryList(Panel):
 
     def wheelEvent(self, event: QWheelEvent) -> None:
         """Three changes a notch."""
-        self.look_at(self.top - round(event.angleDelta().y() / 40))
+        self.leaf_by(-round(event.angleDelta().y() / 40))
+
+    def leaf_by(self, rows: int) -> None:
+        """So many changes further down."""
+        self.look_at(self.top + rows)
 
     def draw(self, painter: Painter) -> None:
         u, room = self.look.u, self.inside()
         if not self.entries:
             head = QRectF(room.x(), room.y(), room.width(), 3 * u)
             painter.write(head, "No offset was changed yet.", 2.0, "soft", bold=False)
+        room.setHeight(self.rows * ROW * u)
+        room = self.leaf(painter, room, (self.top, self.rows, len(self.entries)), self.leaf_by)
         for place, entry in enumerate(self.entries[self.top : self.top + self.rows]):
             self._entry(painter, QRectF(room.x(), room.y() + place * ROW * u, room.width(), ROW * u), entry)
 
@@ -180,7 +186,7 @@ class OffsetPage(ModelPage):
     def typed(self, key: str) -> bool:
         """Figures and signs are the entry's; letters stay what they are everywhere, but for C and remarks."""
         if self.history.isVisible() and key in {"Page up", "Page down"}:
-            self.history.look_at(self.history.top + (1 if key == "Page down" else -1) * self.history.rows)
+            self.history.leaf_by((1 if key == "Page down" else -1) * self.history.rows)
             return True
         return self.model.typed(key)
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 
-from PySide6.QtCore import QPointF, QRectF, Qt
-from PySide6.QtGui import QPolygonF, QWheelEvent
+from PySide6.QtCore import QRectF
+from PySide6.QtGui import QWheelEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk.machine_status import MachineStatus
@@ -23,7 +23,7 @@ from app.screen.tool_tip_drawing import draw_tip
 from core.executor.snapshot import Snapshot
 from core.tool_edges import edge_of, tool_of
 
-NUMBER, SCROLL = 5.4, 7.4  # units: width of the column of numbers, of the arrows that leaf
+NUMBER = 5.4  # units: width of the column of numbers
 HEAD = 3.2  # units: height of the names of the columns
 # Widths of the columns in parts of what is left.
 SHARES = {
@@ -81,12 +81,12 @@ class ToolTable(Panel):
             title += "  ·  " + tr("X AND Z FROM THE MASTER T{number}").format(number=model.book.master)
         self.frame(painter, title)
         room = self.inside().adjusted(-0.7 * u, -0.2 * u, 0.7 * u, 0.5 * u)
-        head = QRectF(room.x(), room.y(), room.width() - SCROLL * u, HEAD * u)
-        strip = room.adjusted(room.width() - (SCROLL - 0.6) * u, HEAD * u, 0, 0)
-        self._leaf(painter, strip)
+        body = room.adjusted(0, HEAD * u, 0, 0)
+        body = self.leaf(painter, body, (self.top, model.page, len(model.rows)), self._leaf)
+        head = QRectF(body.x(), room.y(), body.width(), HEAD * u)
         columns = self._columns(head)
         self._head(painter, head, columns)
-        high = strip.height() / model.page
+        high = body.height() / model.page
         for place, number in enumerate(model.rows[self.top : self.top + model.page]):
             row = QRectF(head.x(), head.bottom() + place * high, head.width(), high)
             self._row(painter, row, number, columns)
@@ -97,23 +97,9 @@ class ToolTable(Panel):
             cell = QRectF(left, head.y(), wide - 0.4 * u, head.height())
             painter.write(cell, heading(name, mode), 1.5, "soft", at=CENTRE, margin=0.2)
 
-    def _leaf(self, painter: Painter, strip: QRectF) -> None:
-        """Two large arrows: a page up and a page down."""
-        look, u = self.look, self.look.u
-        half = (strip.height() - 0.6 * u) / 2
-        for number, (key, sign) in enumerate((("Page up", -1), ("Page down", 1))):
-            box = QRectF(strip.x(), strip.y() + number * (half + 0.6 * u), strip.width(), half)
-            painter.fill(box, "key")
-            at, size = box.center(), 1.2 * u
-            painter.setPen(Qt.PenStyle.NoPen)
-            painter.setBrush(look.colour("accent"))
-            tip = QPointF(at.x(), at.y() + sign * size)
-            foot = at.y() - sign * size
-            painter.drawPolygon(QPolygonF([tip, QPointF(at.x() - size, foot), QPointF(at.x() + size, foot)]))
-            self.place(box, partial(self._press, key))
-
-    def _press(self, key: str) -> None:
-        self._model.typed(key)
+    def _leaf(self, rows: int) -> None:
+        """A page further: the cursor goes along, and is always in sight."""
+        self._model.typed("Page down" if rows > 0 else "Page up")
 
     def _columns(self, room: QRectF) -> dict[str, tuple[float, float]]:
         """Left edge and width of each column, pixels."""

@@ -148,7 +148,10 @@ class FilePrompt(Panel):
 
     def wheelEvent(self, event: QWheelEvent) -> None:
         """The wheel moves the mark."""
-        self._mark(self._row - round(event.angleDelta().y() / 120))
+        self._mark_by(-round(event.angleDelta().y() / 120))
+
+    def _mark_by(self, rows: int) -> None:
+        self._mark(self._row + rows)
 
     def draw(self, painter: Painter) -> None:
         u = self.look.u
@@ -166,8 +169,10 @@ class FilePrompt(Panel):
     def _list(self, painter: Painter) -> None:
         u = self.look.u
         first = max(0, min(self._row - self._rows // 2, len(self._entries) - self._rows))
+        room = QRectF(1.6 * u, 8.0 * u, self.width() - 3.2 * u, self._rows * ROW * u)
+        room = self.leaf(painter, room, (first, self._rows, len(self._entries)), self._mark_by)
         for place, entry in enumerate(self._entries[first : first + self._rows]):
-            box = QRectF(1.6 * u, (8.0 + place * ROW) * u, self.width() - 3.2 * u, ROW * u)
+            box = QRectF(room.x(), room.y() + place * ROW * u, room.width(), ROW * u)
             marked = first + place == self._row
             if marked:
                 painter.fill(box, "lit")

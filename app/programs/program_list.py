@@ -13,6 +13,7 @@ from app.desk.latest import Latest
 from app.desk.machine_status import Tone
 from app.desk.persistence import Persistence
 from app.desk.sheet import STEPS, Entry, Key, Row, Sheet, following
+from app.desk.translation import tr
 from app.programs.copy_rename_delete import COPY, NONE, RENAME, CopyRenameDelete
 from app.programs.import_export import ImportExport
 from app.programs.preview import Preview
@@ -200,6 +201,8 @@ class ProgramList:
             return "TYPE A NAME AND PRESS RETURN; ESC KEEPS EVERYTHING AS IT IS"
         if not self.may_type:
             return "RETURN LOADS THE MARKED PROGRAM ONCE NONE IS UNDER WAY; H HOLDS"
+        if self.find.text and not self.listed:
+            return tr("NO PROGRAM HAS THAT IN ITS NAME: F3 BEGINS A NEW ONE")
         return "TYPE A PART OF A NAME, OR MARK IT WITH ARROWS; RETURN LOADS IT; ESC FOR AUTOMATIC"
 
     def close(self) -> None:
@@ -220,8 +223,8 @@ def sheet_of(model: ProgramList) -> Sheet:
         f"{len(model.listed)} OF {len(model.all)} PROGRAMS" if model.find.text else f"{len(rows)} PROGRAMS"
     )
     question, text = model.question, model.entry.text
-    if not question and model.find.text:
-        question, text = "FIND", model.find.text
+    if not question and model.may_type:
+        question, text = "FIND OR NEW NAME", model.find.text
     return Sheet(
         f"PROGRAMS  ·  {count}  ·  BY {model.order}",
         ("NAME", "CHANGED", "LAST RUN", "PARTS", "BEST"),

@@ -19,7 +19,7 @@ from app.programs.preview import Thumbnail
 from app.programs.program_list import ProgramList, details_of
 from app.programs.program_rows import Program
 from app.screen import page_table
-from app.screen.letter_keys import LetterPad
+from app.screen.letter_keys import NAMES_WIDE, LetterPad
 from app.screen.look import Painter
 from app.screen.page_base import Host, KeyActions
 from app.screen.panel import Panel, Shown
@@ -73,6 +73,7 @@ class RecordPanel(Panel):
 
 
 SHARE, RECORD = 0.6, 24.0  # of the width for the list; units of height for the record
+LETTERS = 19.0  # units of height for the drawn keyboard
 
 
 class PreviewPath(PathView):
@@ -100,7 +101,9 @@ class ProgramsPage(ListPage):
         self.space = PreviewSpace(self.look, self)
         self._shown: Picture | None = None
         self.record = RecordPanel(self.look, self)
-        self.letters = LetterPad(self.look, self.touched, self)
+        self.letters = LetterPad(self.look, self.touched, self, NAMES_WIDE)
+        self._with_letters = False
+        self.table.touch_entry = self._turn_letters
 
     def labels(self) -> tuple[str, ...]:
         """Those of the list or of the chooser."""
@@ -117,9 +120,13 @@ class ProgramsPage(ListPage):
         self.model.keys()[name].action()
 
     def _edit(self) -> None:
-        """The marked program, and no other one; to look at it there does not load it."""
+        """The marked program, or a new one of the name that is typed; to look at it does not load it."""
         here = self.model.program
         editor = self.desk.attached(Editor)
+        if here is None and editor is not None and self.model.find.text:
+            editor.wanted = self.model.find.text
+            self.host.go(page_table.EDITOR)
+            return
         if here is None or editor is None:
             self.desk.say(NONE)
             return
@@ -172,7 +179,10 @@ class ProgramsPage(ListPage):
         self.table.show_sheet(model.sheet())
         here = model.program
         self._show_picture(model.preview.of(None if here is not None and here.drawing else here))
-        self.letters.setVisible(bool(model.question or model.find.text) and not model.transfer.open)
+        lettered = (bool(model.question) or self._with_letters) and not model.transfer.open
+        if lettered is self.letters.isHidden():
+            self.letters.setVisible(lettered)
+            self._lay_out()
         self.record.program = here
         self.record.part = model.preview.part_of(here)
         self.record.trouble = "DRAWING …" if model.preview.busy else model.preview.trouble
@@ -191,13 +201,26 @@ class ProgramsPage(ListPage):
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
         """List beside picture over record."""
+        self._lay_out()
+
+    def _turn_letters(self) -> None:
+        self._with_letters = not self._with_letters
+
+    def opened(self) -> None:
+        """The list; a finger on the entry brings the letters."""
+        self._with_letters = False
+        super().opened()
+
+    def _lay_out(self) -> None:
         u = self.look.u
         gap = max(4, round(0.7 * u))
         left, low = round(SHARE * self.width()), round(RECORD * u)
         right = self.width() - left - gap
-        self.table.setGeometry(0, 0, left, self.height())
+        keys = 0 if self.letters.isHidden() else max(self.letters.least, round(LETTERS * u))
+        foot = keys or low  # the record makes room for the letters
+        self.table.setGeometry(0, 0, left, self.height() - (keys + gap if keys else 0))
         for part in (self.path, self.space):
-            part.setGeometry(left + gap, 0, right, self.height() - low - gap)
+            part.setGeometry(left + gap, 0, right, self.height() - foot - gap)
         self.record.setGeometry(left + gap, self.height() - low, right, low)
-        self.letters.setGeometry(self.record.geometry())
-        self.letters.raise_()
+        self.record.setVisible(not keys)
+        self.letters.setGeometry(0, self.height() - keys, self.width(), keys)

@@ -15,6 +15,12 @@ from app.screen.panel import Panel
 
 Rows = Sequence[Sequence[str]]
 NAMES: Rows = ("1234567890", "qwertyuiop", "asdfghjkl-", "zxcvbnm._ ", ("Esc", "Back", "Enter"))
+NAMES_WIDE: Rows = (
+    (*"1234567890", "Back"),
+    (*"qwertyuiop", "Enter"),
+    (*"asdfghjkl-", "Esc"),
+    "zxcvbnm._ ",
+)  # where the whole width is free: a row less leaves more of a list
 PROGRAMS: Rows = (
     (*"1234567890-.", "Back"),
     (*"QWERTYUIOP()", "Enter"),

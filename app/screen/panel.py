@@ -4,16 +4,28 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import ClassVar, Generic, TypeVar
 
-from PySide6.QtCore import QEvent, QPointF, QRectF, Qt
-from PySide6.QtGui import QEventPoint, QFontMetricsF, QMouseEvent, QPainter, QPaintEvent, QPen, QTouchEvent
+from PySide6.QtCore import QEvent, QPointF, QRectF, QSizeF, Qt
+from PySide6.QtGui import (
+    QEventPoint,
+    QFontMetricsF,
+    QMouseEvent,
+    QPainter,
+    QPaintEvent,
+    QPen,
+    QPolygonF,
+    QTouchEvent,
+)
 from PySide6.QtWidgets import QWidget
 
 from app.desk.translation import tr
 from app.screen.look import CENTRE, LEFT, Look, Painter, put
+from app.screen.window_layout import FINGER
 
 Press = Callable[[], None]
+LEAF = 5.0  # units: width of the keys that leaf through a list; a fingertip at least
 T = TypeVar("T")
 
 
@@ -96,6 +108,47 @@ class Panel(QWidget):
         painter.fill(box, "key")
         painter.write(box, word, size, ink, at=CENTRE, raw=raw, margin=margin)
         self.place(box, press)
+
+    def leaf(
+        self, painter: Painter, room: QRectF, seen: tuple[int, int, int], go: Callable[[int], None]
+    ) -> QRectF:
+        """While drawing a list: two keys at its right where not all of it fits; the room left for its rows.
+
+        ``seen``: the first row that is shown, how many fit, how many there are. ``go`` takes how many rows
+        further down: a finger has no wheel, and marking a row brings no other into sight.
+        """
+        top, fits, count = seen
+        if count <= fits:
+            return room
+        u = self.look.u
+        gap, wide = 0.6 * u, max(LEAF * u, float(FINGER))
+        beside = room.height() < 2 * FINGER + gap  # one over the other they would be too low for a finger
+        strip = QRectF(room.right() - wide - beside * (wide + gap), room.y(), wide, room.height())
+        step = QPointF(wide + gap, 0) if beside else QPointF(0, (strip.height() + gap) / 2)
+        high = strip.height() if beside else step.y() - gap
+        for number, (sign, ends) in enumerate(((-1, top <= 0), (1, top + fits >= count))):
+            box = QRectF(strip.topLeft() + number * step, QSizeF(wide, high))
+            painter.fill(box, "key")
+            self._triangle(painter, box, sign, "ghost" if ends else "accent")
+            self.place(box, partial(go, sign * fits))
+        self._seen_share(painter, QRectF(strip.x() - gap, strip.y(), 0.6 * gap, strip.height()), seen)
+        return room.adjusted(0, 0, strip.x() - 2 * gap - room.right(), 0)
+
+    def _triangle(self, painter: Painter, box: QRectF, sign: int, ink: str) -> None:
+        at, size = box.center(), 1.2 * self.look.u
+        painter.setPen(Qt.PenStyle.NoPen)
+        painter.setBrush(self.look.colour(ink))
+        tip, foot = QPointF(at.x(), at.y() + sign * size), at.y() - sign * size
+        painter.drawPolygon(QPolygonF([tip, QPointF(at.x() - size, foot), QPointF(at.x() + size, foot)]))
+
+    @staticmethod
+    def _seen_share(painter: Painter, track: QRectF, seen: tuple[int, int, int]) -> None:
+        """How much of a list is seen, and where."""
+        top, fits, count = seen
+        painter.fill(track, "key")
+        part = QRectF(track.x(), 0, track.width(), track.height() * fits / count)
+        part.moveTop(track.y() + track.height() * top / count)
+        painter.fill(part, "accent")
 
     def area(self) -> QRectF:
         """The whole widget, in pixels."""

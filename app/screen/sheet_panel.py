@@ -17,6 +17,7 @@ from app.screen.look import LEFT, RIGHT, Look, Painter
 from app.screen.page_base import Host, ModelPage, PageModel
 from app.screen.panel import Panel, Shown
 from app.screen.tool_outline_drawing import draw_outline
+from app.screen.window_layout import FINGER
 
 ROW, HEAD, ASKED, NOTE = 4.0, 2.6, 5.4, 2.4  # units
 TALL = 6.0
@@ -31,7 +32,9 @@ class SheetPanel(Panel):
     def __init__(self, look: Look, choose: Callable[[int], None], parent: QWidget) -> None:
         super().__init__(look, parent)
         self._choose = choose
+        self.touch_entry: Callable[[], None] | None = None  # a finger on what is typed
         self.top = 0
+        self._followed = (-1, 0)  # the mark, and how many rows there was room for
 
     def show_sheet(self, sheet: Sheet) -> None:
         """Redraw when something has changed; another list begins at its top."""
@@ -48,6 +51,11 @@ class SheetPanel(Panel):
         ) / look.u
 
     @property
+    def _asked(self) -> float:
+        """Height of the entry, units: a fingertip where a finger has something there."""
+        return ASKED if self.touch_entry is None else max(ASKED, FINGER / self.look.u + 0.6)
+
+    @property
     def _letters(self) -> float:
         """How large letters are in a row, by its height."""
         return min(1.0, self._high / (TALL if self.sheet.tall else 4.2))
@@ -55,19 +63,24 @@ class SheetPanel(Panel):
     @property
     def rows(self) -> int:
         """How many rows of the table fit into the panel."""
-        foot = len(self.sheet.notes) * NOTE + (ASKED if self.sheet.question else 0.0)
+        foot = len(self.sheet.notes) * NOTE + (self._asked if self.sheet.question else 0.0)
         return max(1, int((self.height() / self.look.u - 4.0 - HEAD - foot) / self._high))
 
     def wheelEvent(self, event: QWheelEvent) -> None:
         """Three rows a notch."""
-        top = self.top - round(event.angleDelta().y() / 40)
-        self.top = max(0, min(top, len(self.sheet.rows) - self.rows))
+        self.leaf_by(-round(event.angleDelta().y() / 40))
+
+    def leaf_by(self, rows: int) -> None:
+        """Look further down; the mark stays where it is."""
+        self.top = max(0, min(self.top + rows, len(self.sheet.rows) - self.rows))
         self.update()
 
     def _follow(self) -> None:
-        marked = self.sheet.marked
-        if marked >= 0:
-            self.top = min(max(self.top, marked - self.rows + 1), marked)
+        """To the mark, where a key has moved it; a finger or a wheel that leafs does not."""
+        now = (self.sheet.marked, self.rows)
+        if now != self._followed and self.sheet.marked >= 0:
+            self.top = min(max(self.top, self.sheet.marked - self.rows + 1), self.sheet.marked)
+        self._followed = now
         self.top = max(0, min(self.top, len(self.sheet.rows) - self.rows))
 
     def draw(self, painter: Painter) -> None:
@@ -76,20 +89,22 @@ class SheetPanel(Panel):
         self._follow()
         room = self.inside()
         row = QRectF(room.x(), room.y(), room.width(), HEAD * u)
+        body = QRectF(room.x(), row.bottom(), room.width(), self.rows * self._high * u)
+        left = self.leaf(painter, body, (self.top, self.rows, len(sheet.rows)), self.leaf_by)
+        row.setWidth(left.width())
         self._head(painter, row)
         for number in range(self.top, min(len(sheet.rows), self.top + self.rows)):
             place = number - self.top
             high = self._high * u
-            box = QRectF(room.x(), row.bottom() + place * high, room.width(), high)
+            box = QRectF(left.x(), row.bottom() + place * high, left.width(), high)
             self._row(painter, box, sheet.rows[number], number == sheet.marked)
             self.place(box, partial(self._choose, number))
-        self._bar(painter, room)
         self._foot(painter, room)
 
     def _columns(self, box: QRectF) -> Iterator[tuple[int, QRectF]]:
         u = self.look.u
         lamp = LAMP * u if any(row.lit is not None for row in self.sheet.rows) else 0.8 * u
-        x, wide = box.x() + lamp, box.width() - lamp - 1.6 * u
+        x, wide = box.x() + lamp, box.width() - lamp - 0.6 * u
         for number, share in enumerate(self.sheet.shares):
             yield number, QRectF(x, box.y(), share * wide - 1.0 * u, box.height())
             x += share * wide
@@ -112,7 +127,7 @@ class SheetPanel(Panel):
             painter.box(lamp, row.tone.value, 0.2, row.tone.value if row.lit else "")
         for number, at in self._columns(box):
             if row.bar is not None and number == len(row.cells) - 1:
-                self._share(painter, at, row)
+                self._filled(painter, at, row)
             side, bold, raw = self._side(number), number == 0 or marked, number in self.sheet.raw
             first, two, second = row.cells[number].partition("\n")
             if two:
@@ -124,25 +139,13 @@ class SheetPanel(Panel):
             if row.outline is not None and number == len(row.cells) - 1:
                 draw_outline(painter, at.adjusted(0, 0.2 * u, 0, -0.2 * u), row.outline, small=True)
 
-    def _share(self, painter: Painter, at: QRectF, row: Row) -> None:
+    def _filled(self, painter: Painter, at: QRectF, row: Row) -> None:
         """A bar behind the words of the last cell."""
         high = 0.5 * self.look.u
         track = QRectF(at.x(), at.bottom() - 2 * high, at.width(), high)
         painter.fill(track, "key")
         track.setWidth(track.width() * min(1.0, max(0.0, row.bar or 0.0)))
         painter.fill(track, row.tone.value)
-
-    def _bar(self, painter: Painter, room: QRectF) -> None:
-        """How much of the table is seen, and where."""
-        count = len(self.sheet.rows)
-        if count <= self.rows:
-            return
-        u = self.look.u
-        track = QRectF(room.right() - 0.5 * u, room.y() + HEAD * u, 0.6 * u, self.rows * self._high * u)
-        painter.fill(track, "key")
-        part = QRectF(track.x(), 0, track.width(), track.height() * self.rows / count)
-        part.moveTop(track.y() + track.height() * self.top / count)
-        painter.fill(part, "accent")
 
     def _foot(self, painter: Painter, room: QRectF) -> None:
         u, sheet = self.look.u, self.sheet
@@ -151,7 +154,7 @@ class SheetPanel(Panel):
             row = QRectF(room.x(), y + number * NOTE * u, room.width(), NOTE * u)
             painter.write(row, note, 1.8, "soft", bold=False)
         if sheet.question:
-            self._ask(painter, QRectF(room.x(), y - ASKED * u, room.width(), (ASKED - 0.6) * u))
+            self._ask(painter, QRectF(room.x(), y - self._asked * u, room.width(), (self._asked - 0.6) * u))
 
     def _ask(self, painter: Painter, row: QRectF) -> None:
         u, sheet = self.look.u, self.sheet
@@ -159,6 +162,8 @@ class SheetPanel(Panel):
         painter.write(asked, sheet.question, 2.2, "text", margin=1.0)
         box = QRectF(asked.right(), row.y() + 0.2 * u, row.right() - asked.right(), row.height() - 0.4 * u)
         draw_entry_box(painter, box, sheet.text, 2.6)
+        if self.touch_entry is not None:
+            self.place(row, self.touch_entry)
 
 
 # --- a page that comes up with such a list -----------------------------------------------------------------

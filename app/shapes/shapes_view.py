@@ -65,7 +65,11 @@ class RowsPanel(Panel):
 
     def wheelEvent(self, event: QWheelEvent) -> None:
         """Three rows a notch."""
-        self.top = max(0, min(self.top - round(event.angleDelta().y() / 40), len(self.rows) - self.count))
+        self.leaf_by(-round(event.angleDelta().y() / 40))
+
+    def leaf_by(self, rows: int) -> None:
+        """Look further down; the mark stays where it is."""
+        self.top = max(0, min(self.top + rows, len(self.rows) - self.count))
         self.update()
 
     def draw(self, painter: Painter) -> None:
@@ -74,11 +78,13 @@ class RowsPanel(Panel):
             self._seen = self.marked
             self.top = min(max(self.top, self.marked - self.count + 2), max(0, self.marked - 1))
         self.top = max(0, min(self.top, len(self.rows) - self.count))
-        room, high = self.inside(), self._high
+        high, seen = self._high, (self.top, self.count, len(self.rows))
+        room = self.inside()
+        room.setHeight(self.count * high)
+        room = self.leaf(painter, room, seen, self.leaf_by)
         for place, line in enumerate(self.rows[self.top : self.top + self.count]):
             box = QRectF(room.x(), room.y() + place * high, room.width(), high)
             self._row(painter, box, line, self.top + place)
-        self._bar(painter, room)
 
     def _row(self, painter: Painter, box: QRectF, line: _Line, number: int) -> None:
         u, marked = self.look.u, number == self.marked
@@ -86,7 +92,7 @@ class RowsPanel(Panel):
             painter.fill(box, "here")
             painter.fill(QRectF(box.x(), box.y(), 0.5 * u, box.height()), "lit")
         self.place(box, partial(self._choose, number, -1))
-        room = box.adjusted(1.0 * u, 0, -1.4 * u, 0)
+        room = box.adjusted(1.0 * u, 0, -0.4 * u, 0)
         if line.cells:
             self._cells(painter, room, line, number, marked=marked)
             return
@@ -121,19 +127,6 @@ class RowsPanel(Panel):
                 painter.write(inner, COLUMNS[column], 1.7, "soft", at=CENTRE, raw=True, bold=False)
         # The cells were placed behind the row: the first that holds a point is taken, so the row goes last.
         self._places.append(self._places.pop(-1 - len(line.cells)))
-
-    def _bar(self, painter: Painter, room: QRectF) -> None:
-        """How much of the rows is seen, and where."""
-        if len(self.rows) <= self.count:
-            return
-        u = self.look.u
-        track = QRectF(room.right() - 0.5 * u, room.y(), 0.6 * u, self.count * self._high)
-        painter.fill(track, "key")
-        high = track.height() * self.count / len(self.rows)
-        painter.fill(
-            QRectF(track.x(), track.y() + track.height() * self.top / len(self.rows), track.width(), high),
-            "accent",
-        )
 
 
 class LinesPanel(Panel):

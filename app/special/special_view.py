@@ -50,14 +50,14 @@ class ItemList(Panel):
         fit = max(1, int(self.inside().height() / (ROW * self.look.u)))
         return fit if fit >= len(self.model.functions) else max(1, fit - 1)
 
-    def leaf(self, rows: int) -> None:
+    def leaf_by(self, rows: int) -> None:
         """So many rows down the list."""
         self.top = max(0, min(self.top + rows, len(self.model.functions) - self.rows))
         self.update()
 
     def wheelEvent(self, event: QWheelEvent) -> None:
         """A row a notch."""
-        self.leaf(-round(event.angleDelta().y() / 120))
+        self.leaf_by(-round(event.angleDelta().y() / 120))
 
     def draw(self, painter: Painter) -> None:
         room, functions = self.inside(), self.model.functions
@@ -82,7 +82,7 @@ class ItemList(Panel):
             ends = self.top == 0 if rows < 0 else self.top + self.rows >= len(self.model.functions)
             painter.fill(key, "key")
             painter.write(key, sign, 2.6, "ghost" if ends else "accent", at=CENTRE, raw=True)
-            self.place(key, partial(self.leaf, rows))
+            self.place(key, partial(self.leaf_by, rows))
 
     def _item(self, painter: Painter, box: QRectF, number: int, name: str, use: str) -> None:
         u = self.look.u

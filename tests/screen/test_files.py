@@ -17,6 +17,7 @@ from app.programs.program_list import ProgramList
 from app.programs.programs_view import ProgramsPage
 from app.programs.removable_media import Stick, sticks
 from app.screen import page_table
+from app.screen.window_layout import FINGER
 from core.executor.commands import LoadJob
 from core.executor.snapshot import State
 from tests.screen.desks import SAMPLES, desk_on
@@ -300,12 +301,49 @@ def test_a_finger_alone_names_a_copy(shop: Shop) -> None:
     pad = shop.list.letters
     shop.sees(lambda: pad.isVisible() and len(pad._places) == 43)
     for _ in range(8):
-        touch(shop, 41)  # DEL
-    for place in (30, 20):  # z, a
+        touch(shop, 10)  # DEL
+    for place in (33, 22):  # z, a
         touch(shop, place)
-    touch(shop, 42)  # RETURN
+    touch(shop, 21)  # RETURN
     shop.sees(lambda: "za.nc" in shop.rows())
     shop.sees(lambda: not pad.isVisible())
+
+
+def test_a_finger_alone_begins_a_program(shop: Shop) -> None:
+    """Letters came only behind the first letter of a keyboard, and a name that nobody has led nowhere."""
+    shop.window.resize(1024, 600)
+    shop.open_list()
+    table, pad = shop.list.table, shop.list.letters
+    assert not pad.isVisible()
+    table.grab()
+    entry, _press = table._places[-1]
+    QTest.mouseClick(table, Qt.MouseButton.LeftButton, pos=entry.center().toPoint())
+    shop.sees(lambda: pad.isVisible() and len(pad._places) == 43)
+    for box, _press in pad._places:
+        assert min(box.width(), box.height()) >= FINGER - 1
+        assert pad.area().adjusted(-0.1, -0.1, 0.1, 0.1).contains(box)
+    assert not table.geometry().intersects(pad.geometry())
+    for place in (33, 33, 22):  # z, z, a
+        touch(shop, place)
+    shop.sees(lambda: shop.rows() == [])
+    assert "F3" in shop.prompt()
+    keys = shop.frame.keys
+    keys.grab()
+    box = next(box for box, _ in keys._places if box.center().x() > keys.width() * 0.2)
+    QTest.mouseClick(keys, Qt.MouseButton.LeftButton, pos=box.center().toPoint())
+    shop.sees(lambda: shop.frame.title.page == page_table.EDITOR)
+    shop.sees(lambda: shop.frame.keys.labels[0] == "CREATE")
+
+
+def test_a_finger_takes_the_letters_away_again(shop: Shop) -> None:
+    shop.open_list()
+    table = shop.list.table
+    for shown in (True, False):
+        table.grab()
+        entry, _press = table._places[-1]
+        QTest.mouseClick(table, Qt.MouseButton.LeftButton, pos=entry.center().toPoint())
+        shop.sees(lambda shown=shown: shop.list.letters.isVisible() is shown)
+    assert shop.list.record.isVisible()
 
 
 def touch(shop: Shop, place: int) -> None:

@@ -355,12 +355,12 @@ def test_the_list_has_rows_of_a_fingertip_and_leafs(hands: Hands) -> None:
     assert isinstance(page, SpecialPage)
     items, count = page.items, len(page.model.functions)
     assert items.rows < count
-    items.leaf(items.rows)
+    items.leaf_by(items.rows)
     assert items.top == min(items.rows, count - items.rows)
-    items.leaf(99)
+    items.leaf_by(99)
     assert items.top == count - items.rows
     assert not page.model.inside
-    items.leaf(-99)
+    items.leaf_by(-99)
     assert items.top == 0
     hands.type("0")
     assert page.model.inside

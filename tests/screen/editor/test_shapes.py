@@ -22,6 +22,7 @@ from tests.screen.editor.writer import Writer
 from tests.screen.hands import Key
 
 SHIFT = Qt.KeyboardModifier.ShiftModifier
+ROWS = 2  # places before those of the rows, where not all of them fit: the keys that leaf
 
 
 def opened(writer: Writer) -> Writer:
@@ -124,7 +125,7 @@ def test_lines_changed_by_hand_are_written_over_only_when_asked(writer: Writer) 
 
 def test_a_finger_opens_types_and_writes(writer: Writer) -> None:
     opened(writer)
-    touch(writer, writer.editor.shapes.rows, 0)
+    touch(writer, writer.editor.shapes.rows, ROWS)
     writer.sees(lambda: writer.editor.shapes.model.form is not None)
     writer.key(Key.Key_F2)
     writer.sees(lambda: writer.text().startswith("G90"))
@@ -217,7 +218,7 @@ def test_findings_fit_a_finger_on_the_smallest_screen(qtbot: QtBot) -> None:
     found = [Diagnostic(line, 1, Severity.ERROR, "unknown", "not known") for line in range(1, 5)]
     panel.show_findings(Findings(diagnostics=tuple(found)), 4)
     panel.grab()
-    assert len(panel._places) == 2
+    assert len(panel._places) == ROWS + 2
     for box, _ in panel._places:
         assert box.height() >= FINGER
         assert panel.area().contains(box)

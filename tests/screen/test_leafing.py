@@ -1,0 +1,202 @@
+"""Lists that are longer than their place, by a finger and by the wheel."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from PySide6.QtCore import QPoint, QPointF, QRectF, Qt
+from PySide6.QtGui import QWheelEvent
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QWidget
+from pytestqt.qtbot import QtBot
+
+from app.desk.program_folder import ProgramFolders
+from app.desk.sheet import Row, Sheet
+from app.editor.findings_view import FindingList
+from app.editor.live_proof import Findings
+from app.offsets.offsets_view import HistoryList
+from app.programs.file_prompt_view import FilePrompt
+from app.screen.look import Look
+from app.screen.panel import Panel
+from app.screen.sheet_panel import SheetPanel
+from app.screen.theme import DARK
+from app.screen.window_layout import FINGER
+from app.shapes.shapes_view import RowsPanel, _Line
+from core.language.diagnostics import Diagnostic, Severity
+
+MANY = 30
+SMALL = 6.4  # pixels of the unit at 1024x600
+
+
+def sheet_of(count: int, marked: int = 0) -> Sheet:
+    return Sheet("PROGRAMS", ("NAME",), (1.0,), tuple(Row((f"row {n}",)) for n in range(count)), marked)
+
+
+@pytest.fixture
+def above(qtbot: QtBot) -> QWidget:
+    made = QWidget()
+    qtbot.addWidget(made)
+    made.resize(600, 320)
+    return made
+
+
+def leaf_keys(panel: Panel) -> list[QRectF]:
+    """The two keys: the only targets with none beside them in their half of the height."""
+    panel.grab()
+    right = max(box.right() for box, _ in panel._places)
+    found = [box for box, _ in panel._places if box.right() > right - 1 and box.width() < 2 * FINGER]
+    return sorted(found, key=QRectF.y)
+
+
+def press(panel: Panel, box: QRectF) -> None:
+    QTest.mouseClick(panel, Qt.MouseButton.LeftButton, pos=box.center().toPoint())
+    panel.grab()
+
+
+def turn_wheel(panel: Panel, notches: int) -> None:
+    at, none = QPointF(50, 100), QPoint(0, 0)
+    wheel = QWheelEvent(
+        at, at, none, QPoint(0, -120 * notches), Qt.MouseButton.NoButton,
+        Qt.KeyboardModifier.NoModifier, Qt.ScrollPhase.NoScrollPhase, False,
+    )  # fmt: skip
+    panel.wheelEvent(wheel)
+    panel.grab()
+
+
+def chosen_rows(panel: Panel, look_at: Callable[[], int], keys: list[QRectF]) -> set[int]:
+    """What a finger comes to that goes down every row, leafs, and does it again to the end."""
+    found: set[int] = set()
+    for _ in range(MANY):
+        panel.grab()
+        before = len(found)
+        for box, _press in list(panel._places):
+            if box not in keys:
+                press(panel, box)
+                found.add(look_at())
+        if len(found) == before:
+            return found
+        press(panel, keys[1])
+    return found
+
+
+def test_a_finger_comes_to_every_row_of_a_table(above: QWidget) -> None:
+    touched: list[int] = []
+    panel = SheetPanel(Look(DARK, SMALL), touched.append, above)
+    panel.resize(500, 300)
+    panel.show_sheet(sheet_of(MANY))
+    assert panel.rows < MANY
+    assert chosen_rows(panel, lambda: touched[-1], leaf_keys(panel)) == set(range(MANY))
+
+
+def test_a_finger_comes_to_every_shape(above: QWidget) -> None:
+    touched: list[int] = []
+    panel = RowsPanel(Look(DARK, SMALL), lambda row, _column: touched.append(row), above)
+    panel.resize(260, 300)
+    panel.rows = tuple(_Line(f"row {n}") for n in range(MANY))
+    assert chosen_rows(panel, lambda: touched[-1], leaf_keys(panel)) == set(range(MANY))
+
+
+def test_a_finger_comes_to_every_program_that_is_asked_for(above: QWidget, tmp_path: Path) -> None:
+    for number in range(MANY):
+        (tmp_path / f"p{number:02}.nc").write_text("M30\n")
+    taken: list[str] = []
+
+    def choose(name: str) -> bool:
+        taken.append(Path(name).name)
+        return False
+
+    panel = FilePrompt(Look(DARK, SMALL), ProgramFolders((tmp_path,)), choose, lambda: None, above)
+    panel.resize(500, 300)
+    panel.ask()
+    panel.grab()
+    keys = leaf_keys(panel)
+
+    def look() -> int:
+        panel.not_found = False
+        panel.grab()
+        return int(taken[-1][1:3])
+
+    assert chosen_rows(panel, look, keys) == set(range(MANY))
+
+
+@pytest.mark.parametrize("marked", [0, 3])
+def test_the_wheel_leaves_the_mark_behind(above: QWidget, marked: int) -> None:
+    panel = SheetPanel(Look(DARK, SMALL), lambda _row: None, above)
+    panel.resize(500, 300)
+    panel.show_sheet(sheet_of(MANY, marked))
+    panel.grab()
+    turn_wheel(panel, 100)
+    assert panel.top == MANY - panel.rows
+    turn_wheel(panel, -100)
+    assert panel.top == 0
+
+
+def test_a_key_that_moves_the_mark_brings_it_into_sight_again(above: QWidget) -> None:
+    panel = SheetPanel(Look(DARK, SMALL), lambda _row: None, above)
+    panel.resize(500, 300)
+    panel.show_sheet(sheet_of(MANY, 2))
+    panel.grab()
+    turn_wheel(panel, 100)
+    panel.show_sheet(sheet_of(MANY, 3))
+    panel.grab()
+    assert panel.top == 3
+
+
+def test_a_pad_that_comes_up_does_not_hide_the_mark(above: QWidget) -> None:
+    panel = SheetPanel(Look(DARK, SMALL), lambda _row: None, above)
+    panel.resize(500, 300)
+    panel.show_sheet(sheet_of(MANY, 4))
+    panel.grab()
+    assert panel.top == 0
+    panel.resize(500, 180)
+    panel.grab()
+    assert panel.top <= 4 < panel.top + panel.rows
+
+
+def test_what_fits_has_no_keys_to_leaf(above: QWidget) -> None:
+    panel = SheetPanel(Look(DARK, SMALL), lambda _row: None, above)
+    panel.resize(500, 300)
+    panel.show_sheet(sheet_of(3))
+    panel.grab()
+    assert len(panel._places) == 3
+    turn_wheel(panel, 5)
+    assert panel.top == 0
+
+
+def test_findings_and_changes_of_offsets_are_leafed_through(above: QWidget) -> None:
+    """There were no keys: the third finding, and the fifth change, were the mouse wheel's alone."""
+    findings = FindingList(Look(DARK, SMALL), lambda _found: None, above)
+    findings.resize(374, 106)  # as at 1024x600
+    found = tuple(Diagnostic(n, 1, Severity.ERROR, "unknown", f"finding {n}") for n in range(1, 6))
+    findings.show_findings(Findings(diagnostics=found), 1)
+    press(findings, leaf_keys(findings)[1])
+    assert findings._top == findings._rows
+    history = HistoryList(Look(DARK, SMALL), above)
+    history.resize(500, 220)
+    history.show_entries(tuple(("now", f"D{n}", "X", "why") for n in range(MANY)))
+    press(history, leaf_keys(history)[1])
+    assert history.top == history.rows
+
+
+def test_keys_that_leaf_fit_a_finger(above: QWidget) -> None:
+    panel = SheetPanel(Look(DARK, SMALL), lambda _row: None, above)
+    panel.resize(500, 300)
+    panel.show_sheet(sheet_of(MANY))
+    for box in leaf_keys(panel):
+        assert min(box.width(), box.height()) >= FINGER
+        assert panel.area().contains(box)
+
+
+def test_keys_that_leaf_stand_side_by_side_where_there_is_no_height(above: QWidget) -> None:
+    panel = SheetPanel(Look(DARK, SMALL), lambda _row: None, above)
+    panel.resize(500, 110)
+    panel.show_sheet(sheet_of(MANY))
+    panel.grab()
+    first, second = (box for box, _ in panel._places[:2])
+    assert first.y() == second.y()
+    assert first.right() < second.x()
+    assert min(first.height(), second.height()) >= FINGER
+    press(panel, second)
+    assert panel.top == 1 == panel.rows
