@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import ClassVar, Generic, TypeVar
 
-from PySide6.QtCore import QEvent, QPointF, QRectF, QSizeF, Qt
+from PySide6.QtCore import QEvent, QPointF, QRectF, Qt
 from PySide6.QtGui import (
     QEventPoint,
     QFontMetricsF,
@@ -25,7 +25,8 @@ from app.screen.look import CENTRE, LEFT, Look, Painter, put
 from app.screen.window_layout import FINGER
 
 Press = Callable[[], None]
-LEAF = 5.0  # units: width of the keys that leaf through a list; a fingertip at least
+LEAF = 5.0  # units: size of the keys that leaf through a list; a fingertip at least
+NARROW = 50.0  # units: width of a list that keeps all of it for its rows
 T = TypeVar("T")
 
 
@@ -112,27 +113,49 @@ class Panel(QWidget):
     def leaf(
         self, painter: Painter, room: QRectF, seen: tuple[int, int, int], go: Callable[[int], None]
     ) -> QRectF:
-        """While drawing a list: two keys at its right where not all of it fits; the room left for its rows.
+        """While drawing a list: two keys where not all of it fits; the room left for its rows.
 
         ``seen``: the first row that is shown, how many fit, how many there are. ``go`` takes how many rows
-        further down: a finger has no wheel, and marking a row brings no other into sight.
+        further down: a finger has no wheel, and marking a row brings no other into sight. The keys stand at
+        the right, below a narrow list (see ``fitting``), and side by side where there is no height.
         """
         top, fits, count = seen
         if count <= fits:
             return room
-        u = self.look.u
-        gap, wide = 0.6 * u, max(LEAF * u, float(FINGER))
-        beside = room.height() < 2 * FINGER + gap  # one over the other they would be too low for a finger
+        gap, (wide, high) = 0.6 * self.look.u, self._leaf_size
+        foot = self._is_narrow(room.width())
+        beside = foot or room.height() < 2 * high + gap
         strip = QRectF(room.right() - wide - beside * (wide + gap), room.y(), wide, room.height())
-        step = QPointF(wide + gap, 0) if beside else QPointF(0, (strip.height() + gap) / 2)
-        high = strip.height() if beside else step.y() - gap
+        if foot:
+            wide = (room.width() - gap) / 2
+            strip = QRectF(room.x(), room.bottom() - high, wide, high)
+        right, down = (wide + gap, 0.0) if beside else (0.0, (strip.height() + gap) / 2)
         for number, (sign, ends) in enumerate(((-1, top <= 0), (1, top + fits >= count))):
-            box = QRectF(strip.topLeft() + number * step, QSizeF(wide, high))
+            box = QRectF(strip.x(), strip.y(), wide, strip.height() if beside else down - gap)
+            box.translate(number * right, number * down)
             painter.fill(box, "key")
             self._triangle(painter, box, sign, "ghost" if ends else "accent")
             self.place(box, partial(go, sign * fits))
-        self._seen_share(painter, QRectF(strip.x() - gap, strip.y(), 0.6 * gap, strip.height()), seen)
-        return room.adjusted(0, 0, strip.x() - 2 * gap - room.right(), 0)
+        left = room.adjusted(0, 0, -2 * gap, -high - gap)
+        if not foot:
+            left = room.adjusted(0, 0, strip.x() - 2 * gap - room.right(), 0)
+        self._seen_share(painter, QRectF(left.right() + gap, left.y(), 0.6 * gap, left.height()), seen)
+        return left
+
+    @property
+    def _leaf_size(self) -> tuple[float, float]:
+        """Width and least height of a key that leafs, pixels."""
+        return max(LEAF * self.look.u, float(FINGER)), max(LEAF * self.look.u, float(FINGER))
+
+    def _is_narrow(self, width: float) -> bool:
+        return width < NARROW * self.look.u
+
+    def fitting(self, room: QRectF, high: float, count: int) -> int:
+        """How many rows of this height fit, the keys of ``leaf`` counted where they stand below."""
+        fits = int(room.height() / high)
+        if fits < count and self._is_narrow(room.width()):
+            fits = int((room.height() - self._leaf_size[1] - 0.6 * self.look.u) / high)
+        return max(1, fits)
 
     def _triangle(self, painter: Painter, box: QRectF, sign: int, ink: str) -> None:
         at, size = box.center(), 1.2 * self.look.u

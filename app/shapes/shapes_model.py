@@ -232,7 +232,7 @@ class Shapes:
         pad = Key("PAD", self.turn_pad)
         if self.form is None:
             return {2: Key("OPEN", self.open_marked), 9: pad}
-        found = {2: Key("WRITE", self.write), 9: pad}
+        found = {2: Key("WRITE", self.write), 8: Key("LIST", self.to_list), 9: pad}
         if self.asked is not None:
             found[6] = Key("YES", self.answer)
         if self.form.instead is not None:
@@ -316,11 +316,15 @@ class Shapes:
         elif self.notice:
             self.notice = ""
         elif self.form is not None:
-            self.form = None
-            self._show("\n".join(self.lines) + "\n" if self.lines else "")
+            self.to_list()
         else:
             return False
         return True
+
+    def to_list(self) -> None:
+        """From the form to the list: what was typed and not written is dropped."""
+        self.asked, self.notice, self.form = None, "", None
+        self._show("\n".join(self.lines) + "\n" if self.lines else "")
 
     def write(self) -> None:
         """F2: into the text, and back to the list; asks where something written by hand would go."""

@@ -13,7 +13,7 @@ from PySide6.QtWidgets import QWidget
 
 from app.desk.translation import spoken, tr
 from app.screen.entry_panel import KeyPad, draw_entry
-from app.screen.look import CENTRE, LEFT, RIGHT, Look, Painter
+from app.screen.look import CENTRE, LEFT, RIGHT, Look, Painter, width_of
 from app.screen.panel import Panel, Shown
 from app.shapes.shape_form import COLUMNS, Cell, ShapeForm
 from app.shapes.shapes_model import Shapes
@@ -22,8 +22,11 @@ from core.shapes.contour import row_word
 
 ROW = 5.2  # units: at least a finger's height
 _LABEL = 0.56  # of the width
-_SHARE = 0.54  # of the width that the fields take
+_SHARE = 0.56  # of the width that the fields take
 _PAD = 26.0  # units: height of the number pad, where fingers do not need more
+_TURN = "◂"  # before a choice: it is turned and not typed, so no bar stands behind it
+_UNSAID = "?"  # where something has to be typed
+_SMALL = 1.6  # units: a label that would have to be smaller takes two lines
 _DRAWN = 12.0  # units: a drawing that is lower shows nothing
 
 
@@ -36,7 +39,6 @@ class _Line:
     tone: str = "text"
     word: str = ""
     cells: tuple[str, ...] = ()
-    raw: bool = False
 
 
 class RowsPanel(Panel):
@@ -61,7 +63,7 @@ class RowsPanel(Panel):
     @property
     def count(self) -> int:
         """How many rows fit."""
-        return max(1, int((self.height() - 3.4 * self.look.u) / self._high))
+        return self.fitting(self.inside(), self._high, len(self.rows))
 
     def wheelEvent(self, event: QWheelEvent) -> None:
         """Three rows a notch."""
@@ -79,9 +81,7 @@ class RowsPanel(Panel):
             self.top = min(max(self.top, self.marked - self.count + 2), max(0, self.marked - 1))
         self.top = max(0, min(self.top, len(self.rows) - self.count))
         high, seen = self._high, (self.top, self.count, len(self.rows))
-        room = self.inside()
-        room.setHeight(self.count * high)
-        room = self.leaf(painter, room, seen, self.leaf_by)
+        room = self.leaf(painter, self.inside(), seen, self.leaf_by)
         for place, line in enumerate(self.rows[self.top : self.top + self.count]):
             box = QRectF(room.x(), room.y() + place * high, room.width(), high)
             self._row(painter, box, line, self.top + place)
@@ -97,16 +97,31 @@ class RowsPanel(Panel):
             self._cells(painter, room, line, number, marked=marked)
             return
         label = QRectF(room.x(), room.y(), _LABEL * room.width(), room.height())
-        painter.write(label, line.label, 1.9, "text", at=LEFT, bold=marked, raw=line.raw, margin=0.6)
+        self._label(painter, label, line, marked=marked)
         figure = QRectF(label.right(), room.y(), room.right() - label.right(), room.height())
         self._figure(painter, figure, line.figure, line.tone, marked=marked and self.typing)
+
+    def _label(self, painter: Painter, box: QRectF, line: _Line, *, marked: bool) -> None:
+        """In two lines where one would be too small to be read, or cut."""
+        label = tr(line.label)
+        room = box.adjusted(0, 0, -0.6 * self.look.u, 0)
+        cut = label.rfind(" ", 0, 2 + len(label) // 2 + 1)
+        wide = width_of(label, self.look.font(_SMALL, bold=marked))
+        parts = [label[:cut], label[cut + 1 :]] if wide > room.width() and cut > 0 else [label]
+        high = min(room.height() / len(parts), 2.6 * self.look.u) if len(parts) > 1 else room.height()
+        top = room.center().y() - high * len(parts) / 2
+        for place, part in enumerate(parts):
+            at = QRectF(room.x(), top + place * high, room.width(), high)
+            painter.write(at, part, 1.9, "text", at=LEFT, bold=marked, raw=True)
 
     def _figure(self, painter: Painter, box: QRectF, figure: str, tone: str, *, marked: bool) -> None:
         u = self.look.u
         if marked:
             frame = box.adjusted(0, 0.5 * u, 0, -0.5 * u)
             painter.box(frame, "accent", 0.2, "ground")
-            draw_entry(painter, frame.adjusted(0.6 * u, 0, -0.4 * u, 0), figure, size=2.2)
+            inside = frame.adjusted(0.6 * u, 0, -0.4 * u, 0)
+            shown = "" if figure == _UNSAID else figure
+            draw_entry(painter, inside, shown, size=2.2, cursor=not figure.startswith(_TURN))
         else:
             painter.write(box, figure, 2.1, tone, at=RIGHT, raw=True, bold=tone != "soft")
 
@@ -314,8 +329,10 @@ class ShapesView(QWidget):
 
 def _line_of(cell: Cell) -> _Line:
     tone = "alarm" if cell.trouble else "text" if cell.typed else "soft"
-    figure = cell.figure or ("?" if cell.trouble else "")
-    return _Line(cell.label, f"◂ {figure} ▸" if cell.choice and figure != "?" else figure, tone, cell.word)
+    figure = cell.figure or (_UNSAID if cell.trouble else "")
+    return _Line(
+        cell.label, f"{_TURN} {figure} ▸" if cell.choice and figure != _UNSAID else figure, tone, cell.word
+    )
 
 
 def _point(form: ShapeForm, number: int) -> _Line:

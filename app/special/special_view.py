@@ -46,9 +46,8 @@ class ItemList(Panel):
 
     @property
     def rows(self) -> int:
-        """How many rows fit, those of the foot left out where there is one."""
-        fit = max(1, int(self.inside().height() / (ROW * self.look.u)))
-        return fit if fit >= len(self.model.functions) else max(1, fit - 1)
+        """How many rows fit, above the keys that leaf where there are some."""
+        return self.fitting(self.inside(), ROW * self.look.u, len(self.model.functions))
 
     def leaf_by(self, rows: int) -> None:
         """So many rows down the list."""
@@ -60,29 +59,17 @@ class ItemList(Panel):
         self.leaf_by(-round(event.angleDelta().y() / 120))
 
     def draw(self, painter: Painter) -> None:
-        room, functions = self.inside(), self.model.functions
-        rows, high = self.rows, ROW * self.look.u
+        functions, rows, high = self.model.functions, self.rows, ROW * self.look.u
         if self._followed != self.model.at:  # a key has moved it; a finger that leafs does not
             self._followed = self.model.at
             self.top = min(max(self.top, self.model.at - rows + 1), self.model.at)
         self.top = max(0, min(self.top, len(functions) - rows))
+        room = self.leaf(painter, self.inside(), (self.top, rows, len(functions)), self.leaf_by)
         for number in range(self.top, min(len(functions), self.top + rows)):
             y = room.y() + (number - self.top) * high
             box = QRectF(room.x(), y, room.width(), high - 0.4 * self.look.u)
             self._item(painter, box, number, functions[number].name, functions[number].use)
             self.place(box, partial(self._enter, number))
-        if rows < len(functions):
-            self._foot(painter, QRectF(room.x(), room.bottom() - high, room.width(), high))
-
-    def _foot(self, painter: Painter, box: QRectF) -> None:
-        """Up and down by a screenful."""
-        half = (box.width() - 0.6 * self.look.u) / 2
-        for x, sign, rows in ((box.x(), "▲", -self.rows), (box.right() - half, "▼", self.rows)):
-            key = QRectF(x, box.y(), half, box.height())
-            ends = self.top == 0 if rows < 0 else self.top + self.rows >= len(self.model.functions)
-            painter.fill(key, "key")
-            painter.write(key, sign, 2.6, "ghost" if ends else "accent", at=CENTRE, raw=True)
-            self.place(key, partial(self.leaf_by, rows))
 
     def _item(self, painter: Painter, box: QRectF, number: int, name: str, use: str) -> None:
         u = self.look.u

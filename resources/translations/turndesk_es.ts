@@ -4430,11 +4430,6 @@
     </message>
     <message>
       <location filename="app/compose/journal.py" />
-      <source>MEASURED PARTS CANNOT BE KEPT: %1</source>
-      <translation>LAS PIEZAS MEDIDAS NO SE PUEDEN GUARDAR: %1</translation>
-    </message>
-    <message>
-      <location filename="app/compose/journal.py" />
       <source>loaded to run</source>
       <translation>cargado para correr</translation>
     </message>
@@ -4922,6 +4917,11 @@
       <location filename="app/desk/first_job.py" />
       <source>FIRST PART</source>
       <translation>PRIMERA PIEZA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/first_job.py" />
+      <source>NO COUNT</source>
+      <translation>SIN CONT</translation>
     </message>
     <message>
       <location filename="app/desk/first_job.py" />
@@ -5657,11 +5657,6 @@
       <location filename="app/desk/readouts.py" />
       <source>MM</source>
       <translation>MM</translation>
-    </message>
-    <message>
-      <location filename="app/desk/readouts.py" />
-      <source>NO COUNT</source>
-      <translation>SIN CONT</translation>
     </message>
     <message>
       <location filename="app/desk/readouts.py" />
@@ -9385,6 +9380,11 @@
     </message>
     <message>
       <location filename="app/programs/program_list.py" />
+      <source>FIND OR NEW NAME</source>
+      <translation>BUSCAR O NOMBRE NUEVO</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_list.py" />
       <source>LAST CYCLE</source>
       <translation>ÚLTIMO CICLO</translation>
     </message>
@@ -9402,6 +9402,11 @@
       <location filename="app/programs/program_list.py" />
       <source>NEVER PROVED</source>
       <translation>NUNCA COMPROBADO</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_list.py" />
+      <source>NO PROGRAM HAS THAT IN ITS NAME: F3 BEGINS A NEW ONE</source>
+      <translation>NINGÚN PROGRAMA LLEVA ESO EN SU NOMBRE: F3 EMPIEZA UNO NUEVO</translation>
     </message>
     <message>
       <location filename="app/programs/program_list.py" />
@@ -9877,6 +9882,11 @@
       <location filename="app/quality/gauge_line.py" />
       <source>the gauge has sent something unreadable</source>
       <translation>el calibrador ha enviado algo ilegible</translation>
+    </message>
+    <message>
+      <location filename="app/quality/parts_book.py" />
+      <source>MEASURED PARTS CANNOT BE KEPT: %1</source>
+      <translation>LAS PIEZAS MEDIDAS NO SE PUEDEN GUARDAR: %1</translation>
     </message>
     <message>
       <location filename="app/quality/parts_book.py" />
@@ -27979,34 +27989,19 @@
       <translation>'turndesk prove --stock' hace la de uno más largo</translation>
     </message>
     <message>
-      <location filename="core/proving/part_proof.py" />
-      <source>%1 is never fed: all its moves are rapids.</source>
-      <translation>%1 no avanza nunca: todos sus movimientos son rápidos.</translation>
+      <location filename="core/proving/part_making.py" />
+      <source>no stock is assumed: the feeds cut before Z0, where no face of it can lie</source>
+      <translation>no se supone ningún material: los avances cortan antes de Z0, donde no puede estar su cara</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_making.py" />
+      <source>what %1 cuts from line %2 on while the spindle stands</source>
+      <translation>lo que corta %1 desde la línea %2 con el husillo parado</translation>
     </message>
     <message>
       <location filename="core/proving/part_proof.py" />
       <source>%1 moves: a part of so many is made where its stock is said</source>
       <translation>%1 movimientos: una pieza de tantos se hace donde se indica su material</translation>
-    </message>
-    <message>
-      <location filename="core/proving/part_proof.py" />
-      <source>The live tool %1 is fed, and never comes behind Z0.</source>
-      <translation>La herramienta motorizada %1 avanza y nunca pasa de Z0.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/part_proof.py" />
-      <source>This feed leads away from the part, and no other cuts behind Z0.</source>
-      <translation>Este avance se aleja de la pieza, y ningún otro corta detrás de Z0.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/part_proof.py" />
-      <source>no stock is assumed: the feeds cut before Z0, where no face of it can lie</source>
-      <translation>no se supone ningún material: los avances cortan antes de Z0, donde no puede estar su cara</translation>
-    </message>
-    <message>
-      <location filename="core/proving/part_proof.py" />
-      <source>what %1 cuts from line %2 on while the spindle stands</source>
-      <translation>lo que corta %1 desde la línea %2 con el husillo parado</translation>
     </message>
     <message>
       <location filename="core/proving/program_branches.py" />
@@ -28052,6 +28047,21 @@
       <location filename="core/proving/program_timeline.py" />
       <source>change the move that the message names</source>
       <translation>cambie el movimiento que nombra el mensaje</translation>
+    </message>
+    <message>
+      <location filename="core/proving/program_tools.py" />
+      <source>%1 is never fed: all its moves are rapids.</source>
+      <translation>%1 no avanza nunca: todos sus movimientos son rápidos.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/program_tools.py" />
+      <source>The live tool %1 is fed, and never comes behind Z0.</source>
+      <translation>La herramienta motorizada %1 avanza y nunca pasa de Z0.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/program_tools.py" />
+      <source>This feed leads away from the part, and no other cuts behind Z0.</source>
+      <translation>Este avance se aleja de la pieza, y ningún otro corta detrás de Z0.</translation>
     </message>
     <message>
       <location filename="core/proving/thread_checks.py" />

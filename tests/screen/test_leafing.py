@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -43,11 +44,13 @@ def above(qtbot: QtBot) -> QWidget:
 
 
 def leaf_keys(panel: Panel) -> list[QRectF]:
-    """The two keys: the only targets with none beside them in their half of the height."""
+    """The two keys, up before down: the places whose press takes how many rows further."""
     panel.grab()
-    right = max(box.right() for box, _ in panel._places)
-    found = [box for box, _ in panel._places if box.right() > right - 1 and box.width() < 2 * FINGER]
-    return sorted(found, key=QRectF.y)
+    found = {}
+    for box, press in panel._places:
+        if isinstance(press, partial) and press.func.__name__.endswith("_by"):
+            found[press.args[0] > 0] = box
+    return [found[False], found[True]]
 
 
 def press(panel: Panel, box: QRectF) -> None:

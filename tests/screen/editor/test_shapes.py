@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QPoint, Qt
+from typing import Any
+
+import pytest
+from PySide6.QtCore import QPoint, QRectF, Qt
 from PySide6.QtGui import QImage
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QWidget
@@ -11,11 +14,12 @@ from pytestqt.qtbot import QtBot
 from app.editor.editor_view import Mode
 from app.editor.findings_view import FindingList
 from app.editor.live_proof import Findings
-from app.screen.look import Look
+from app.screen.look import Look, Painter
 from app.screen.panel import Panel
 from app.screen.theme import DARK
 from app.screen.window_layout import FINGER
-from app.shapes.shapes_view import LinesPanel
+from app.shapes import shapes_view
+from app.shapes.shapes_view import LinesPanel, RowsPanel, _Line
 from core.executor.snapshot import State
 from core.language.diagnostics import Diagnostic, Severity
 from tests.screen.editor.writer import Writer
@@ -222,3 +226,60 @@ def test_findings_fit_a_finger_on_the_smallest_screen(qtbot: QtBot) -> None:
     for box, _ in panel._places:
         assert box.height() >= FINGER
         assert panel.area().contains(box)
+
+
+def test_the_list_is_one_key_from_a_form(writer: Writer) -> None:
+    """A finger has no Esc: from the form that the cursor opened, other shapes were behind the number pad."""
+    drilled(writer)
+    writer.key(Key.Key_F10)
+    writer.editor.go_to(5)
+    before = writer.text()
+    writer.key(Key.Key_F3, SHIFT)
+    writer.sees(lambda: writer.editor.shapes.model.form is not None)
+    writer.type("9")
+    assert writer.frame.keys.labels[7] == "LIST" or writer.editor.labels()[7] == "LIST"
+    writer.key(Key.Key_F8)
+    assert writer.editor.shapes.model.listing
+    assert writer.text() == before
+
+
+def test_labels_that_are_long_take_two_lines_and_are_never_cut(qtbot: QtBot) -> None:
+    above = QWidget()
+    qtbot.addWidget(above)
+    panel = RowsPanel(Look(DARK, 6.4), lambda _row, _column: None, above)
+    panel.resize(260, 300)  # as at 1024x600
+    drawn: list[str] = []
+    write = Painter.write
+
+    def writing(painter: Painter, rect: QRectF, text: str, *rest: Any, **more: Any) -> None:
+        drawn.append(text)
+        write(painter, rect, text, *rest, **more)
+
+    panel.rows = (_Line("WALL AT THE CHUCK LEANS BY", "0"), _Line("TOOL", "1"))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Painter, "write", writing)
+        panel.grab()
+    assert "WALL AT THE CHUCK LEANS BY" not in drawn
+    first = next(n for n, text in enumerate(drawn) if text.startswith("WALL"))
+    assert f"{drawn[first]} {drawn[first + 1]}" == "WALL AT THE CHUCK LEANS BY"
+    assert "TOOL" in drawn
+
+
+def test_what_is_unsaid_or_turned_is_not_drawn_as_typed(qtbot: QtBot) -> None:
+    """A question mark stood in the entry as if somebody had typed it, and a bar behind a choice."""
+    above = QWidget()
+    qtbot.addWidget(above)
+    panel = RowsPanel(Look(DARK, 6.4), lambda _row, _column: None, above)
+    panel.resize(260, 300)
+    panel.typing = True
+
+    def image(figure: str) -> QImage:
+        panel.rows = (_Line("DIAMETER", figure),)
+        return panel.grab().toImage()
+
+    assert image("?") == image("")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(shapes_view, "_TURN", "none")
+        typed = image("◂ INCH ▸")
+    panel.rows = ()
+    assert image("◂ INCH ▸") != typed

@@ -341,7 +341,8 @@ def test_the_program_on_the_desk_is_read_anew_when_its_text_has_changed(
     writer.sees(lambda: writer.desk.session.now.phase is Phase.READY)
 
 
-def test_with_no_program_marked_f3_of_the_list_edits_nothing(writer: Writer, tmp_path: Path) -> None:
+def test_f3_of_the_list_begins_a_program_of_a_name_that_none_has(writer: Writer, tmp_path: Path) -> None:
+    """It edits no other one, and nothing is there before it is said so."""
     (tmp_path / "mine.nc").write_text(GOOD)
     assert writer.desk.choose("mine")
     writer.sees(lambda: writer.desk.session.now.phase is Phase.READY)
@@ -351,6 +352,19 @@ def test_with_no_program_marked_f3_of_the_list_edits_nothing(writer: Writer, tmp
     writer.sees(lambda: bool(model.listed))
     writer.type("NOSUCHNAME")
     writer.sees(lambda: not model.listed)
+    writer.key(Key.Key_F3)
+    writer.sees(lambda: writer.frame.keys.labels[0] == "CREATE")
+    writer.key(Key.Key_F10)
+    writer.sees(lambda: writer.front != page_table.EDITOR)
+    assert [path.name for path in tmp_path.glob("*.nc")] == ["mine.nc"]
+
+
+def test_f3_of_an_empty_list_edits_nothing(writer: Writer) -> None:
+    writer.frame.go(page_table.PROGRAMS)
+    model = writer.desk.attached(ProgramList)
+    assert model is not None
+    writer.sees(lambda: bool(model.listed))
+    model.all, model.listed = (), ()
     writer.key(Key.Key_F3)
     assert writer.front == page_table.PROGRAMS
     assert writer.desk.notice == "NO PROGRAM IS MARKED"
