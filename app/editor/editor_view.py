@@ -415,10 +415,10 @@ class EditorPage(Page):
     def show_text(self) -> None:
         """Heading, findings and picture of what is in the field now."""
         editor = self.editor
-        line, column = self.field.line, self.field.column
-        if self.mode is Mode.SHAPES:
-            line = self.shapes.model.line
-        place = f"LINE {line} OF {self.field.blockCount()}  ·  {column}"
+        line, column, count = self.field.line, self.field.column, self.field.blockCount()
+        if self.mode is Mode.SHAPES:  # of the text with what the form writes
+            line, count = self.shapes.model.line, self.shapes.model.text.count("\n") + 1
+        place = f"LINE {line} OF {count}  ·  {column}"
         self.head.heading = Heading(editor.name, self.typed_text.mark, place)
         self.head.with_shapes = self.codes.pictured = written_in(editor.name)
         findings = editor.proof.now

@@ -194,6 +194,8 @@ class Shapes:
             self.notice = tr("A PROGRAM BEGINS WITH ITS HEAD: PRESS N, THEN WRITE IT")
             return
         setting = setting_at(self.lines, self.at, self.shop, self.new)
+        if shape is PROFILE:
+            self.padded = False  # its drawing is picked from: on a small screen the pad has its place
         self.form = self._drawing_form(setting) if shape is PROFILE else ShapeForm(shape, setting)
         self._preview()
 

@@ -166,7 +166,7 @@ class LinesPanel(Panel):
             self._trouble(painter, room)
             return
         room = self._say(painter, room)
-        many = max(1, int(room.height() / high))
+        many = int(room.height() / high)  # none where what is said takes the whole place
         for place, line in enumerate(self.lines[:many]):
             more = place == many - 1 and len(self.lines) > many
             box = QRectF(room.x(), room.y() + place * high, room.width(), high)

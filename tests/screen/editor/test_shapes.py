@@ -283,3 +283,35 @@ def test_what_is_unsaid_or_turned_is_not_drawn_as_typed(qtbot: QtBot) -> None:
         typed = image("◂ INCH ▸")
     panel.rows = ()
     assert image("◂ INCH ▸") != typed
+
+
+def test_what_is_said_of_the_lines_leaves_no_half_line_below(qtbot: QtBot) -> None:
+    above = QWidget()
+    qtbot.addWidget(above)
+    panel = LinesPanel(Look(DARK, 6.4), above)
+    panel.resize(180, 110)
+    panel.words = ("the nose leaves metal there " * 20,)
+    without = panel.grab().toImage()
+    panel.lines = ("T1", "M03S750")
+    assert panel.grab().toImage() == without
+
+
+def test_the_drawing_is_seen_when_its_form_opens(writer: Writer) -> None:
+    """The number pad of the form before lay over it at 1024x600, where the contour is to be picked."""
+    opened(writer)
+    writer.key(Key.Key_F9)
+    assert writer.editor.shapes.model.padded
+    writer.type("x")
+    writer.sees(lambda: writer.editor.shapes.model.form is not None)
+    assert not writer.editor.shapes.model.padded
+
+
+def test_the_heading_counts_the_lines_of_the_text_that_is_proved(writer: Writer) -> None:
+    drilled(writer)
+    writer.sees(lambda: bool(writer.editor.shapes.model.listing))
+    count = len(writer.editor.shapes.model.text.splitlines())
+    writer.type("f.5")
+    form = writer.editor.shapes.model.form
+    assert form is not None
+    written = count + len(form.lines) + 1
+    writer.sees(lambda: f" OF {written} " in writer.editor.head.heading.place)
