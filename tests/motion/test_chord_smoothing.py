@@ -21,8 +21,6 @@ from core.motion.window_planner import ChunkPlanner
 from tests.motion.moves import LIMITS, A, T, arc, chords, line, polyline, programs, rounded_chords
 from tests.motion.paths import build_path
 
-pytestmark = pytest.mark.long
-
 GRAIN = 0.00127  # mm: the step of the shipped lathe, .00005 in
 STEPPED = dataclasses.replace(LIMITS, grain=GRAIN)
 
@@ -44,6 +42,7 @@ def felt(profile: Profile, dt: float) -> float:
     return worst / dt**2 / A
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("grid", [0.0001, 0.001, 0.00127, 0.00254])
 def test_rounded_chords_are_as_fast_as_their_circle(grid: float) -> None:
     """R 50 mm in 0.02 mm chords at 100 mm/s, words of 4 and 3 places of a mm, of .00005 and .0001 in."""
@@ -53,6 +52,7 @@ def test_rounded_chords_are_as_fast_as_their_circle(grid: float) -> None:
     assert felt(profile, T / 2) < 1.05
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("grid", [0.001, 0.00127, 0.00254])
 def test_no_joint_leaves_its_word_by_more_than_a_step(grid: float) -> None:
     blocks = rounded_chords(3000, 100.0, grid)
@@ -62,6 +62,7 @@ def test_no_joint_leaves_its_word_by_more_than_a_step(grid: float) -> None:
     assert off[[0, -1]] == pytest.approx(0.0, abs=1e-12)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("grid", [0.001, 0.00127, 0.00254])
 def test_the_path_is_nearer_to_the_curve_than_the_words(grid: float) -> None:
     blocks = rounded_chords(3000, 100.0, grid)
@@ -95,6 +96,7 @@ def test_a_straight_line_of_uneven_chords_stays_where_it_is() -> None:
     assert np.abs(across).max() < 1e-12
 
 
+@pytest.mark.long
 @settings(max_examples=60, deadline=None)
 @given(programs())
 def test_nothing_but_short_chords_is_touched(blocks: list[Block]) -> None:
@@ -124,6 +126,7 @@ def test_runs_of_chords_end_where_something_else_begins(kind: str) -> None:
     assert joints(path)[300, :2] == pytest.approx(here, abs=0)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("window", [90, 300, 2000])
 def test_windows_equal_the_whole(window: int) -> None:
     blocks = rounded_chords(1500, 100.0, 0.00127)
@@ -137,6 +140,7 @@ def test_windows_equal_the_whole(window: int) -> None:
         assert ends == pytest.approx(begins, abs=1e-9)
 
 
+@pytest.mark.long
 @settings(max_examples=30, deadline=None)
 @given(st.integers(0, 10_000), st.sampled_from([0.001, 0.00127, 0.00254, 0.004]))
 def test_a_path_that_grows_does_not_move_under_the_slides(seed: int, grid: float) -> None:
@@ -168,6 +172,30 @@ def test_what_comes_in_late_still_smooths_the_old_end() -> None:
     assert joints(builder.path()) == pytest.approx(whole, abs=1e-9)
 
 
+@pytest.mark.parametrize("near", [0, 1, 5])
+def test_what_is_no_chord_comes_in_late_as_it_is(near: int) -> None:
+    """A half circle of R 2, a long line and a turn of C behind chords, the slides ``near`` chords before."""
+    there = rounded_chords(200, 100.0, 0.00127)
+    at = there[-1]
+    here, top = (at.x, at.z), (at.x, at.z - 4.0)
+    behind = [
+        line(here, (at.x + 0.02, at.z), 60.0, n=201),
+        arc((at.x + 0.02, at.z), (at.x + 0.02, at.z - 4.0), (at.x + 0.02, at.z - 2.0), 60.0, n=202),
+        line((at.x + 0.02, at.z - 4.0), top, 60.0, n=203),
+        dataclasses.replace(line(top, top, 120.0, n=204), c=90.0),
+    ]
+    builder = PathBuilder(STEPPED)
+    builder.add(there)
+    end = builder.path().s
+    builder.add(behind, float(end[-1 - near]))
+    path = builder.path()
+    assert path.block_span(202)[1] - path.block_span(202)[0] == pytest.approx(2.0 * math.pi, abs=1e-9)
+    assert path.block_span(204)[1] - path.block_span(204)[0] == pytest.approx(90.0, abs=1e-9)
+    ends = path.pieces.point(path.pieces.length)
+    assert ends[:-1] == pytest.approx(path.pieces.start[1:], abs=1e-9)
+    assert path.point(path.s[-1:])[0] == pytest.approx([*top, 90.0], abs=1e-9)
+
+
 def test_where_the_slides_are_near_the_end_the_old_path_stays_as_it_was() -> None:
     blocks = rounded_chords(400, 100.0, 0.00127)
     builder = PathBuilder(STEPPED)
@@ -197,6 +225,7 @@ _short = st.lists(
 )
 
 
+@pytest.mark.long
 @settings(max_examples=150, deadline=None)
 @given(_short, _short)
 def test_nothing_before_a_corner_moves_for_what_comes_behind_it(

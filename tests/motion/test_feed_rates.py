@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -163,3 +164,28 @@ def test_the_axis_is_that_of_the_program() -> None:
         build_path([through], LIMITS, rpm_max=math.inf)
     beside = turning((25, 0), (15, 0), modal=modal, offset_x=-20.0)
     assert build_path([beside], LIMITS, rpm_max=math.inf).length == pytest.approx(10.0)
+
+
+@pytest.mark.parametrize(("start", "end"), [((10, 0), (-10, 0)), ((-40, 0), (8, 3)), ((60, 0), (20, 0))])
+@pytest.mark.parametrize("offset", [20.0, -7.5])
+def test_an_x_offset_moves_the_slide_and_leaves_every_speed(start: Point, end: Point, offset: float) -> None:
+    """What is turned is the same part: the same pieces at the same feeds, by the offset further out."""
+    plain = build_path([turning(start, end)], LIMITS)
+    moved = build_path([turning(start, end, offset_x=offset)], LIMITS)
+    assert moved.pieces.rate == pytest.approx(plain.pieces.rate, rel=1e-9)
+    assert moved.pieces.length == pytest.approx(plain.pieces.length, abs=1e-9)
+    assert moved.pieces.start[:, 0] == pytest.approx(plain.pieces.start[:, 0] + offset, abs=1e-9)
+
+
+def test_each_block_keeps_its_way_beside_one_that_is_split() -> None:
+    """Facing from 100 to 50, 20 along, facing to 30, 5 along: 50, 20, 20 and 5 mm, in this order."""
+    blocks = [
+        turning((100, 0), (50, 0)),
+        replace(line((50, 0), (50, 20)), n=2),
+        replace(turning((50, 20), (30, 20)), n=3),
+        replace(line((30, 20), (30, 25)), n=4),
+    ]
+    path = build_path(blocks, LIMITS)
+    spans = [path.block_span(n) for n in (1, 2, 3, 4)]
+    ways = [0.0, 50.0, 70.0, 90.0, 95.0]
+    assert spans == [pytest.approx(pair) for pair in pairwise(ways)]
