@@ -3,6 +3,9 @@
 ``python -m tests.benchmarks.bench_mutants ROOM [--number N] [--seed 1] [--keep FOLDER]``: the tests of the
 room run once under coverage, which tells which of them come by a line; then each mutant gets a fork of that
 process and those tests, the quickest first. Survivors are printed, and kept for ``docs/reliability.md``.
+
+``--again TESTS``: what lived is played against these tests, also such as are marked long; which test told of
+it is kept beside it.
 """
 
 from __future__ import annotations
@@ -18,6 +21,7 @@ import tempfile
 import time
 from dataclasses import asdict
 from pathlib import Path
+from typing import Any
 
 import coverage
 import pytest
@@ -45,8 +49,8 @@ TOLD, QUIET, HANGS, NOT_PUT = "told", "survives", "hangs", "not put in"
 class Session:
     """The plugin: maps lines to tests, then plays the mutants."""
 
-    def __init__(self, room: str, number: int, seed: int, keep: Path) -> None:
-        self.room, self._number, self._seed, self._keep = room, number, seed, keep
+    def __init__(self, room: str, number: int, seed: int, keep: Path, *, again: bool) -> None:
+        self.room, self._number, self._seed, self._keep, self._again = room, number, seed, keep, again
         self._took: dict[str, float] = {}
         self._failed: set[str] = set()
         self.results: list[tuple[Mutant, str, int]] = []
@@ -58,11 +62,14 @@ class Session:
         chosen = self._chosen()
         for number, mutant in enumerate(chosen, 1):
             names = self._tests(tests_at, mutant)
-            outcome = self._play([items[name] for name in names], mutant) if names else QUIET
+            outcome, by = self._play([items[name] for name in names], mutant) if names else (QUIET, "")
             self.results.append((mutant, outcome, len(names)))
-            if outcome != TOLD:
-                say(f"{number:4d} {outcome:10s} {len(names):4d} tests  {mutant.name}\n")
-            self._keep_so_far()
+            if outcome != TOLD or self._again:
+                say(f"{number:4d} {outcome:10s} {len(names):4d} tests  {mutant.name}  {by}\n")
+            if not self._again:
+                self._keep_so_far()
+            elif outcome == TOLD:
+                self._keep_told(mutant, by or "what ended by itself")
         return True
 
     def _tests(self, tests_at: dict[tuple[str, int], list[str]], mutant: Mutant) -> list[str]:
@@ -72,6 +79,8 @@ class Session:
         return sorted(names, key=self._took.__getitem__)
 
     def _chosen(self) -> list[Mutant]:
+        if self._again:
+            return [found for each in self._lived() if (found := _found_again(each)) is not None]
         paths = sorted(Path(self.room).rglob("*.py"))
         every = [mutant for path in paths for mutant in mutants_of(path)]
         return random.Random(self._seed).sample(every, min(self._number, len(every)))
@@ -111,10 +120,18 @@ class Session:
     def _is_fast(self, name: str) -> bool:
         return bool(name) and name not in self._failed and self._took[name] < SLOW
 
-    def _play(self, items: list[pytest.Item], mutant: Mutant) -> str:
+    def _play(self, items: list[pytest.Item], mutant: Mutant) -> tuple[str, str]:
+        """How it ended, and the test that told."""
+        told, tells = os.pipe()
         child = os.fork()
         if child == 0:
-            self._in_fork(items, mutant)
+            self._in_fork(items, mutant, tells)
+        os.close(tells)
+        outcome = self._ended(child)
+        with os.fdopen(told, "rb") as pipe:
+            return outcome, pipe.read().decode() if outcome == TOLD else ""
+
+    def _ended(self, child: int) -> str:
         end = time.monotonic() + WALL
         while time.monotonic() < end:
             ended, status = os.waitpid(child, os.WNOHANG)
@@ -127,32 +144,53 @@ class Session:
         os.waitpid(child, 0)
         return TOLD
 
-    def _in_fork(self, items: list[pytest.Item], mutant: Mutant) -> None:
+    def _in_fork(self, items: list[pytest.Item], mutant: Mutant, tells: int) -> None:
         """Never comes back."""
         resource.setrlimit(resource.RLIMIT_CPU, (int(2 * BUDGET), int(2 * BUDGET) + 1))
         status = 2
         try:
             if put_in(mutant):
-                status = int(self._tells(items))
+                by = self._tells(items)
+                os.write(tells, by.encode())
+                status = int(bool(by))
         finally:
             os._exit(status)
 
-    def _tells(self, items: list[pytest.Item]) -> bool:
+    def _tells(self, items: list[pytest.Item]) -> str:
+        """The first test that fails, or none."""
         spent = 0.0
         for item in items:
             spent += self._took[item.nodeid]
             if spent > BUDGET:
-                return False
+                return ""
             item._initrequest()  # type: ignore[attr-defined]  # as it was before it ran
             if any(report.failed for report in runtestprotocol(item, log=False, nextitem=None)):
-                return True
-        return False
+                return item.nodeid
+        return ""
+
+    def _rooms(self) -> dict[str, Any]:
+        kept = self._keep / "mutants.json"
+        return dict(json.loads(kept.read_text())["rooms"]) if kept.exists() else {}
+
+    @property
+    def _name(self) -> str:
+        fresh = f", seed {self._seed}" if self._seed != 1 else ""  # a sample that no test was written for
+        return f"{self.room}{fresh}"
+
+    def _lived(self) -> list[dict[str, Any]]:
+        every: list[dict[str, Any]] = self._rooms()[self._name]["survivors"]
+        return [each for each in every if "told by" not in each]
+
+    def _keep_told(self, mutant: Mutant, by: str) -> None:
+        rooms = self._rooms()
+        for each in rooms[self._name]["survivors"]:
+            if all(each[key] == getattr(mutant, key) for key in ("path", "function", "kind", "words")):
+                each["told by"] = by.partition("[")[0]
+        keep_result("mutants", {"rooms": rooms}, self._keep)
 
     def _keep_so_far(self) -> None:
-        kept = self._keep / "mutants.json"
-        rooms = json.loads(kept.read_text())["rooms"] if kept.exists() else {}
-        again = f", seed {self._seed}" if self._seed != 1 else ""  # a sample that no test was written for
-        rooms[f"{self.room}{again}"] = {
+        rooms = self._rooms()
+        rooms[self._name] = {
             "seed": self._seed,
             "mutants": len(self.results),
             "told": sum(outcome == TOLD for _, outcome, _ in self.results),
@@ -160,6 +198,16 @@ class Session:
             "survivors": [asdict(m) | {"tests": n} for m, outcome, n in self.results if outcome == QUIET],
         }
         keep_result("mutants", {"rooms": rooms}, self._keep)
+
+
+def _found_again(kept: dict[str, Any]) -> Mutant | None:
+    """The mutant in the module as it is now: at its place, or the first with its words in its function."""
+    same = [
+        each
+        for each in mutants_of(Path(kept["path"]))
+        if (each.function, each.kind, each.words) == (kept["function"], kept["kind"], kept["words"])
+    ]
+    return next((each for each in same if each.place == kept["place"]), same[0] if same else None)
 
 
 def say(text: str) -> None:
@@ -175,11 +223,13 @@ def main() -> int:
     parser.add_argument("--number", type=int)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--keep", type=Path, default=RESULTS, help="folder of the figures")
+    parser.add_argument("--again", nargs="+", metavar="TESTS", help="play what lived against these tests")
     wanted = parser.parse_args()
     number, tests = ROOMS[wanted.room]
-    plugin = Session(wanted.room, wanted.number or number, wanted.seed, wanted.keep)
-    words = ["-q", "-p", "no:cacheprovider", "-p", "no:xdist", "-m", "not long", "--capture=fd", *tests]
-    pytest.main(words, plugins=[plugin])
+    again: list[str] = wanted.again or []
+    plugin = Session(wanted.room, wanted.number or number, wanted.seed, wanted.keep, again=bool(again))
+    which = again or ["-m", "not long", *tests]
+    pytest.main(["-q", "-p", "no:cacheprovider", "-p", "no:xdist", "--capture=fd", *which], plugins=[plugin])
     told = sum(outcome == TOLD for _, outcome, _ in plugin.results)
     say(f"{wanted.room}: {told} of {len(plugin.results)} told\n")
     return 0
