@@ -1,0 +1,268 @@
+"""Single parts of the executor whose figures follow with a pencil, asked without a program."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import Any
+
+import pytest
+
+from core.executor.commands import (
+    BarNextPart,
+    Command,
+    ConfirmStart,
+    EnableDrives,
+    FeedOverride,
+    ForceOutput,
+    Home,
+    Jog,
+    SetSwitch,
+    SpindleLimit,
+)
+from core.executor.drive_test_path import DriveTestPath, Limits, Shape
+from core.executor.homing_order import Homing
+from core.executor.raised_alarm import AlarmError
+from core.executor.snapshot import State
+from core.executor.spindle_control import SpindleAngle, SpindleDemand
+from core.executor.standstill import at_speed
+from core.executor.thread_path import ThreadPath
+from core.ports import Stop
+from tests.executor.played_controller import context_of
+from tests.executor.rig import Rig
+from tests.executor.test_thread_curve import LIMITS, OUT, place, thread
+
+# --- what is asked for and not done ---------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("asked", "why"),
+    [
+        (EnableDrives(), "drives cannot be switched on in state READY"),
+        (SetSwitch("no such", True), "there is no switch 'no such'"),
+        (FeedOverride(1.51), "feed override 1.51 is not between 0 and 1.5"),
+        (FeedOverride(-0.01), "feed override -0.01 is not between 0 and 1.5"),
+        (SpindleLimit(0.0), "spindle limit 0 is not between 0 and "),
+        (SpindleLimit(1e5), "spindle limit 100000 is not between 0 and "),
+        (ConfirmStart("12:00"), "there is no interrupted job to be answered for now"),
+        (Home("Q"), "homing: this machine has no axis Q to home"),
+        (ForceOutput("no such", True), "no such"),
+    ],
+)
+def test_what_cannot_be_is_refused_with_its_reason_and_changes_nothing(asked: Command, why: str) -> None:
+    rig = Rig()
+    rig.ready()
+    before = rig.shot
+    rig.post(asked)
+    (told,) = rig.said("refused")
+    assert why in told
+    assert rig.state is State.IDLE
+    for name in ("demand", "outputs", "feed_override", "spindle_override", "modal"):
+        assert getattr(rig.shot, name) == getattr(before, name)
+
+
+def test_drives_stay_off_while_an_alarm_stands_and_no_jog_begins() -> None:
+    rig = Rig()
+    rig.sim.machine.press_estop()
+    rig.run(0.1)
+    rig.post(Jog("X", 1.0, 0.2))
+    assert rig.said("refused")[-1].startswith("no jog in state ")
+    rig.post(EnableDrives())
+    assert "drives" in rig.said("refused")[-1]
+    assert not rig.sim.ports.axes.sample().enabled
+
+
+def test_a_bar_for_the_next_part_is_told_once_and_taken_back_once() -> None:
+    rig = Rig()
+    for why in ("the insert is worn", "the insert is worn", "", ""):
+        rig.post(BarNextPart(why))
+    assert rig.said("switch") == ["no other part: the insert is worn", "parts may go on"]
+
+
+# --- drive tests ----------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("frequency", "waves", "pieces"), [(2.0, 5, 40), (20.0, 16, 25), (90.0, 72, 12)])
+def test_a_wave_has_forty_pieces_none_shorter_than_two_milliseconds_and_twelve_at_least(
+    frequency: float, waves: int, pieces: int
+) -> None:
+    """20 Hz: a wave takes 50 ms. Five waves at least, and .8 s."""
+    path = DriveTestPath("X", Shape.SINE, 0.1, frequencies=(frequency,))
+    ramps = path.ramps(Limits(top=42.3, amax=3048.0, rate=1000.0))
+    assert len(ramps) == waves * pieces + 1  # and the rest behind it
+    assert [dt for dt, _, _ in ramps[:-1]] == pytest.approx([1.0 / frequency / pieces] * waves * pieces)
+
+
+# --- threads --------------------------------------------------------------------------------------------------
+
+
+def test_a_chain_begins_at_its_first_place_with_its_first_lead() -> None:
+    """Half a turn more lead each turn: 3 mm in two turns are 1.5 on average, 1 at the begin."""
+    growing = thread(1, 0.0, -3.0, 1.5, growth=0.5, x0=4.0)
+    path = ThreadPath.of([growing, thread(2, -3.0, -7.0, 2.0), OUT], LIMITS)
+    assert (path.x, path.z, path.lead) == pytest.approx((4.0, 0.0, 1.0))
+
+
+def test_joints_closer_than_a_turn_are_followed() -> None:
+    """Half a turn of lead 1, .75 of lead 2, half of lead 4: each joint within a turn of both ends."""
+    chain = [thread(1, 0.0, -0.5, 1.0), thread(2, -0.5, -2.0, 2.0), thread(3, -2.0, -4.0, 4.0)]
+    way, left = ThreadPath.of([*chain, OUT], LIMITS).onwards(0.0, 0.0, 1.0, [])
+    for t, z in ((0.25, -0.25), (0.75, -1.0), (1.0, -1.5), (1.5, -3.0)):
+        assert place(way, t) == pytest.approx((5.0, z), abs=1e-6)
+    assert left == pytest.approx(1.75, abs=0.002)
+
+
+# --- the spindle ----------------------------------------------------------------------------------------------
+
+
+def test_an_encoder_that_is_read_along_a_cubic_is_that_cubic() -> None:
+    """Turns t³ + 2t² + 3t: at .3 s .027 + .18 + .9, and 3t² + 4t + 3 turns a second there."""
+    angle = SpindleAngle()
+    for n in range(21):
+        t = 0.01 * n
+        angle.note((t, t**3 + 2.0 * t * t + 3.0 * t))
+    turns, speed = angle.at(0.21) or (math.nan, math.nan)
+    assert turns == pytest.approx(0.21**3 + 2.0 * 0.21**2 + 3.0 * 0.21, abs=1e-9)
+    assert speed == pytest.approx(3.0 * 0.21**2 + 4.0 * 0.21 + 3.0, abs=1e-6)
+
+
+@pytest.mark.parametrize("rpm", [60.0, 137.0, 600.0, 3000.0])
+def test_readings_of_4096_steps_tell_45_ms_ahead_within_three_steps(rpm: float) -> None:
+    """Each reading is off by half a step at most; a polynomial of a higher degree makes five of it."""
+    for phase in range(7):
+        angle, first = SpindleAngle(), 0.13 * phase / 4096.0
+        for n in range(60):
+            t = 0.01 * n
+            angle.note((t, round((rpm / 60.0 * t + first) * 4096.0) / 4096.0))
+            told = angle.at(t + 0.045)
+            if n > 30 and told is not None:
+                assert abs(told[0] - rpm / 60.0 * (t + 0.045) - first) < 3.0 / 4096.0
+
+
+@dataclass
+class _Port:
+    """A spindle's drive that turns as it is told."""
+
+    told: list[float] = field(default_factory=list)
+
+    def run(self, rpm: float) -> None:
+        self.told.append(rpm)
+
+    def speed(self) -> float:
+        return self.told[-1] if self.told else 0.0
+
+    def fault(self) -> str:
+        return ""
+
+
+def test_a_command_is_sent_once_and_once_more_when_it_is_permitted_again() -> None:
+    """A drive may have dropped it; told at each tick it would be a wire full of the same word."""
+    context, port = context_of(None), _Port()
+    spindle = context.spindle
+    spindle._port = port  # type: ignore[assignment]
+    spindle.ask(SpindleDemand(600.0))
+    for n in range(5):
+        spindle.update(0.01 * n, 10.0)
+    assert port.told == [600.0]
+    spindle.permit()
+    for n in range(5, 10):
+        spindle.update(0.01 * n, 10.0)
+    assert port.told == [600.0, 600.0]
+
+
+def test_the_time_limit_for_the_speed_counts_from_when_the_operator_lets_it_turn() -> None:
+    """A minute with the pot at 0 is no alarm; then the timeout of the machine file counts whole."""
+    context = context_of(None)
+    context.spindle.ask(SpindleDemand(600.0))
+    context.spindle.override = 0.0
+    wait = at_speed(context)
+    for second in range(60):
+        context.now = float(second)
+        assert not wait.over(context.now)
+    context.spindle.override = 1.0
+    context.now = 59.0 + context.machine.spindle.timeout - 0.1
+    assert not wait.over(context.now)
+    context.now += 0.2
+    with pytest.raises(AlarmError) as told:
+        wait.over(context.now)
+    assert told.value.code == "at-speed"
+
+
+# --- homing ---------------------------------------------------------------------------------------------------
+
+
+@dataclass
+class _Sample:
+    homed: tuple[bool, ...] = (False, False, True)
+    moving: bool = False
+
+
+@dataclass
+class _Axes:
+    axes: tuple[str, ...] = ("X", "Z", "C")
+    asked: list[str] = field(default_factory=list)
+    stopped: list[Stop] = field(default_factory=list)
+
+    def home(self, name: str) -> None:
+        self.asked.append(name)
+
+    def stop(self, how: Stop) -> None:
+        self.stopped.append(how)
+
+
+def homing() -> tuple[Homing, Any, _Axes]:
+    """Of the shipped lathe, X and Z lost."""
+    context, axes = context_of(None), _Axes()
+    context.ports = context.ports.__class__(**{**vars_of(context.ports), "axes": axes})
+    context.sample = _Sample()  # type: ignore[assignment]
+    return Homing(context), context, axes
+
+
+def vars_of(ports: Any) -> dict[str, Any]:
+    """Of a frozen dataclass with slots."""
+    return {name: getattr(ports, name) for name in ports.__dataclass_fields__}
+
+
+def test_the_next_axis_waits_until_the_one_before_stands() -> None:
+    order, context, axes = homing()
+    assert order.begin("") == ""
+    assert not order.step()
+    first = axes.asked[0]
+    for n in range(5):
+        context.now, context.sample = 0.01 * n, _Sample(moving=True)
+        assert not order.step()
+    found = {"X": (True, False, True), "Z": (False, True, True)}[first]
+    context.now, context.sample = 0.06, _Sample(homed=found, moving=True)
+    assert not order.step()
+    assert len(axes.asked) == 1  # found, and still braking
+    context.now, context.sample = 0.07, _Sample(homed=found)
+    assert not order.step()
+    assert sorted(axes.asked) == ["X", "Z"]
+    context.now, context.sample = 0.08, _Sample(homed=(True, True, True), moving=True)
+    assert not order.step()
+    context.sample = _Sample(homed=(True, True, True))
+    assert order.step()
+
+
+def test_homing_of_what_is_not_lost_or_not_there_does_not_begin_and_given_up_it_stops() -> None:
+    order, context, axes = homing()
+    assert order.begin("Q") == "this machine has no axis Q to home"
+    context.sample = _Sample(homed=(True, True, True))
+    assert order.begin("") == "every axis knows its position"
+    context.sample = _Sample()
+    order.begin("X")
+    order.step()
+    order.stop()
+    assert (axes.asked, axes.stopped) == (["X"], [Stop.RAMP_HOLD])
+    context.sample = _Sample(homed=(True, False, True))
+    assert order.step()
+    assert axes.asked == ["X"]
+
+
+# --- outputs --------------------------------------------------------------------------------------------------
+
+
+def test_who_writes_through_the_remembered_outputs_reads_the_drivers_inputs() -> None:
+    context = context_of(None)
+    assert dict(context.outputs.inputs()) == dict(context.ports.io.inputs())
+    assert context.outputs.inputs()
