@@ -2,7 +2,7 @@
 
 ``--minutes`` of processor time are for each target. It needs atheris (``pip install atheris``); without it
 it says so and ends. Prints executions, the edges that were reached and the faults, and keeps them for
-``docs/reliability.md``.
+``docs/reliability.md`` beside those of targets that were fuzzed before.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from tests.benchmarks.footprint import keep_result
+from tests.benchmarks.footprint import RESULTS, keep_result
 from tests.fuzz.fuzz_target import faults_in
 
 NAMES = (
@@ -66,7 +66,8 @@ def main() -> int:
     if importlib.util.find_spec("atheris") is None:
         sys.stdout.write("skipped: atheris is not installed; pip install atheris, then run this again\n")
         return 0
-    figures: dict[str, Any] = {}
+    kept = (wanted.keep or RESULTS) / "fuzz.json"
+    figures: dict[str, Any] = json.loads(kept.read_text())["targets"] if kept.exists() else {}
     with tempfile.TemporaryDirectory() as folder:
         for name in wanted.names or NAMES:
             place = Path(folder) / name.replace(" ", "-").replace("'", "")
@@ -81,7 +82,7 @@ def main() -> int:
                 sys.stdout.write(f"    {fault['kind']} {fault['where']}: {fault['text']}\n")
             sys.stdout.flush()
             keep_result("fuzz", {"targets": figures}, wanted.keep)
-    return int(any(each["faults"] for each in figures.values()))
+    return int(any(figures[name]["faults"] for name in wanted.names or NAMES))
 
 
 if __name__ == "__main__":
