@@ -32,7 +32,7 @@ from tests.executor.played_controller import context_of
 from tests.executor.rig import Rig
 from tests.executor.test_thread_curve import LIMITS, OUT, place, thread
 
-# --- what is asked for and not done ---------------------------------------------------------------------------
+# --- what is asked for and not done -------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
@@ -79,7 +79,7 @@ def test_a_bar_for_the_next_part_is_told_once_and_taken_back_once() -> None:
     assert rig.said("switch") == ["no other part: the insert is worn", "parts may go on"]
 
 
-# --- drive tests ----------------------------------------------------------------------------------------------
+# --- drive tests --------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(("frequency", "waves", "pieces"), [(2.0, 5, 40), (20.0, 16, 25), (90.0, 72, 12)])
@@ -93,7 +93,7 @@ def test_a_wave_has_forty_pieces_none_shorter_than_two_milliseconds_and_twelve_a
     assert [dt for dt, _, _ in ramps[:-1]] == pytest.approx([1.0 / frequency / pieces] * waves * pieces)
 
 
-# --- threads --------------------------------------------------------------------------------------------------
+# --- threads ------------------------------------------------------------------------------------------------
 
 
 def test_a_chain_begins_at_its_first_place_with_its_first_lead() -> None:
@@ -112,7 +112,7 @@ def test_joints_closer_than_a_turn_are_followed() -> None:
     assert left == pytest.approx(1.75, abs=0.002)
 
 
-# --- the spindle ----------------------------------------------------------------------------------------------
+# --- the spindle --------------------------------------------------------------------------------------------
 
 
 def test_an_encoder_that_is_read_along_a_cubic_is_that_cubic() -> None:
@@ -159,7 +159,7 @@ def test_a_command_is_sent_once_and_once_more_when_it_is_permitted_again() -> No
     """A drive may have dropped it; told at each tick it would be a wire full of the same word."""
     context, port = context_of(None), _Port()
     spindle = context.spindle
-    spindle._port = port  # type: ignore[assignment]
+    spindle._port = port
     spindle.ask(SpindleDemand(600.0))
     for n in range(5):
         spindle.update(0.01 * n, 10.0)
@@ -188,7 +188,7 @@ def test_the_time_limit_for_the_speed_counts_from_when_the_operator_lets_it_turn
     assert told.value.code == "at-speed"
 
 
-# --- homing ---------------------------------------------------------------------------------------------------
+# --- homing -------------------------------------------------------------------------------------------------
 
 
 @dataclass
@@ -214,7 +214,7 @@ def homing() -> tuple[Homing, Any, _Axes]:
     """Of the shipped lathe, X and Z lost."""
     context, axes = context_of(None), _Axes()
     context.ports = context.ports.__class__(**{**vars_of(context.ports), "axes": axes})
-    context.sample = _Sample()  # type: ignore[assignment]
+    context.sample = _Sample()
     return Homing(context), context, axes
 
 
@@ -259,7 +259,7 @@ def test_homing_of_what_is_not_lost_or_not_there_does_not_begin_and_given_up_it_
     assert axes.asked == ["X"]
 
 
-# --- outputs --------------------------------------------------------------------------------------------------
+# --- outputs ------------------------------------------------------------------------------------------------
 
 
 def test_who_writes_through_the_remembered_outputs_reads_the_drivers_inputs() -> None:

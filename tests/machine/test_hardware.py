@@ -150,6 +150,7 @@ def test_addresses_of_terminals() -> None:
         ('"6007:0" = 3', '"6007:0" = 3.5', 'canopen.sdo.all."6007:0"', "whole number"),
         ('"6007:0" = 3', '"6007:0" = true', 'canopen.sdo.all."6007:0"', "whole number"),
         ("all = {", "everything = {", "canopen.sdo.everything", "unknown key"),
+        ('all = { "6007:0" = 3, "605E:0" = 2 }', "all = 3", "canopen.sdo.all", "expected a table"),
         # 127 << 16 | 300 is 8323372; 126 << 16 | 300 is 8257836
         ('"6007:0" = 3', '"1016:1" = 8257836', 'canopen.sdo.all."1016:1"', "8323372"),
         ('"6007:0" = 3', '"1016:1" = 8323172', 'canopen.sdo.all."1016:1"', "for 100 ms"),

@@ -7,7 +7,9 @@ import dataclasses
 import pytest
 
 from core.ports import DriverError, StationState
-from drivers.pendant.input_events import Packets
+from drivers.pendant.input_codes import wheel_of
+from drivers.pendant.input_events import InputEvent, Packet, Packets
+from drivers.pendant.pendant_buttons import AxisRange, PendantButtons
 from drivers.pendant.pendant_reader import Pendant
 from drivers.pendant.pendant_station import LOST, PendantIO, PendantStation
 from drivers.pendant.pendant_table import STOPS
@@ -28,6 +30,8 @@ from tests.drivers.pendant.made import (
     WHEEL,
     Peer,
 )
+
+ABS_WHEEL = 8  # of the kernel's header
 
 
 class Bench:
@@ -152,7 +156,7 @@ def test_a_dial_that_tells_its_place_moves_nothing_by_a_report_of_the_same_place
     assert bench.counts == 1 + (254 - 201)
 
 
-# --- what does not count ----------------------------------------------------------------------------------
+# --- what does not count --------------------------------------------------------------------------------
 
 
 def test_what_is_down_when_it_is_plugged_in_counts_from_the_next_press_on() -> None:
@@ -234,7 +238,7 @@ def test_a_key_that_came_up_in_what_was_dropped_is_up() -> None:
     assert bench.held == set()
 
 
-# --- unplugged --------------------------------------------------------------------------------------------
+# --- unplugged ------------------------------------------------------------------------------------------
 
 
 class Inner:
@@ -356,3 +360,92 @@ def test_a_control_at_rest_hears_at_once_that_something_was_pressed_turned_or_un
     bench.plug()
     bench.look()
     assert bench.rung > before
+
+
+# --- wheels and sticks that tell a place --------------------------------------------------------------------
+
+
+class Said:
+    """Buttons without a device: what is told goes straight in."""
+
+    def __init__(self, wheel: str, ranges: dict[int, AxisRange], keys: tuple[int, ...] = ()) -> None:
+        self.buttons = PendantButtons(BOUND, frozenset(STOPS), wheel_of(wheel))
+        self.buttons.begin(keys, ranges)
+
+    def tell(self, kind: int, code: int, value: int, ago: float = 0.0) -> None:
+        self.buttons.take(Packet((InputEvent(10.0 - ago, kind, code, value),)), 10.0)
+
+
+def test_an_absolute_wheel_counts_from_where_it_stands_and_round_its_end() -> None:
+    """0 to 255: from 250 to 5 are eleven on, back to 255 six the other way; a late one moves its place."""
+    said = Said("ABS_WHEEL", {ABS_WHEEL: AxisRange(0, 255, 250)})
+    counts = []
+    for value, ago in ((5, 0.0), (255, 0.0), (200, 5.0), (201, 0.0)):
+        said.tell(ABS, ABS_WHEEL, value, ago)
+        counts.append(said.buttons.counts)
+    assert counts == [11, 5, 5, 6]
+
+
+def test_an_absolute_wheel_without_a_range_counts_nothing() -> None:
+    said = Said("ABS_WHEEL", {ABS_WHEEL: AxisRange(3, 3, 3)})
+    for value in (4, 9, 3):
+        said.tell(ABS, ABS_WHEEL, value)
+    assert said.buttons.counts == 0
+
+
+@pytest.mark.parametrize("ranges", [{}, {ABS_HAT0X: AxisRange(0, 0, 0)}])
+def test_a_stick_of_which_the_range_is_not_known_is_never_held(ranges: dict[int, AxisRange]) -> None:
+    said = Said("REL_DIAL", ranges)
+    for value in (1, 255, -32768):
+        said.tell(ABS, ABS_HAT0X, value)
+        assert said.buttons.down == set()
+
+
+def test_a_stick_is_held_to_one_side_until_it_is_back() -> None:
+    said = Said("REL_DIAL", {ABS_HAT0X: AxisRange(0, 200, 100)})
+    seen = []
+    for value in (140, 190, 140, 105, 10):
+        said.tell(ABS, ABS_HAT0X, value)
+        seen.append(set(said.buttons.down))
+    assert seen == [set(), {"jog_z_plus"}, {"jog_z_plus"}, set(), {"jog_z_minus"}]
+
+
+def test_a_late_report_of_a_button_that_is_held_changes_nothing() -> None:
+    said = Said("REL_DIAL", {})
+    said.tell(KEY, BTN_A, 1)
+    said.tell(KEY, BTN_A, 1, ago=5.0)
+    assert said.buttons.down == {"jog_x_plus"}
+    said.buttons.gone()
+    assert said.buttons.down == set()
+
+
+# --- the reader ---------------------------------------------------------------------------------------------
+
+
+class Pulled(Peer):
+    """Found, and gone before it says what is pressed."""
+
+    def keys(self) -> frozenset[int]:
+        raise OSError(19, "No such device")
+
+
+def test_one_that_goes_while_it_is_opened_is_let_go_and_looked_for_again() -> None:
+    bench = Bench()
+    bench.device.pull()
+    bench.look()
+    gone = Pulled()
+    bench.peer = gone
+    bench.look()
+    assert gone.closed
+    assert "unplugged" in bench.pendant.state().away
+    bench.plug()
+    bench.look()
+    assert bench.pendant.state().away == ""
+
+
+def test_a_pendant_that_was_never_started_is_let_go() -> None:
+    bench = Bench()
+    device = bench.device
+    bench.pendant.close()
+    assert device.closed
+    assert bench.pendant.state().away == "the pendant is no longer read"

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import os
+import struct
 from pathlib import Path
 
 import pytest
 
 from core.ports import DriverError
-from drivers.pendant.input_codes import KEY, REL, Control, button_of, wheel_of
+from drivers.pendant.input_codes import ABS, KEY, REL, Control, button_of, wheel_of
 from drivers.pendant.input_devices import DeviceEntry, KernelDevice, chosen, entries
 
 WANTED = {"hold": Control(KEY, 0x131), "handwheel": Control(REL, 7)}
@@ -59,6 +61,13 @@ def test_capabilities_are_words_of_64_bits_the_highest_first(tmp_path: Path) -> 
     assert second.bluetooth
 
 
+def test_a_device_that_is_pulled_out_while_it_is_read_is_none(tmp_path: Path) -> None:
+    in_sysfs(tmp_path, "event3", "Shop Pendant")
+    (tmp_path / "event4" / "device").mkdir(parents=True)  # without its name
+    (tmp_path / "event5").mkdir()
+    assert [each.node for each in entries(tmp_path)] == ["event3"]
+
+
 @pytest.mark.parametrize("device", ["Shop Pendant", "shop pendant", "0B33:0030"])
 def test_by_name_or_by_number(device: str) -> None:
     other = entry(node="event4", name="Keyboard", numbers="046d:c31c", stem="usb-1.1")
@@ -106,6 +115,38 @@ def test_what_may_not_be_read_says_the_rule_to_add(tmp_path: Path, monkeypatch: 
         KernelDevice(entry(), tmp_path)
     assert 'ATTRS{idVendor}=="0b33", ATTRS{idProduct}=="0030", TAG+="uaccess"' in str(caught.value)
     assert "/etc/udev/rules.d/70-turndesk-pendant.rules" in str(caught.value)
+
+
+def test_a_node_that_is_gone_is_told_with_the_cause(tmp_path: Path) -> None:
+    with pytest.raises(DriverError, match="the pendant Shop Pendant cannot be opened: No such file"):
+        KernelDevice(entry(), tmp_path)
+
+
+def test_the_kernel_is_asked_by_the_numbers_of_its_header(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """EVIOCSCLOCKID, EVIOCGRAB, EVIOCGKEY of 96 bytes, EVIOCGABS of axis 16, as linux/input.h makes them."""
+    asked: list[int] = []
+
+    def ioctl(_device: int, request: int, value: object) -> None:
+        asked.append(request)
+        if request == 0x80604518:
+            assert isinstance(value, bytearray)
+            value[0x131 // 8] |= 1 << 0x131 % 8
+        if request == 0x80184550:
+            memoryview(value).cast("B")[:] = struct.pack("@iiiiii", 7, -1, 255, 0, 0, 0)  # type: ignore[arg-type]
+
+    monkeypatch.setattr("drivers.pendant.input_devices._ioctl", ioctl)
+    os.mkfifo(tmp_path / "event3")
+    device = KernelDevice(entry(able=ABLE | {(ABS, 0x10)}), tmp_path)
+    try:
+        assert device.keys() == {0x131}
+        assert device.ranges() == {0x10: (-1, 255, 7)}
+        assert asked == [0x400445A0, 0x40044590, 0x80604518, 0x80184550]
+        assert device.read() == b""
+    finally:
+        device.close()
+    device.close()  # a second time is nothing
 
 
 def test_a_file_that_is_no_device_is_none(tmp_path: Path) -> None:

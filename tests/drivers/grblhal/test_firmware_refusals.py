@@ -1,0 +1,86 @@
+"""What the look-alike refuses, with the numbers that the firmware's ``errors.h`` has for it."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.drivers.grblhal.test_firmware_habits import LATHE, STATUS, Desk
+
+# Numbers of errors.h: bad number, unknown statement, not idle, unknown word, no feed, line number,
+# no target, no such port, spindle stands, too fast for the slide.
+BAD_NUMBER, STATEMENT, NOT_IDLE, UNKNOWN, NO_FEED, LINE_NUMBER = 2, 3, 8, 20, 22, 27
+NO_TARGET, NO_PORT, SPINDLE_STANDS, TOO_FAST = 33, 39, 41, 43
+
+
+@pytest.mark.parametrize(
+    ("line", "error"),
+    [
+        ("G1X", BAD_NUMBER),
+        ("G1X1..2F60", BAD_NUMBER),
+        ("$what", STATEMENT),
+        ("$HQ", STATEMENT),
+        ("G5X1", UNKNOWN),
+        ("M17", UNKNOWN),
+        ("M64P16", NO_PORT),
+        ("M65P-1", NO_PORT),
+        ("G1X1Z1", NO_FEED),
+        ("$J=G53X5", NO_FEED),
+        ("N10000001G1X1F60", LINE_NUMBER),
+        ("G2X1Z1I9K9F60", NO_TARGET),
+        ("G33Z5K0", NO_PORT),
+        ("G33Z5K1", SPINDLE_STANDS),
+    ],
+)
+def test_a_line_that_cannot_be_is_refused_and_moves_nothing(line: str, error: int) -> None:
+    desk = Desk()
+    desk.say(LATHE)
+    assert desk.say(f"{line}\n".encode()) == [f"error:{error}"]
+    desk.hear(0.2)
+    assert desk.firmware.slides.place == (0.0, 0.0)
+    assert desk.say(STATUS)[0].startswith("<Idle|")
+    assert desk.say(b"M8\n") == [f"error:{error}"]
+    assert desk.say(b"\n") == ["ok"]  # an empty line ends a standing error
+    assert desk.say(b"M8\n") == ["ok"]
+
+
+def test_an_arc_in_another_plane_than_g18_is_refused() -> None:
+    desk = Desk()
+    desk.say(LATHE + b"G17\n")
+    assert desk.say(b"G2X1Z1I1F60\n") == [f"error:{NO_TARGET}"]
+
+
+@pytest.mark.parametrize(("line", "built"), [("G8", False), ("G96S100", False), ("G8", True)])
+def test_words_of_a_lathe_need_its_lathe_mode(line: str, built: bool) -> None:
+    desk = Desk(lathe=False, built_for_lathes=built)
+    answer = desk.say(f"{line}\n".encode())
+    assert answer == (["ok"] if built else [f"error:{UNKNOWN}"])
+
+
+def test_without_an_encoder_no_feed_by_the_turn_and_no_thread() -> None:
+    desk = Desk(encoder=False)
+    desk.say(b"G8G18G21G90G94\nM3S600\n")
+    desk.hear(2.0)
+    assert desk.say(b"G95\n") == [f"error:{UNKNOWN}"]
+    assert desk.say(b"G33Z5K1\n") == [f"error:{UNKNOWN}"]
+
+
+def test_a_thread_that_the_slide_cannot_keep_up_with_is_refused() -> None:
+    """20 mm at 600 rpm are 12 000 mm/min of 7620."""
+    desk = Desk()
+    desk.say(LATHE + b"M3S600\n")
+    desk.hear(5.0)
+    assert desk.say(b"G33Z50K20\n") == [f"error:{TOO_FAST}"]
+
+
+def test_while_a_line_moves_no_jog_and_no_setting_is_taken() -> None:
+    desk = Desk()
+    desk.say(LATHE + b"G1X50F600\n")
+    desk.hear(0.5)
+    assert desk.say(b"$J=G53X5F600\n") == [f"error:{NOT_IDLE}"]
+    assert desk.say(b"$110=5000\n") == [f"error:{NOT_IDLE}"]
+    desk.hear(10.0)
+    assert desk.firmware.slides.place == pytest.approx((50.0, 0.0))
+
+
+def test_unlocking_what_is_not_locked_is_well_and_says_nothing() -> None:
+    assert Desk().say(b"$X\n") == ["ok"]

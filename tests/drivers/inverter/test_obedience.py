@@ -1,0 +1,78 @@
+"""Whether an inverter does as it was told: what it says against what was asked, second by second."""
+
+from __future__ import annotations
+
+import pytest
+
+from drivers.inverter.inverter_family import Look
+from drivers.inverter.inverter_obedience import OBEYS_WITHIN, PRESS, Obedience
+
+
+def look(output: float, setpoint: float = 20.0, **words: bool) -> Look:
+    return Look(output, setpoint, **{"run": True, "reverse": False, "asked_reverse": False, **words})
+
+
+STOOD = look(0.0, 0.0, run=False)
+
+
+def judged(asked: float, seen: Look, *, before: Look = STOOD, first: float = 0.0) -> tuple[str, str]:
+    """Just within the second that it has, and just behind it."""
+    obedience = Obedience()
+    if first:
+        obedience.command(-9.0, first, STOOD)
+        obedience.judge(-5.0, before)
+    obedience.command(0.0, asked, before)
+    return obedience.judge(OBEYS_WITHIN - 0.01, seen), obedience.judge(OBEYS_WITHIN + 0.01, seen)
+
+
+@pytest.mark.parametrize(
+    ("asked", "seen", "why"),
+    [
+        (20.0, look(0.0, 25.0), "told 20.00 Hz, it has understood 25.00 Hz"),
+        (20.0, look(0.0, run=False), "told to turn at 20.0 Hz, it does not run"),
+        (20.0, look(5.0, asked_reverse=True), "it has understood the other direction"),
+        (-20.0, look(5.0), "it has understood the other direction"),
+        (20.0, look(5.0, reverse=True), "it turns in the other direction"),
+        (20.0, look(35.0), "told 20.0 Hz, it gives 35.0 Hz"),
+    ],
+)
+def test_what_is_not_as_it_was_told_is_told_behind_a_second(asked: float, seen: Look, why: str) -> None:
+    assert judged(asked, seen) == ("", f"{why}: {PRESS}")
+
+
+@pytest.mark.parametrize("output", [0.0, 3.0, 20.0])
+def test_on_its_way_up_nothing_is_wrong(output: float) -> None:
+    assert judged(20.0, look(output)) == ("", "")
+
+
+def test_told_to_stop_it_has_to_fall_and_to_stop() -> None:
+    turning = look(20.0)
+    assert judged(0.0, turning, before=turning, first=20.0)[1] == (
+        f"told to stop, it still gives 20.0 Hz: {PRESS}"
+    )
+    means_to = look(0.0)
+    assert judged(0.0, means_to, before=turning, first=20.0)[1] == (
+        f"told to stop, it still means to run: {PRESS}"
+    )
+    falling = Obedience()
+    falling.command(0.0, 20.0, STOOD)
+    falling.judge(1.0, turning)
+    falling.command(2.0, 0.0, turning)
+    for n in range(30):
+        assert falling.judge(2.0 + 0.1 * n, look(20.0 - 0.6 * n, 0.0, run=False)) == ""
+
+
+def test_the_same_command_again_does_not_begin_the_second_anew() -> None:
+    obedience = Obedience()
+    obedience.command(0.0, 20.0, STOOD)
+    obedience.command(0.9, 20.0, STOOD)
+    assert obedience.judge(1.1, look(0.0, run=False)).startswith("told to turn at 20.0 Hz, it does not run")
+
+
+def test_one_that_obeys_at_last_is_forgiven_what_was() -> None:
+    obedience = Obedience()
+    obedience.command(0.0, 20.0, STOOD)
+    assert obedience.judge(0.9, look(0.0, run=False)) == ""
+    assert obedience.judge(0.95, look(1.0)) == ""
+    assert obedience.judge(1.5, look(0.0, run=False)) == ""  # its second begins here
+    assert obedience.judge(2.6, look(0.0, run=False)) != ""

@@ -1,0 +1,92 @@
+"""The serial port: damaged characters told from good ones, and every failure one sentence."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+from drivers.serial_line import LineSettings, WireError
+from drivers.serial_port import SerialWire, Unmarker
+from tests.drivers.ptys import open_pty
+
+# What a terminal makes of A FF B, C damaged, D, 00 damaged (PARMRK of termios: FF 00 c, and FF FF).
+MARKED, MEANT = b"A\xff\xffB\xff\x00CD\xff\x00\x00", b"A\xffBCD\x00"
+
+
+def settings(port: str, **words: object) -> LineSettings:
+    plain: dict[str, object] = {
+        "port": port,
+        "baud": 9600,
+        "bits": 8,
+        "parity": "N",
+        "stop": 1,
+        "flow": "none",
+    }
+    return LineSettings(**(plain | words))  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("size", [1, 2, 3, 4, 5, len(MARKED)])
+def test_marks_are_taken_out_and_counted_wherever_the_bytes_are_cut(size: int) -> None:
+    marks = Unmarker()
+    come = b"".join(marks.feed(MARKED[at : at + size]) for at in range(0, len(MARKED), size))
+    assert (come, marks.damaged) == (MEANT, 2)
+
+
+def test_a_mark_whose_end_has_not_come_waits_for_it() -> None:
+    marks = Unmarker()
+    assert [marks.feed(each) for each in (b"G\xff", b"\x00", b"1")] == [b"G", b"", b"1"]
+    assert marks.damaged == 1
+
+
+def test_a_port_that_is_not_there_or_is_none_says_which_and_why(tmp_path: Path) -> None:
+    with pytest.raises(WireError, match="/dev/ttyNone cannot be opened: there is no such port"):
+        SerialWire(settings("/dev/ttyNone"))
+    file = tmp_path / "file"
+    file.write_bytes(b"")
+    with pytest.raises(WireError, match="file cannot be opened: "):
+        SerialWire(settings(str(file)))
+
+
+def test_what_comes_behind_the_end_of_a_cable_is_one_sentence_each() -> None:
+    far, near = open_pty()
+    name = os.ttyname(near)
+    wire = SerialWire(settings(name))
+    os.close(near)
+    os.write(far, b"G90\n")
+    assert wire.receive(1.0) == b"G90\n"
+    os.close(far)
+    for ask in (lambda: wire.receive(0.0), lambda: wire.send(b"x"), lambda: wire.offer(b"x")):
+        with pytest.raises(WireError, match=f"{name} has failed: "):
+            ask()
+    wire.close()
+    wire.close()  # a second time is nothing
+
+
+def test_a_line_that_the_other_side_does_not_read_takes_no_more_and_is_let_go() -> None:
+    """What the kernel holds is known, can be dropped, and does not keep the port."""
+    far, near = open_pty()
+    wire = SerialWire(settings(os.ttyname(near)))
+    taken = sum(iter(lambda: wire.offer(b"X" * 4096), 0))
+    assert taken > 0
+    assert wire.offer(b"X") == 0
+    wire.drop_output()
+    wire.discard()
+    assert wire.receive(0.0) == b""
+    wire.close()
+    os.close(near)
+    os.close(far)
+
+
+def test_nothing_is_damaged_where_nobody_watches() -> None:
+    far, near = open_pty()
+    for watch in (False, True):
+        wire = SerialWire(settings(os.ttyname(near)), watch=watch)
+        os.write(far, b"\xff\x01")
+        assert wire.receive(1.0) == b"\xff\x01"
+        assert wire.damaged == 0
+        assert wire.waiting() == 0
+        wire.close()
+    os.close(near)
+    os.close(far)
