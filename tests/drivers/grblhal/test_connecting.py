@@ -225,3 +225,37 @@ def test_older_firmware_tells_no_inputs_and_is_believed() -> None:
 def test_settings_are_written_once_and_read_back() -> None:
     bench = GrblBench(grbl_machine(("{ 13 = 0, 32 = 2 }", "{ 13 = 0, 32 = 2, 110 = 7620 }")))
     assert bench.peer.registers[110] == 7620.0
+
+
+class TellsWire(LoopWire):
+    """A controller that tells one thing otherwise."""
+
+    def __init__(self, firmware: Firmware, old: bytes, new: bytes) -> None:
+        super().__init__(firmware)
+        self._old, self._new = old, new
+
+    def read(self) -> bytes:
+        return super().read().replace(self._old, self._new)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "why"),
+    [
+        (b"[AXS:3:XYZ]", b"[AXS:2:XY]", "the controller has axes XY, not Z"),
+        (b" G8 ", b" G7 ", r"does not keep G8: \[GC:.*is it in lathe mode"),
+        (b" G18 ", b" G17 ", "the controller does not keep G18"),
+        (b" G50 ", b" G51:X ", "the controller stays in G51:X"),
+        (b"WCO:0.000", b"WCO:5.000", "the controller keeps offsets .5.0, .*machine coordinates"),
+        (b"|D:0", b"|D:1", r"X counts in diameter \(D:1\) although G8 is in force"),
+        (b"<Idle|", b"<Check|", "the controller is in state Check, not Idle"),
+    ],
+)
+def test_a_controller_that_cannot_be_brought_into_its_state_is_refused_with_the_cause(
+    old: bytes, new: bytes, why: str
+) -> None:
+    clock = StepClock()
+    firmware = Firmware(clock, quirky())
+    with pytest.raises(DriverError, match=why):
+        GrblMachine(grblhal_config(grbl_machine()), clock, TellsWire(firmware, old, new))
+    assert firmware.slides.place == (0.0, 0.0)
+    assert firmware.rpm == 0.0
