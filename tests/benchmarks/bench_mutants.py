@@ -34,7 +34,7 @@ from tests.benchmarks.mutants import Mutant, mutants_of, put_in
 ROOMS = {
     "core/executor": (120, ("tests/executor",)),
     "core/motion": (70, ("tests/motion", "tests/executor/test_chords.py")),
-    "core/interpreter": (80, ("tests/interpreter", "tests/klartext", "tests/sinumerik")),
+    "core/interpreter": (80, ("tests/interpreter", "tests/klartext", "tests/sinumerik", "tests/dialects")),
     "drivers/simulated": (30, ("tests/drivers/test_plant.py", "tests/drivers/test_plant_samples.py",
         "tests/drivers/test_schedule.py", "tests/drivers/test_station.py", "tests/drivers/test_gear.py",
         "tests/drivers/test_wear.py", "tests/drivers/test_wander.py", "tests/executor/test_jog.py",

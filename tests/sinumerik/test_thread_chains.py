@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import sqrt
+from math import radians, sqrt, tan
 
 import numpy as np
 import pytest
@@ -91,6 +91,20 @@ def test_cycle99_is_cycle97_in_another_order() -> None:
     new = good(BEGIN + "CYCLE99(0,40,-20,40,4,2,0.92,0.05,30,0,4,1,1.5,300103,2)")
     old = good(BEGIN + "CYCLE97(1.5,,0,-20,40,40,4,2,0.92,0.05,30,0,4,1,3,2)")
     assert [(b.kind, b.x, b.z, b.feed) for b in new] == [(b.kind, b.x, b.z, b.feed) for b in old]
+
+
+@pytest.mark.parametrize(
+    ("flank", "kind", "sides"), [(30, 300103, "++++++"), (30, 300203, "+-+-+-"), (-30, 300103, "+-+-+-")]
+)
+def test_cycle99_feeds_along_one_flank_or_both_in_turn(flank: int, kind: int, sides: str) -> None:
+    """Each pass begins beside Z4 by its depth under X20 times tan 30."""
+    made = good(BEGIN + f"CYCLE99(0,40,-20,40,4,2,0.92,0.05,{flank},0,4,1,1.5,{kind},1)")
+    cut = [b for b in made if b.kind is Kind.THREAD]
+    slope = tan(radians(30.0))
+    begins = [
+        4.0 - (20.0 - b.x0) * (slope if side == "+" else -slope) for b, side in zip(cut, sides, strict=True)
+    ]
+    assert [b.z0 for b in cut] == pytest.approx(begins, abs=1e-6)
 
 
 @pytest.mark.parametrize(

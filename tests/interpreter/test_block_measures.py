@@ -1,0 +1,110 @@
+"""What is asked of an elementary block by itself: its length, its reach, and what it needs of a machine."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import pytest
+
+from core.interpreter.elementary_blocks import Block, Kind
+from core.interpreter.machine_requirements import (
+    SURFACE,
+    SURFACE_THREAD,
+    THREAD,
+    THREAD_CHAIN,
+    Need,
+    first_needs,
+    needs_of,
+)
+from core.interpreter.sinumerik.programmed_frame import ProgrammedFrame
+from tests.interpreter.programs import lines, passed, setup
+from tests.motion.moves import arc, line
+
+
+@pytest.mark.parametrize(
+    ("block", "length"),
+    [
+        (line((1.0, 1.0), (4.0, 5.0)), 5.0),
+        (arc((0.0, 3.0), (3.0, 0.0), (0.0, 0.0)), 1.5 * math.pi),
+        (arc((0.0, 3.0), (3.0, 0.0), (0.0, 0.0), clockwise=False), 4.5 * math.pi),
+        (replace(line((2.0, 2.0), (2.0, 2.0)), c0=30.0, c=-60.0), 90.0),
+        (replace(line((0.0, 0.0), (0.0, 8.0)), c0=30.0, c=-60.0), 8.0),
+        (line((2.0, 2.0), (2.0, 2.0)), 0.0),
+    ],
+)
+def test_the_feed_counts_the_way_and_degrees_where_only_c_turns(block: Block, length: float) -> None:
+    assert block.length == pytest.approx(length)
+
+
+def test_the_reach_of_a_line_is_its_end_and_of_an_arc_all_of_it() -> None:
+    assert line((1.0, 2.0), (3.0, -4.0)).reach() == (3.0, 3.0, -4.0, -4.0)
+    half = arc((0.0, 3.0), (0.0, -3.0), (0.0, 0.0))
+    assert half.reach() == pytest.approx((0.0, 3.0, -3.0, 3.0))
+    moved = replace(half, offset_x=10.0, offset_z=-1.0)
+    assert moved.machine_reach()[:2] == (pytest.approx((10.0, 13.0)), pytest.approx((-4.0, 2.0)))
+
+
+def test_a_secondary_offset_moves_all_that_a_milled_way_reaches() -> None:
+    text = lines("G90G94F300", "M19", "X-.5Z-.1F5", "(~PLXC)", "(X0Y.4)", "(END)", "M30")
+    (way,) = (block for block in passed(text).moves if block.kind is Kind.PLANE_LINE)
+    low_x, high_x, low_z, high_z = way.reach()
+    assert low_x < high_x
+    moved = replace(way, modal=way.modal._replace(secondary_x=1.5, secondary_z=-2.0))
+    assert moved.reach() == pytest.approx((low_x + 1.5, high_x + 1.5, low_z - 2.0, high_z - 2.0))
+
+
+def test_constant_surface_speed_is_needed_while_the_spindle_turns_and_told_once() -> None:
+    still = replace(line((0, 0), (0, 1)), line=1, css=2000.0)
+    turns = replace(still, line=2, rpm=500.0)
+    thread = replace(turns, line=3, kind=Kind.THREAD, per_rev=True)
+    chain = replace(turns, line=4, kind=Kind.THREAD, continues=True, css=None)
+    assert list(needs_of([still])) == []
+    assert first_needs(needs_of([still, turns, turns, thread, chain])) == (
+        Need(SURFACE, 2),
+        Need(THREAD, 3),
+        Need(SURFACE_THREAD, 3),
+        Need(THREAD_CHAIN, 4),
+    )
+
+
+# --- a program's frame --------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "frame",
+    [
+        ProgrammedFrame(),
+        ProgrammedFrame().rotated(30.0),
+        ProgrammedFrame().scaled(2.0, 0.5),
+        ProgrammedFrame().rotated(-75.0).scaled(1.0, -1.0).rotated(20.0),
+        ProgrammedFrame().scaled(3.0, 1.5).rotated(40.0),
+    ],
+)
+def test_what_is_turned_into_the_machine_turns_back(frame: ProgrammedFrame) -> None:
+    for x, z in ((1.0, 0.0), (0.0, 1.0), (-3.5, 7.25)):
+        assert frame.unturned(*frame.turned(x, z)) == pytest.approx((x, z), abs=1e-12)
+
+
+def test_a_frame_turns_from_z_towards_x() -> None:
+    """By 90 degrees Z of the program is X of the machine, and X its -Z."""
+    frame = ProgrammedFrame().rotated(90.0)
+    assert frame.turned(0.0, 1.0) == pytest.approx((1.0, 0.0), abs=1e-12)
+    assert frame.unturned(1.0, 0.0) == pytest.approx((0.0, 1.0), abs=1e-12)
+    assert frame.unturned(0.0, 1.0) == pytest.approx((-1.0, 0.0), abs=1e-12)
+    assert not frame.plain
+    assert frame.uniform
+    assert not frame.mirrored
+    assert ProgrammedFrame().scaled(-1.0, 1.0).mirrored
+    assert not ProgrammedFrame().scaled(2.0, 1.0).uniform
+
+
+# --- a program without a line to execute --------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("text", ["", "(NOTHING)\n", "\n\n(A)\n", "/G90X1\n"])
+def test_of_a_program_without_a_line_to_execute_no_unit_is_asked(text: str) -> None:
+    """The control counts in mm, and the program names no unit: there is nothing that would run in it."""
+    given = setup(metric=True, block_delete=True)
+    assert "units-unnamed" not in [code for _, _, code in passed(text, given).warnings]
+    assert (1, 0, "units-unnamed") in passed("G90G94F300\nX1\nM30\n", given).warnings

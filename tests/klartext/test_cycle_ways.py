@@ -1,0 +1,98 @@
+"""Ways of older cycles and taps, point by point."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+
+import pytest
+
+from core.interpreter.actions import SpindleRun
+from core.interpreter.elementary_blocks import Block, Kind
+from tests.klartext.running import Ran, run
+from tests.klartext.test_klartext_cycles import ran_of
+
+OVERLAP, DIAMETER = 0.7, 8.0  # of the tool of these programs, whose radius is 4
+
+
+def turned(ran: Ran) -> list[float]:
+    """What the spindle is told, rpm."""
+    return [block.action.rpm for block in ran.blocks if isinstance(block.action, SpindleRun)]
+
+
+def ends(blocks: list[Block]) -> list[tuple[float, float, float]]:
+    return [
+        (round(x, 6), round(y, 6), round(z, 6))
+        for x, y, z in (block.swivel.end[:3] for block in blocks if block.swivel is not None)
+    ]
+
+
+FLOATING = (
+    "CYCL DEF 2.0 T\nCYCL DEF 2.1 SET UP2\nCYCL DEF 2.2 DEPTH-8\nCYCL DEF 2.3 DWELL0\nCYCL DEF 2.4 F800\n"
+)
+RIGID = "CYCL DEF 17.0 T\nCYCL DEF 17.1 SET UP2\nCYCL DEF 17.2 DEPTH-8\nCYCL DEF 17.3 PITCH{}1.75\n"
+
+
+@pytest.mark.parametrize(
+    ("before", "cycle", "told"),
+    [
+        ("M3", FLOATING, [1000.0, -1000.0, 1000.0]),  # 2 turns as it is told, round at the bottom, and back
+        ("M4", FLOATING, [-1000.0, 1000.0, -1000.0]),
+        ("M3", RIGID.format("+"), [1000.0, -1000.0, 1000.0]),
+        ("M4", RIGID.format("+"), [-1000.0, 1000.0, -1000.0]),
+        ("M3", RIGID.format("-"), [1000.0, -1000.0, 1000.0]),  # a left-hand thread is begun to the left
+        ("M4", RIGID.format("-"), [-1000.0, 1000.0, -1000.0]),
+    ],
+)
+def test_which_way_the_spindle_turns_into_a_thread_and_out_of_it(
+    before: str, cycle: str, told: list[float]
+) -> None:
+    """17 by the sign of its pitch whatever turned before; behind the cycle that is in force again."""
+    ran = run(f"L X+0 Y+0 Z+50 R0 FMAX {before}\n{cycle}L Z+2 FMAX M99", tool="TOOL CALL 1 Z S1000 F500\n")
+    assert ran.codes == []
+    assert turned(ran) == told
+    down, up = (block for block in ran.blocks if block.coupled)
+    if cycle is not FLOATING:
+        assert math.copysign(1.0, down.rpm) == (-1.0 if "PITCH-" in cycle else 1.0)
+    assert down.rpm == -up.rpm
+
+
+def test_a_tap_without_chip_breaking_goes_to_its_depth_at_once_on_any_surface() -> None:
+    """Q203 +15 and Q201 -20: to -5, and out to the clearance of 2 over the surface."""
+    ran = ran_of(
+        "CYCL DEF 209 T Q200=2 Q201=-20 Q239=+1 Q203=+15 Q204=30 Q257=0 Q256=0 Q336=+0\nL X+10 R0 FMAX M99"
+    )
+    assert ran.codes == []
+    assert [z for _, _, z in ends([block for block in ran.blocks if block.coupled])] == [-5.0, 17.0]
+
+
+def test_a_pocket_is_milled_in_whole_rectangles_from_the_middle_outwards() -> None:
+    """40 by 20 with a radius of 4: ways of 32 by 12 round it, none further from the next than the overlap."""
+    ran = ran_of(
+        "CYCL DEF 4.0 P\nCYCL DEF 4.1 SET UP2\nCYCL DEF 4.2 DEPTH-6\nCYCL DEF 4.3 PECKG 3 F100\n"
+        "CYCL DEF 4.4 X40\nCYCL DEF 4.5 Y20\nCYCL DEF 4.6 F300 DR+\nL Z+2 FMAX M99"
+    )
+    assert ran.codes == []
+    for level in (-3.0, -6.0):
+        way = [(x - 10.0, y - 20.0) for x, y, z in ends(ran.blocks) if z == level]
+        assert way[0] == (0.0, 0.0)
+        rings = [way[at : at + 5] for at in range(1, len(way) - 4, 5)]
+        for ring in rings:
+            assert ring[0] == ring[-1]
+            assert all(a[0] == b[0] or a[1] == b[1] for a, b in pairwise(ring))
+            assert {(abs(x), abs(y)) for x, y in ring} == {(abs(ring[0][0]), abs(ring[0][1]))}
+            assert len(set(ring)) == 4
+        assert {(abs(x), abs(y)) for x, y in rings[-1]} == {(16.0, 6.0)}
+        widths = [0.0, *(abs(ring[0][1]) for ring in rings)]
+        assert max(b - a for a, b in pairwise(widths)) <= OVERLAP * DIAMETER
+
+
+def test_a_round_pocket_leaves_nothing_between_its_circles() -> None:
+    """R 20 less 4: to 16 in the fewest circles that are no further apart than the overlap, three."""
+    ran = ran_of(
+        "CYCL DEF 5.0 CIRCLE\nCYCL DEF 5.1 SET UP 2\nCYCL DEF 5.2 DEPTH -6\nCYCL DEF 5.3 PECKG 3 F100\n"
+        "CYCL DEF 5.4 RADIUS 20\nCYCL DEF 5.5 F300 DR-\nL Z+2 FMAX M99"
+    )
+    assert ran.codes == []
+    circles = [block.length / (2.0 * math.pi) for block in ran.blocks if block.kind is Kind.PLANE_ARC]
+    assert circles == pytest.approx([16.0 / 3.0, 32.0 / 3.0, 16.0] * 2)
