@@ -396,8 +396,8 @@ class FeederOrientation(_OnLine):
         self._line.order("release")
 
     def oriented(self) -> bool:
-        """Whether it is held at its angle."""
-        return self._line.look().get("oriented") is True and not self._line.lost
+        """Whether it is held at its angle; of a feeder that is gone, as it last was."""
+        return self._line.look().get("oriented") is True
 
 
 class FeederIO(_OnLine):

@@ -294,19 +294,28 @@ def _spindle(border: Border, config: HalConfig) -> None:
     if pins.velocity:
         border.reads(f"{path}.velocity", pins.velocity, FLOAT, "td-rps")
         border.sample(FLOAT, "td-rps")
-    for key in ("at_speed", "fault", "in_position_mode"):
+    for key in ("at_speed", "fault", "in_position_mode", "is_oriented"):
         if getattr(pins, key):
             border.own(f"spindle.{key}", BIT, "in", f"td-spindle-{key}")
             border.reads(f"{path}.{key}", getattr(pins, key), BIT, f"td-spindle-{key}")
-    if not config.spindle.turned:
-        return
+    if config.spindle.turned:
+        _turned(border, config)
+
+
+def _turned(border: Border, config: HalConfig) -> None:
+    """What turns the spindle, stops it at an angle, or makes it C; all of it off while the chain is open."""
+    pins, path = config.spindle.pins, "hal.spindle"
     border.own("spindle.speed", FLOAT, "out", "td-wanted-rpm")
     border.add("mux2", "td.spindle", in1="td-wanted-rpm", sel="td-ok", out="td-rpm")
     border.drives(f"{path}.speed", pins.speed, FLOAT, "td-rpm")
     if pins.speed_abs:
         border.add("abs", "td.speed-abs", in_="td-rpm", out="td-rpm-abs")
         border.drives(f"{path}.speed_abs", pins.speed_abs, FLOAT, "td-rpm-abs")
-    for key in ("on", "forward", "reverse", "position_mode"):
+    for key, kind in (("orient_angle", FLOAT), ("orient_mode", COUNT)):
+        if getattr(pins, key):
+            border.own(f"spindle.{key}", kind, "out", f"td-{key}")
+            border.drives(f"{path}.{key}", getattr(pins, key), kind, f"td-{key}")
+    for key in ("on", "forward", "reverse", "position_mode", "orient"):
         if getattr(pins, key):
             border.own(f"spindle.{key}", BIT, "out", f"td-wanted-{key}")
             border.add("and2", f"td.spindle-{key}", in0="td-ok", in1=f"td-wanted-{key}", out=f"td-{key}")

@@ -8,6 +8,7 @@ from core.ports import ALL_UNKNOWN, Clock, DriverError, FloatArray, MachinePorts
 from drivers.hal.hal_axes import HalAxes
 from drivers.hal.hal_config import HalConfig
 from drivers.hal.hal_link import HalLink
+from drivers.hal.hal_orientation import HalOrientation
 from drivers.hal.hal_session import BridgeLink, bridge_config
 from drivers.hal.hal_spindle_c import HalSpindleC
 from drivers.hal.hal_terminals import HalSpindle, HalTerminals
@@ -43,6 +44,8 @@ class HalMachine:
         self.axes = HalAxes(config, self.link, clock.now)
         self.spindle = HalSpindle(config, self.link, self.axes)
         self.c = _spindle_as_c(config, self.axes, self.spindle, self.link)
+        turned = config.spindle.turned and bool(config.spindle.pins.orient)
+        self.orientation = HalOrientation(self.axes, self.spindle, self.link) if turned else None
         self.axes.clearing.append(self.spindle.index.clear)
         self.axes.connecting.append(self.spindle.index.forget)
         self.io = HalTerminals(config, self.link, clock.now)
@@ -66,6 +69,7 @@ class HalMachine:
             station=self.io,
             gear=self.axes if follows else None,
             lock=self.c,
+            orientation=self.orientation,
             touch=self.axes.touch,
             samples=self.samples,
             unknown=self.unknown,
@@ -83,6 +87,8 @@ class HalMachine:
         self.spindle.tick()
         if self.c is not None:
             self.c.tick()
+        if self.orientation is not None:
+            self.orientation.tick()
         self.link.beat()
 
     def close(self) -> None:

@@ -65,6 +65,7 @@ _AXIS = (
 _TURNS = _optional(
     *("speed", "speed_abs", "on", "forward", "reverse", "position", "velocity", "at_speed", "fault"),
     *("index_enable", "position_mode", "in_position_mode"),
+    *("orient", "orient_angle", "orient_mode", "is_oriented"),
 )
 
 
@@ -95,6 +96,8 @@ class HalSpindlePins:
     (turns, rising with M03) and ``velocity`` (turns/s) float out; ``at_speed``, ``fault`` bit out.
     ``index_enable`` bit I/O of the encoder that ``position`` counts: with it a thread is found again after a
     restart. ``position_mode`` bit in and ``in_position_mode`` bit out change the drive over to C and tell it.
+    ``orient`` bit in, ``orient_angle`` float in (degrees) and ``orient_mode`` s32 in (0 short way, 1 as
+    M03, 2 as M04) have it brought to an angle, as the component ``orient`` does; ``is_oriented`` bit out.
     """
 
     speed: str = ""
@@ -109,6 +112,10 @@ class HalSpindlePins:
     index_enable: str = ""
     position_mode: str = ""
     in_position_mode: str = ""
+    orient: str = ""
+    orient_angle: str = ""
+    orient_mode: str = ""
+    is_oriented: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,6 +152,7 @@ def _rules(file: FileReading) -> Iterator[Finding]:
         return
     yield from _all_axes(file)
     yield from _turns(file)
+    yield from _orients(file)
     yield from _homes(file)
     columns = 1 + 2 * len(file.names(_AXES))
     if columns > _COLUMNS:
@@ -168,7 +176,7 @@ def _pins(file: FileReading) -> Iterator[tuple[str, str]]:
 
 _DRIVEN = re.compile(
     r"hal\.axes\.\w+\.(command|enable)|hal\.(machine_on|charge_pump)|io\.out\..*"
-    r"|hal\.spindle\.(speed|speed_abs|on|forward|reverse|position_mode)"
+    r"|hal\.spindle\.(speed|speed_abs|on|forward|reverse|position_mode|orient|orient_angle|orient_mode)"
 )
 
 
@@ -234,6 +242,19 @@ def _turns(file: FileReading) -> Iterator[Finding]:
         )
 
 
+def _orients(file: FileReading) -> Iterator[Finding]:
+    """A spindle that HAL brings to an angle needs all four pins of that."""
+    values = file.values
+    if not values.has("spindle.oriented") or not values.flag("spindle.oriented"):
+        return
+    if not values.says("spindle.driver", "hal"):
+        return
+    for key in ("orient", "orient_angle", "orient_mode", "is_oriented"):
+        path = f"{_SPINDLE}.{key}"
+        if values.has(path) and not values.text(path):
+            yield Finding(path, "", "missing; spindle.oriented says that HAL brings it to an angle")
+
+
 def _homes(file: FileReading) -> Iterator[Finding]:
     """The pins that each axis needs to find home."""
     values = file.values
@@ -265,5 +286,6 @@ DRIVER = Driver(
     tables=(DriverTable("hal", _FIELDS, _table, ("axes", "spindle"), _read, _rules),),
     backend="hal",
     spindle="hal",
+    orients=True,
     terminal=_pin,
 )

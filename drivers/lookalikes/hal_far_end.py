@@ -133,6 +133,7 @@ class HalFarEnd:
         self.stands = False  # the servo thread is gone
         self.garbled = False  # what is told is no packet
         self.has_index = True  # phase Z of the spindle's encoder is wired
+        self._orients = False
         self.late = 0  # reports that are held back
         self._outbox: deque[bytes] = deque()
         self._count = 0
@@ -260,7 +261,20 @@ class HalFarEnd:
         if rpm != self._rpm and not (rpm and plant.panel.estop):
             self._rpm = rpm
             plant.spindle.order(t, rpm)
+        self._orient(t)
         for name, output in config.outputs.items():
             on = bool(self._get(output.pin)) and not (self.stands and output.safe is False)
             if plant.terminals.outputs.get(name) is not on:
                 plant.terminals.write(name, on, t)
+
+    def _orient(self, t: float) -> None:
+        """The component ``orient`` with its drive: an angle is taken with the rising of its pin."""
+        pins, spindle = self.config.spindle.pins, self.plant.spindle
+        wanted = bool(self._get(pins.orient)) and not self.stands
+        if wanted and not self._orients:
+            sense = {0: 0, 1: 1, 2: -1}[int(self._get(pins.orient_mode))]
+            spindle.orient(t, self._get(pins.orient_angle), sense)
+        elif self._orients and not wanted:
+            spindle.release()
+        self._orients = wanted
+        self._set(pins.is_oriented, spindle.oriented)

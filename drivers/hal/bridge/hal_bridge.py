@@ -23,6 +23,7 @@ _AT_ONCE = 0.05  # s of it that one round counts at most: who stood still himsel
 _GRANT = 0.1  # s in which the chain must close
 _REARM = 0.006  # s for which the watchdog is off, so that it begins anew
 _PULSE = 0.05  # s of the reset
+_FALLS = 0.005  # s for which HAL sees that no angle is asked for
 _SLEW = 1e-3  # by which rows may be dealt faster or slower than by this computer's clock, while slides move
 _SLEW_AT_REST = 0.05
 _SETTLES = 0.5  # s in which such a difference is made up
@@ -120,6 +121,7 @@ class Bridge:
         self._homing: set[str] = set()
         self._c_at: float | None = None  # where C was when it began to be held, as HAL counts
         self._c_from = INF  # when the drive is to change over
+        self._orient_from = INF  # when it is to go to its angle
         self._close_chain()  # nothing is asked for yet: it lets through what the control will ask
         self._acts: Mapping[str, Callable[[Head, Sequence[float]], None]] = {
             "beat": lambda _head, _numbers: None,
@@ -136,6 +138,7 @@ class Bridge:
             "homing": self._home,
             "index": self._index,
             "c": self._hold_c,
+            "orient": self._orient,
             "end": self._end,
         }
 
@@ -194,6 +197,7 @@ class Bridge:
             "dry": self._dry,
             "parted": self._parted,
             "stands": self._stands,
+            "orients": "orient" in self.config.spindle and bool(self.pins["spindle.orient"]),
             "c_at": self._c_at if self._c_from == INF else None,  # once the drive is changed over
         }
         self._latest, self._least = 0.0, INF
@@ -402,6 +406,9 @@ class Bridge:
         if self._c_from <= now:
             self._c_from = INF
             self.pins["spindle.position_mode"] = 1
+        if self._orient_from <= now:
+            self._orient_from = INF
+            self.pins["spindle.orient"] = 1
         if self._off_at <= now:
             self._power_off()
 
@@ -431,6 +438,7 @@ class Bridge:
         said = {"speed": rpm, "on": on, "forward": on and rpm >= 0.0, "reverse": on and rpm < 0.0}
         if on:
             self._release_c()
+        self._release_angle()
         for name, value in said.items():
             if name in self.config.spindle:
                 self.pins[f"spindle.{name}"] = value
@@ -453,8 +461,23 @@ class Bridge:
         if "position_mode" in self.config.spindle:
             self.pins["spindle.position_mode"] = 0
 
+    def _orient(self, head: Head, _numbers: Sequence[float]) -> None:
+        """An angle is taken with the rising of ``orient``, which therefore falls first."""
+        self._release_angle()
+        if head.get("on") is not True or not self.pins["chain-ok"]:
+            return
+        self.pins["spindle.orient_angle"] = number(head, "angle")
+        self.pins["spindle.orient_mode"] = int(number(head, "mode"))
+        self._orient_from = self._now() + _FALLS
+
+    def _release_angle(self) -> None:
+        self._orient_from = INF
+        if "orient" in self.config.spindle:
+            self.pins["spindle.orient"] = 0
+
     def _spindle_off(self) -> None:
         self._release_c()
+        self._release_angle()
         for name in self.config.spindle:
             self.pins[f"spindle.{name}"] = 0
 

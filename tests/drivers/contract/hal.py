@@ -36,10 +36,18 @@ spindle_pot = { at = "pot-spindle", switch = "spindle_auto" }
 _HOMED = "absolute = false\nhome = { method = 21, speed = 20, latch = 6, order = 1 }\n"
 
 
-def hal_machine(*, homing: bool = False, lamps: str = "") -> Machine:
+_ORIENT = """[hal.spindle]
+orient = "orient.0.enable"
+orient_angle = "orient.0.angle"
+orient_mode = "orient.0.mode"
+is_oriented = "near.0.out"
+"""
+
+
+def hal_machine(*, homing: bool = False, lamps: str = "", orients: bool = False) -> Machine:
     """The shipped lathe with an operator station of its own; with ``homing`` its Z only counts.
 
-    ``lamps``: lines of [io.out] besides its own.
+    ``lamps``: lines of [io.out] besides its own. ``orients``: HAL brings its spindle to an angle.
     """
     text = resources.machine_file("gt75-hal.toml").replace("\n[m_codes]", _HANDS, 1)
     text = text.replace('enable = "x-motor.sel"', 'enable = "x-motor.sel"\nfault = "x-fault"')
@@ -48,6 +56,9 @@ def hal_machine(*, homing: bool = False, lamps: str = "") -> Machine:
     )
     text = text.replace("two_hand_start = false", "two_hand_start = true")
     text = text.replace("\ncoolant = ", f"\n{lamps}coolant = ", 1)
+    if orients:
+        text = text.replace("[spindle]\n", "[spindle]\noriented = true\norient_rpm = 100\n", 1)
+        text = text.replace("[hal.spindle]\n", _ORIENT, 1)
     if homing:
         head, z = text.split("[axis.Z]")
         text = f"{head}[axis.Z]{z.replace('absolute = true', _HOMED, 1)}"
@@ -79,8 +90,8 @@ class Hal(Rig):
     }
     hold = 0.15
 
-    def __init__(self, *, homing: bool = False, lamps: str = "") -> None:
-        self.machine = hal_machine(homing=homing, lamps=lamps)
+    def __init__(self, *, homing: bool = False, lamps: str = "", orients: bool = False) -> None:
+        self.machine = hal_machine(homing=homing, lamps=lamps, orients=orients)
         self.clock = StepClock()
         config = hal_config(self.machine)
         self.far = HalFarEnd(config, sim_config(self.machine), self.clock)

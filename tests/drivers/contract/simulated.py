@@ -167,8 +167,8 @@ class Fed(Simulated):
         "blocks": Simulated.missing["blocks"],
     }
 
-    def __init__(self, *, homing: bool = False) -> None:
-        super().__init__(homing=homing)
+    def __init__(self, machine: Machine | None = None, *, homing: bool = False) -> None:
+        super().__init__(machine, homing=homing)
         self.inner, self._mended = self.ports, False
         self.feeder = Feeder(SimDriven(self.ports, self.hands))
         self.link = BrokenLink(self.feeder)

@@ -1,0 +1,184 @@
+"""A spindle that its driver brings to an angle: nothing moves before it is held there, whatever breaks."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+import pytest
+
+import resources
+from app.compose.machine_files import parse_machine, shipped_machine
+from app.compose.machine_setup import setup_for
+from app.compose.workshop import proof_of
+from core.executor.commands import LoadJob
+from core.executor.job import make_job
+from core.executor.snapshot import State
+from core.interpreter.job_setup import ToolOffset
+from core.language.source import Source
+from core.ports import DriverError
+from core.proving.prove_program import prove
+from core.table_schema import MachineFileError
+from tests.drivers.contract.control import Control
+from tests.drivers.contract.hal import Hal
+from tests.drivers.contract.rig import STILL, Rig
+from tests.drivers.contract.rigs import RIGS
+from tests.drivers.contract.simulated import Fed, Simulated
+
+LATHE = shipped_machine("sinumerik-modulo")
+ABLE: dict[str, Callable[[], Simulated | Fed | Hal]] = {
+    "simulated": lambda: Simulated(LATHE),
+    "fed": lambda: Fed(LATHE),
+    "hal": lambda: Hal(orients=True),
+}
+PROGRAM = "T1 D1\nG90 G94 G18 G71\nS600 M3\nG0 Z-10\nSPOS=90\nG1 Z-30 F1200\nM30\n"
+ROUND = 360.0
+
+
+@pytest.fixture(params=ABLE)
+def control(request: pytest.FixtureRequest) -> Iterator[Control]:
+    rig = ABLE[request.param]()
+    yield Control(rig)
+    rig.close()
+
+
+def start(control: Control) -> None:
+    """The program proved, and begun; until the spindle is asked for its angle."""
+    control.ready()
+    machine = control.rig.machine
+    job = make_job(
+        Source("PART.MPF", PROGRAM), setup_for(machine, tools={1: ToolOffset(quadrant=3)}, secondary={})
+    )
+    proof = proof_of(job, prove(job.source, job.setup, machine))
+    assert not proof.errors, proof.errors
+    control.post(LoadJob(job, proof))
+    control.press()
+    control.until_true(lambda shot: shot.waiting_for == "SPINDLE ORIENT")
+
+
+def at(rig: Rig) -> float:
+    """Degrees from the index, in truth."""
+    return rig.slides.spindle_turns() % 1.0 * ROUND
+
+
+def test_the_tool_goes_on_once_the_spindle_is_held_at_its_angle(control: Control) -> None:
+    start(control)
+    feeding: list[tuple[float, float]] = []
+
+    def watch(_: object) -> None:
+        if control.world.place()[1] < -10.5:
+            feeding.append((at(control.rig), control.world.rpm()))
+
+    control.watch.append(watch)
+    control.until(State.IDLE)
+    assert control.world.place()[1] == pytest.approx(-30.0, abs=0.01)
+    assert len(feeding) > 50
+    assert all(abs(angle - 90.0) < 0.1 and rpm == 0.0 for angle, rpm in feeding[:50])
+
+
+def test_a_drive_that_never_arrives_is_told_once_and_nothing_moves(control: Control) -> None:
+    control.rig.slides.spindle_never_oriented()
+    start(control)
+    place = control.world.place()
+    control.until(State.FAULT)
+    assert [alarm.code for alarm in control.shot.alarms] == ["spindle-orient"]
+    control.run(0.5)
+    assert control.world.place() == pytest.approx(place, abs=STILL)
+
+
+def test_a_drive_that_lets_its_angle_go_stops_the_slides(control: Control) -> None:
+    start(control)
+    control.until_true(lambda _: control.world.place()[1] < -12.0)
+    control.rig.slides.spindle_never_oriented()
+    control.until(State.FAULT, limit=0.5)
+    assert [alarm.code for alarm in control.shot.alarms] == ["spindle-orient"]
+    control.run(0.5)
+    assert control.world.place()[1] > -25.0
+
+
+def test_estop_on_the_way_lets_the_spindle_stand_where_it_is(control: Control) -> None:
+    start(control)
+    control.until_true(lambda _: control.rig.slides.spindle_rpm() != 0.0)
+    control.world.press_estop()
+    control.until(State.ESTOP, limit=0.5)
+    control.run(0.3)
+    assert control.nothing_moves()
+
+
+@pytest.mark.parametrize("fault", ["silence", "dead reader", "garbage"])
+def test_a_wire_that_is_lost_on_the_way_is_one_alarm_of_the_wire(control: Control, fault: str) -> None:
+    if fault not in control.rig.faults:
+        pytest.skip("the simulated machine is in this process: there is no wire")
+    start(control)
+    place = control.world.place()
+    control.rig.acts()[fault]()
+    control.until(State.FAULT, limit=1.0)
+    codes = [alarm.code for alarm in control.shot.alarms]
+    assert len(codes) == 1
+    assert codes != ["spindle-orient"]
+    control.run(1.5)
+    assert control.world.place() == pytest.approx(place, abs=STILL)
+    assert control.world.rpm() == 0.0
+
+
+def test_answers_that_come_late_cost_nothing_but_time(control: Control) -> None:
+    if "late answers" not in control.rig.harmless:
+        pytest.skip("the simulated machine is in this process: there is no wire")
+    control.rig.acts()["late answers"]()
+    start(control)
+    control.until(State.IDLE)
+    assert at(control.rig) == pytest.approx(90.0, abs=0.1)
+
+
+def test_an_angle_in_a_sense_another_one_and_none(control: Control) -> None:
+    """At the port: as M04 turns, then as M03, each less than a turn; a speed ends it."""
+    rig, port = control.rig, control.rig.ports.orientation
+    control.ready()
+    assert port is not None
+    rig.until(lambda: not rig.ports.spindle.fault())
+    port.orient(90.0, -1)
+    rig.until(port.oriented)
+    assert rig.slides.spindle_turns() == pytest.approx(-0.75, abs=1e-3)
+    port.orient(0.0, 1)
+    assert not port.oriented()
+    rig.until(port.oriented)
+    assert rig.slides.spindle_turns() == pytest.approx(0.0, abs=1e-3)
+    rig.ports.spindle.run(300.0)
+    rig.run(0.3)
+    assert not port.oriented()
+
+
+def test_none_in_estop(control: Control) -> None:
+    control.ready()
+    control.world.press_estop()
+    control.until(State.ESTOP, limit=0.5)
+    assert control.rig.ports.orientation is not None
+    with pytest.raises(DriverError, match="spindle stays off"):
+        control.rig.ports.orientation.orient(90.0)
+
+
+@pytest.mark.parametrize("name", sorted(RIGS.keys() - ABLE.keys()))
+def test_who_cannot_says_so_in_the_machine_file_and_has_no_such_port(name: str) -> None:
+    rig = RIGS[name]()
+    assert rig.ports.orientation is None
+    rig.close()
+
+
+@pytest.mark.parametrize("name", ["gt75-canopen", "gt75-grblhal", "gt75-vfd"])
+def test_a_machine_file_that_asks_it_of_them_is_refused(name: str) -> None:
+    text = resources.machine_file(f"{name}.toml").replace("[spindle]\n", "[spindle]\noriented = true\n", 1)
+    with pytest.raises(MachineFileError, match=r"spindle\.oriented.*spindle\.driver sim or hal"):
+        parse_machine(text, name)
+
+
+def test_a_lathe_whose_spindle_is_c_is_not_oriented_besides() -> None:
+    text = resources.machine_file("gt75.toml").replace("[spindle]\n", "[spindle]\noriented = true\n", 1)
+    with pytest.raises(MachineFileError, match="positioned as C"):
+        parse_machine(text, "gt75")
+
+
+def test_hal_needs_the_four_pins_of_it() -> None:
+    text = resources.machine_file("gt75-hal.toml").replace("[spindle]\n", "[spindle]\noriented = true\n", 1)
+    with pytest.raises(MachineFileError) as refused:
+        parse_machine(text, "gt75-hal")
+    for pin in ("orient", "orient_angle", "orient_mode", "is_oriented"):
+        assert f"hal.spindle.{pin}: missing" in str(refused.value)
