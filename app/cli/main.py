@@ -69,6 +69,7 @@ def _commands_for(argv: Sequence[str]) -> Sequence[str]:
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the command line; the exit status of interfaces.md: 0 done, 1 errors in the program, 2 usage."""
     argv = sys.argv[1:] if argv is None else argv
+    gc.set_threshold(200_000)  # importing alone would collect a hundred times and find nothing
     args = build_parser(_commands_for(argv)).parse_args(argv)
     try:
         check_data_folder()
@@ -102,7 +103,6 @@ def _dispatch(args: argparse.Namespace) -> int:
         sys.stdout.write(f"turndesk {version('turndesk')}\n")
         return EXIT_OK
     if args.command:
-        gc.set_threshold(50_000)  # importing alone would collect a hundred times and find nothing
         status: int = importlib.import_module(f"app.cli.{args.command}_command").run(args)
         return status
     return _screen(args)

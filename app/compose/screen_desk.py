@@ -7,6 +7,7 @@ import sys
 from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from app.compose.accepted_machine import file_changes, guarded
 from app.compose.backend_entry import Connected, has_inverter, played
@@ -21,7 +22,6 @@ from app.compose.kinematics_chain import kinematics_of
 from app.compose.machine_setup import read_machine
 from app.compose.office import open_office
 from app.compose.scope_desk import give_scope
-from app.compose.shapes_desk import give_shapes
 from app.compose.sharing_desk import give_sharing, open_sharing
 from app.compose.shop_floor import keep_status, open_shop_floor
 from app.compose.stored_offsets import Offsets, book_of, shapes_at_hand, stored_offsets
@@ -67,6 +67,9 @@ from core.store.store_errors import StoreError
 from core.store.store_rows import EventRow
 from drivers.clocks import RealClock
 
+if TYPE_CHECKING:
+    from app.shapes.shapes_model import Shapes
+
 # Threads beside the executor, and what an operator misses when they end.
 SUPERVISED = {
     "store-writer": "WHAT KEEPS OFFSETS AND COUNTS",
@@ -81,6 +84,7 @@ SUPERVISED = {
     "inverter": "WHAT TALKS TO THE INVERTER",
     "recorder": "THE RECORD OF THE SCOPE",
 }
+_OFTEN = (700, 10, 10)  # Python's usual: a collection stops every thread, so many short ones
 GIVE_WAY = 0.001  # seconds after which a worker that proves or draws lets the screen and the executor go on
 
 
@@ -117,6 +121,7 @@ def build_desk(machine_file: str | None = None, offsets: Callable[[], Offsets] =
     desk.differs = lambda: file.differs
     desk.not_kept, desk.waiting = (lambda: journal.trouble or log.trouble), (lambda: journal.held)
     gc.freeze()  # modules and the like: collections need not look at them again
+    gc.set_threshold(*_OFTEN)
     thread.start()
     recorder.start()
     watchdog.start()
@@ -301,13 +306,19 @@ def _desk(
     if machine.kind == "mill":
         desk.attach(MillTouch(desk, kinematics_of(machine)))
     give_part(desk, machine, keep)
-    give_shapes(desk, machine, shapes_at_hand)
+    desk.attach_later("app.shapes.shapes_model.Shapes", partial(_shapes, desk, machine))
     give_searchto(desk, machine)
     give_quality(desk, machine, journal)
     alone = workshop(machine, offsets, left=left, pictures=False)
     give_jobs(desk, machine, alone, shapes_at_hand, kept, journal)
     give_sharing(desk, machine, journal)
     return desk
+
+
+def _shapes(desk: Desk, machine: Machine) -> Shapes:
+    from app.compose.shapes_desk import shapes_of
+
+    return shapes_of(desk, machine, shapes_at_hand)
 
 
 def _stops(journal: Journal) -> Sequence[EventRow]:

@@ -20,12 +20,12 @@ _LIVE = re.compile(r"live|mill|driven", re.IGNORECASE)
 _USUAL = (15, 16)
 
 
-def give_shapes(desk: Desk, machine: Machine, shapes: Callable[[], Mapping[int, ToolShape]]) -> None:
-    """The desk has shapes; the tools are those of the moment in which a form is opened."""
+def shapes_of(desk: Desk, machine: Machine, shapes: Callable[[], Mapping[int, ToolShape]]) -> Shapes:
+    """The shapes of the desk; the tools are those of the moment in which a form is opened."""
     found = Shapes(lambda: shop_of(machine, shapes()), Setting(metric=not machine.inch))
     found.drawings = lambda: {each.name: each.path for each in desk.program_folders.drawings()}
     found.attempt = partial(attempt, machine, shapes)
-    desk.attach(found)
+    return found
 
 
 def attempt(

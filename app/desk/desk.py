@@ -133,6 +133,9 @@ class Desk:
     offered: Callable[[Snapshot], NoticeRow | None] = lambda _snapshot: None  # between cycles: the next job
     watches: list[Watcher] = field(default_factory=list)  # what else looks at every frame
     _attached: dict[type[Attached], Attached] = field(default_factory=dict)
+    _made_later: dict[str, Callable[[], Attached]] = field(
+        default_factory=dict
+    )  # by the names of their classes
     _silence: SilenceWatch = field(default_factory=SilenceWatch)
     _part_told: PartProved | None = None
 
@@ -246,8 +249,18 @@ class Desk:
         """Have the model of a page with the desk: it is found by its class, and ends with the desk."""
         self._attached[type(part)] = part
 
+    def attach_later(self, kind: str, make: Callable[[], Attached]) -> None:
+        """The same with one that is made, and whose class is loaded, when somebody first asks for it.
+
+        ``kind`` is its class with the module, as ``app.shapes.shapes_model.Shapes``.
+        """
+        self._made_later[kind] = make
+
     def attached(self, kind: type[A]) -> A | None:
         """What is attached of this class; None: the desk was put together without."""
+        make = self._made_later.pop(f"{kind.__module__}.{kind.__qualname__}", None)
+        if make is not None:
+            self.attach(make())
         part = self._attached.get(kind)
         return part if isinstance(part, kind) else None
 

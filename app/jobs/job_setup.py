@@ -4,14 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 from app.desk.formats import local_time
 from app.desk.translation import tr
-from app.special.setup_sheet import SetupSheet, SheetTool
 from core.language.diagnostics import Diagnostic, Severity
 from core.quality.tool_life import LifeState, ToolLife
 from core.store.store_rows import ToolRow
 from core.tool_edges import edge_name
+
+if TYPE_CHECKING:
+    from app.special.setup_sheet import SetupSheet, SheetTool
 
 _SAME = 1e-4  # mm: nose radii that differ by less are one
 _TOLD = 3  # findings of the proof that are named

@@ -324,3 +324,37 @@ def test_nothing_starts_from_any_page_while_a_backup_is_restored(desk: Desk, mac
     assert desk.barred() == ""
     desk.restoring = True
     assert desk.barred() == RESTORING
+
+
+class _Model:
+    closed = 0
+
+    def close(self) -> None:
+        """With the desk."""
+        self.closed += 1
+
+
+class _Other(_Model):
+    pass
+
+
+def test_what_is_attached_for_later_is_made_once_when_it_is_asked_for(desk: Desk) -> None:
+    made: list[_Model] = []
+
+    def make() -> _Model:
+        made.append(_Model())
+        return made[-1]
+
+    desk.attach_later(f"{__name__}._Model", make)
+    assert (desk.attached(_Other), made) == (None, [])
+    assert desk.attached(_Model) is desk.attached(_Model) is made[0]
+    desk.close()
+    assert (len(made), made[0].closed) == (1, 1)
+
+
+def test_what_nobody_asked_for_is_not_made_by_closing(desk: Desk) -> None:
+    def make() -> _Model:
+        raise AssertionError("made although nobody asked")
+
+    desk.attach_later(f"{__name__}._Model", make)
+    desk.close()

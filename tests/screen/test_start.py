@@ -1,0 +1,56 @@
+"""What the desk's start does without: everybody waits for what it loads."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import pytest
+
+DESK = """
+import sys
+import app.screen.run_screen
+from app.compose.screen_desk import desk_and_executor
+from app.compose.stored_offsets import stored_offsets
+from drivers.clocks import StepClock
+desk, _ = desk_and_executor(None, stored_offsets, StepClock())
+read = [name for name in sys.modules["linecache"].cache if "/app/" in name or "/core/" in name]
+print(*sys.modules)
+print(*read)
+desk.close()
+"""
+OF_LATER = (
+    *("app.editor.editor_view", "app.scope.scope_view", "app.shapes", "app.special.setup_sheet", "pyqtgraph"),
+    *("core.drawings.profile_program", "core.interpreter.klartext", "core.interpreter.sinumerik"),
+    *("core.part.milled_part", "core.part.solid_picture", "core.proving.part_proof", "core.shapes"),
+    *("ezdxf", "svgelements"),
+)
+
+
+@pytest.fixture(scope="module")
+def started(tmp_path_factory: pytest.TempPathFactory) -> tuple[frozenset[str], list[str]]:
+    """Modules of a desk that stands, on the shipped lathe; source texts of ours that were read for it."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("TURNDESK_HOME", str(tmp_path_factory.mktemp("home")))
+        command = [sys.executable, "-c", DESK]
+        done = subprocess.run(command, check=True, capture_output=True, text=True)
+    modules, read, *_ = [*done.stdout.split("\n"), ""]
+    return frozenset(modules.split()), read.split()
+
+
+@pytest.mark.parametrize("later", OF_LATER)
+def test_what_a_page_or_a_proof_needs_is_loaded_with_it(
+    started: tuple[frozenset[str], list[str]], later: str
+) -> None:
+    assert not [name for name in started[0] if f"{name}.".startswith(f"{later}.")]
+
+
+def test_what_the_first_picture_needs_is_there(started: tuple[frozenset[str], list[str]]) -> None:
+    assert {"app.automatic.automatic_view", "core.executor.executor", "PySide6.QtWidgets"} <= started[0]
+
+
+def test_the_source_of_what_the_screen_imports_is_not_read(
+    started: tuple[frozenset[str], list[str]],
+) -> None:
+    """PySide would read all of it, by ``inspect``, which keeps in ``linecache`` what it has read."""
+    assert started[1] == []
