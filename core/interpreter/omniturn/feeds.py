@@ -87,6 +87,25 @@ def _feed(state: State, statement: Statement, word: Word, *, first: bool) -> Non
         raise statement.refuse(word, *out_of_range(modal, feed, least, most))
 
 
+def another_feed(state: State, f: float) -> bool:
+    """Takes F of a plain move into force where that is all its line changes: another feed of a cut.
+
+    False, and nothing is changed, where its statement is needed: after a rapid, while a cycle or compensation
+    is described, under G35 and G36, for a feed that is refused or warned of.
+    """
+    modal, feed = state.modal, state.feed_word(f)
+    least = _LEAST if modal.per_rev else _LEAST / 60
+    most = limit(state, Limit.FEED_IN_FORCE)
+    if modal.per_rev:
+        most = min(most, HIGH_FEED)
+    if state.steady_feed is None or modal.coarse or state.contour.active or not least <= feed <= most:
+        return False
+    state.title_rapid = 0
+    state.reported.discard("feed-missing")
+    state.adopt(modal._replace(feed=feed, cut_feed=feed))
+    return True
+
+
 def out_of_range(modal: Modal, feed: float, least: float, most: float) -> tuple[str, str, str]:
     """Code, sentence and remedy for a feed that is none, as G94 or G95 counts it."""
     rule = LETTERS["F"].rules["F"]

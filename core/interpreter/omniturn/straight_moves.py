@@ -6,7 +6,7 @@ from math import copysign, floor, hypot, isfinite
 
 from core.interpreter import units
 from core.interpreter.elementary_blocks import Block
-from core.interpreter.omniturn.feeds import check_move
+from core.interpreter.omniturn.feeds import another_feed, check_move
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import PlainMove, Statement
 from core.language.diagnostics import program_error
@@ -18,12 +18,13 @@ WHOLE = 1e-6  # of a step: what a decimal fraction lacks in binary
 
 
 def plain_move(state: State, line: int, text: str, move: PlainMove) -> Block | None:
-    """The block of a line of G00 or G01, X, Z and F; None where its code or its F changes what is in force.
+    """The block of a line of G00 or G01, X, Z and F; None where more changes than the feed of a cut.
 
     Raises ProgramError as ``line_to`` does.
     """
     x, z, f, g, fine = move
-    if (g >= 0 or f is not None) and not in_force(state, g, f):
+    same = (g < 0 and f is None) or in_force(state, g, f)
+    if not same and (g == 0 or f is None or not another_feed(state, f)):
         return None
     # Four decimals lie on every step but a coarse one.
     if fine or state.modal.coarse:
