@@ -89,6 +89,10 @@ def _spindle_lamp(snapshot: Snapshot) -> Lamp:
     """Turning is told from the measured speed: one that coasts is as dangerous as one that is driven."""
     if Unknown.SPINDLE in snapshot.unknown:
         return Lamp("SPINDLE UNKNOWN", lit=True, warn=True)
+    if snapshot.orienting:
+        return Lamp("SPINDLE ORIENTS", lit=True, warn=True)
+    if snapshot.oriented is not None:
+        return Lamp("SPINDLE HELD", lit=True)
     turning = abs(snapshot.rpm_actual) > TURNING
     if turning and snapshot.rpm_command == 0:
         return Lamp("SPINDLE COASTS", lit=True, warn=True)
@@ -370,6 +374,8 @@ def spindle_figures(snapshot: Snapshot, metric: bool, language: str) -> SpindleF
     command = snapshot.rpm_command
     forward, reverse, off = _directions(language)
     direction = forward if command > 0 else reverse if command < 0 else off
+    if snapshot.oriented is not None:
+        direction = tr("HELD {angle}").format(angle=formats.angle(snapshot.oriented))
     return SpindleFigures(
         direction=f"{direction} · G96" if modal.css else direction,
         rpm=formats.rpm(command),

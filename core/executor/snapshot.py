@@ -135,6 +135,8 @@ class Snapshot:
     turns: bool = False  # the feed is that of rotary axes alone: degrees instead of mm
     rpm_command: float = 0.0
     rpm_actual: float = 0.0
+    orienting: bool = False  # the spindle's drive turns it to an angle
+    oriented: float | None = None  # degrees from its index at which the drive holds it
     spindle_asked: float = 0.0  # signed rpm that program or MDI want, before pot, switch and limit of F10
     feed_override: float = 1.0
     spindle_override: float = 1.0

@@ -62,6 +62,8 @@ class Publisher:
             velocity=self._measured(context.sample, sum(not axis.rotary for axis in context.machine.axes)),
             rpm_command=context.spindle.command,
             rpm_actual=context.spindle.measured,
+            orienting=context.spindle.orientation.on_its_way,
+            oriented=context.spindle.orientation.at,
             spindle_asked=context.spindle.asked_rpm,
             feed_override=context.feed_override,
             spindle_override=context.spindle.override,

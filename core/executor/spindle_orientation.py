@@ -22,6 +22,11 @@ class Orientation:
         return self._asked[0] if self._asked is not None and self._reached else None
 
     @property
+    def on_its_way(self) -> bool:
+        """Whether the drive turns it to an angle."""
+        return self._asked is not None and not self._reached
+
+    @property
     def turns_at(self) -> float:
         """rpm at which the spindle may turn without a command: on its way to an angle."""
         return self._rpm if self._asked is not None else 0.0

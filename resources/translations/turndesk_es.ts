@@ -5610,6 +5610,11 @@
     </message>
     <message>
       <location filename="app/desk/readouts.py" />
+      <source>HELD {angle}</source>
+      <translation>RETENIDO {angle}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/readouts.py" />
       <source>INCH</source>
       <translation>PULGADAS</translation>
     </message>
@@ -5682,6 +5687,16 @@
       <location filename="app/desk/readouts.py" />
       <source>SPINDLE FWD</source>
       <translation>HUSILLO ADELANTE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/readouts.py" />
+      <source>SPINDLE HELD</source>
+      <translation>CABEZAL RETENIDO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/readouts.py" />
+      <source>SPINDLE ORIENTS</source>
+      <translation>CABEZAL SE ORIENTA</translation>
     </message>
     <message>
       <location filename="app/desk/readouts.py" />

@@ -139,6 +139,15 @@ def test_spindle_lamp_tells_what_turns(
     assert (lamp.word, lamp.lit, lamp.warn) == (word, lit, warn)
 
 
+def test_a_spindle_that_is_held_at_an_angle_is_told_and_does_not_coast_on_its_way_there() -> None:
+    turning = status_of(replace(AT, orienting=True, rpm_actual=90.0), Readout.POSITION, True)
+    held = status_of(replace(AT, oriented=90.0), Readout.POSITION, True)
+    assert (turning.lamps[0].word, turning.lamps[0].warn) == ("SPINDLE ORIENTS", True)
+    assert (held.lamps[0].word, held.lamps[0].lit, held.lamps[0].warn) == ("SPINDLE HELD", True, False)
+    assert held.spindle.direction.startswith("HELD 90")
+    assert status_of(AT, Readout.POSITION, True).spindle.direction == "M05 OFF"
+
+
 def test_lamps_follow_the_outputs_and_not_the_programs_word() -> None:
     make_alarm = replace(AT, modal=Modal(coolant=True, collet_closed=True), outputs=frozenset())
     words = {lamp.word: lamp.lit for lamp in status_of(make_alarm, Readout.POSITION, True).lamps}

@@ -85,7 +85,8 @@ def _lines(state: State) -> Iterator[StateLine]:
     yield StateLine("tool", f"T{modal.tool} {state.tool_axis}".rstrip() if modal.tool else "")
     yield StateLine("length", f"L{state.tool_length:+.3f}  R{state.tool_radius:+.3f}" if modal.tool else "")
     yield StateLine("speed", f"S{modal.rpm:g}" if modal.rpm else "")
-    yield StateLine("spindle", {1: "M3", 0: "M5", -1: "M4"}[modal.spindle])
+    held = f"M19 {modal.oriented:g}" if modal.oriented is not None else "M5"
+    yield StateLine("spindle", {1: "M3", 0: held, -1: "M4"}[modal.spindle])
     yield StateLine("feed", f"F{state.feed_per}{state.feed:g}" if state.feed is not None else "")
     yield StateLine("preset", str(state.setup.preset))
     yield StateLine("datum", _words(SLIDES, state.origin) if state.origin != ORIGIN else "")

@@ -73,7 +73,8 @@ def _lines(state: State) -> Iterator[StateLine]:
     yield StateLine("distance", "G90" if modal.absolute else "G91")
     yield StateLine("tool", edge_name(modal.tool) if modal.tool else "")
     yield StateLine("speed", f"G96 S{modal.surface_speed * 0.06:g}" if modal.css else f"G97 S{modal.rpm:g}")
-    yield StateLine("spindle", {1: "M3", 0: "M5", -1: "M4"}[modal.spindle])
+    held = f"SPOS={modal.oriented:g}" if modal.oriented is not None else "M5"
+    yield StateLine("spindle", {1: "M3", 0: held, -1: "M4"}[modal.spindle])
     feed = "" if modal.feed is None else f" F{modal.feed if modal.per_rev else modal.feed * 60.0:g}"
     yield StateLine("feed", f"{'G95' if modal.per_rev else 'G94'}{feed}")
     yield StateLine("coolant", "M8" if modal.coolant else "M9")
