@@ -31,6 +31,7 @@ PAGES = ("F3", "F5", "F6", "F8", "F9", "F10", "b", "q", "w", "j", "F2")
 COMES, SETTLES, MARKS = 20.0, 1.2, 20  # s until the window is there, s on a page, marks of a run
 WARM = 0.25  # of a run: pages are opened for the first time, rings are filled
 STANDS = {"READY", "FEED_HOLD", "INTERRUPTED", "OPTIONAL_STOP", "PROGRAM_STOPPED", "STOPPED"}
+MADE = {"READY", "PROGRAM_COMPLETED"}
 
 
 # --- the desk, in a process of its own ------------------------------------------------------------------
@@ -122,11 +123,13 @@ class Looker:
             time.sleep(SETTLES)
 
     def finish(self) -> None:
-        """Cycle Repeat off; the part under way is made, then the window is shut."""
+        """Cycle Repeat off; the part under way is made, also one that is held, then the window is shut."""
         self.key("F1", "F2", "Escape", "c")
         for _ in range(60):
-            if self.state in STANDS:
+            if self.state in MADE:
                 break
+            if self.state in STANDS:
+                self.start()
             time.sleep(1.0)
         time.sleep(SETTLES)
 

@@ -18,6 +18,9 @@ from pytestqt.qtbot import QtBot
 
 from app.compose.journal import Journal
 from app.desk.desk import Desk
+from app.desk.translation import ENGLISH
+from app.screen import event_times
+from app.screen.language import speak_in
 from app.screen.look import Look, dress, load_fonts
 from app.screen.main_window import MainWindow
 from app.screen.theme import DARK
@@ -26,6 +29,8 @@ from tests.screen.fake import FakeMachine
 from tests.screen.hands import Hands, window_on
 from tests.screen.lathe import Operator
 from tests.screen.pictures import Stage
+
+STALL = event_times.STALL
 
 
 def left_over() -> list[str]:
@@ -50,7 +55,20 @@ def nothing_left(qapp: QApplication) -> Iterator[None]:
     before = set(left_over())
     yield
     leaked = [name for name in left_over() if name not in before]
+    speak_in(ENGLISH)  # a window on the desk speaks its language in every picture, also in the last one
     assert not leaked, f"left over: {leaked}"
+
+
+@pytest.fixture(autouse=True)
+def never_late(monkeypatch: pytest.MonkeyPatch) -> None:
+    """No key and no finger is late, however busy this computer is; ``stalls`` is for those that play it."""
+    monkeypatch.setattr(event_times, "STALL", float("inf"))
+
+
+@pytest.fixture
+def stalls(monkeypatch: pytest.MonkeyPatch, never_late: None) -> None:
+    """Who is late is late, as in the shop."""
+    monkeypatch.setattr(event_times, "STALL", STALL)
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -190,6 +190,7 @@ class Time:
         return self.now
 
 
+@pytest.mark.usefixtures("stalls")
 def test_what_waited_behind_a_stall_is_late() -> None:
     time = Time()
     times = EventTimes(time)
@@ -210,6 +211,7 @@ def test_what_waited_behind_a_stall_is_late() -> None:
     assert times.stalled == pytest.approx(3.0)
 
 
+@pytest.mark.usefixtures("stalls")
 def test_what_was_long_on_its_way_is_late_without_a_stall() -> None:
     time = Time()
     times = EventTimes(time)
@@ -221,6 +223,7 @@ def test_what_was_long_on_its_way_is_late_without_a_stall() -> None:
     assert times.late(51_000 - round(1100 * STALL))
 
 
+@pytest.mark.usefixtures("stalls")
 def test_fingers_by_another_clock_are_not_late_for_ever() -> None:
     time = Time()
     times = EventTimes(time)
@@ -235,6 +238,7 @@ def test_fingers_by_another_clock_are_not_late_for_ever() -> None:
     assert not times.late(51_010)
 
 
+@pytest.mark.usefixtures("stalls")
 def test_stamps_that_run_over_are_no_stall() -> None:
     time = Time()
     times = EventTimes(time)
@@ -250,6 +254,7 @@ def stopped_clock(hands: Hands) -> int:
     return round(1000 * Time.now)
 
 
+@pytest.mark.usefixtures("stalls")
 def test_palms_late_by_their_stamps_start_nothing(watched: Hands) -> None:
     watched.load("pin")
     now = stopped_clock(watched)

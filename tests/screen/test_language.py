@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import cache
 from importlib import import_module
 from pathlib import Path
 
@@ -31,12 +32,14 @@ from tests.screen.hands import Hands, Key
 KEY_LABEL = 8  # characters
 
 
+every_text = cache(texts)  # of every file there is: seconds
+
+
 @pytest.fixture
-def spanish(hands: Hands) -> Iterator[Hands]:
+def spanish(hands: Hands) -> Hands:
     hands.desk.settings.choose("language", "es")
     hands.window.refresh()
-    yield hands
-    speak_in("en")
+    return hands
 
 
 def drawn(hands: Hands, monkeypatch: pytest.MonkeyPatch) -> list[str]:
@@ -205,9 +208,9 @@ def _pages(page: type[Page]) -> Iterator[type[Page]]:
 def test_every_text_has_its_spanish() -> None:
     """Run ``python -m resources.translations.collect``, then write what it has put in as unfinished."""
     known = written("es")
-    assert sorted(text for text in texts() if not known.get(text)) == []
+    assert sorted(text for text in every_text() if not known.get(text)) == []
 
 
 def test_the_templates_are_those_of_the_texts() -> None:
     listed = set((HERE / "templates.txt").read_text(encoding="utf-8").splitlines())
-    assert listed == {text for text in texts() if HOLE.search(text)}
+    assert listed == {text for text in every_text() if HOLE.search(text)}

@@ -149,6 +149,7 @@ def test_what_was_drawn_may_not_be_done_and_is_looked_at_again(hands: Hands, cou
     assert [counted.tick() for _ in range(2)] == [1, 0]
 
 
+@pytest.mark.usefixtures("stalls")
 def test_behind_a_stall_what_is_to_be_seen_is_shown_before_anything_starts(counted: Counted) -> None:
     assert [counted.tick(after) for after in (0.31, 0.001, 0.001)] == [1, 1, 0]
 

@@ -14,7 +14,6 @@ from app.desk.desk import Desk
 from app.desk.translation import spoken
 from app.programs.folder_chooser import Stick
 from app.report.pdf_file import Paper
-from app.screen.language import speak_in
 from app.special.setup_sheet_function import MOST_NOTES, SetupSheetFunction
 from app.special.special_view import SpecialPage
 from tests.pdf_text import Pdf
@@ -166,15 +165,12 @@ def test_the_page_says_its_language(hands: Hands, tmp_path: Path) -> None:
     _, function = opened(hands)
     function.plugged = lambda: (Stick("BLUE", tmp_path, 10**9),)
     hands.desk.settings.choose("language", "es")
-    try:
-        hands.sees(lambda: spoken() == "es")
-        hands.key(Key.Key_F6)
-        hands.sees(lambda: bool(function.places))
-        hands.key(Key.Key_Return)
-        hands.sees((tmp_path / "bushing.nc-setup.pdf").exists)
-        hands.sees(lambda: not function.busy)
-    finally:
-        speak_in("en")
+    hands.sees(lambda: spoken() == "es")
+    hands.key(Key.Key_F6)
+    hands.sees(lambda: bool(function.places))
+    hands.key(Key.Key_Return)
+    hands.sees((tmp_path / "bushing.nc-setup.pdf").exists)
+    hands.sees(lambda: not function.busy)
     page = (tmp_path / "bushing.nc-setup.html").read_text(encoding="utf-8")
     assert '<html lang="es">' in page
     assert "Hoja de preparación" in page

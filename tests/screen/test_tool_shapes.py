@@ -14,7 +14,6 @@ from app.offsets.offset_book import OffsetBook
 from app.offsets.tool_shapes_view import ShapeTable, ToolShapePage
 from app.screen import page_table
 from app.screen.entry_panel import KeyPad
-from app.screen.language import speak_in
 from app.screen.panel import Panel
 from core.executor.snapshot import State
 from core.store.store import Store
@@ -198,16 +197,13 @@ def test_without_a_store_the_reason_is_told(hands: Hands) -> None:
 
 def test_refusal_is_spanish_where_the_operator_is(hands: Hands, store: Store) -> None:
     hands.desk.settings.choose("language", "es")
-    try:
-        page = opened(hands)
-        for _ in range(4):
-            hands.key(Key.Key_Down)
-        hands.key(Key.Key_Return)
-        hands.key(Key.Key_Delete)
-        hands.type("CNXG 432")
-        hands.key(Key.Key_Return)
-        told = hands.frame.prompt.text
-        assert "CNXG 432" in told
-        assert page.model.text == "CNXG 432"
-    finally:
-        speak_in("en")
+    page = opened(hands)
+    for _ in range(4):
+        hands.key(Key.Key_Down)
+    hands.key(Key.Key_Return)
+    hands.key(Key.Key_Delete)
+    hands.type("CNXG 432")
+    hands.key(Key.Key_Return)
+    told = hands.frame.prompt.text
+    assert "CNXG 432" in told
+    assert page.model.text == "CNXG 432"
