@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from core.interpreter.actions import Coolant, Output
+from core.interpreter.actions import Collet, Coolant, Output
 from core.interpreter.elementary_blocks import Block
 from core.interpreter.machine_requirements import BUILDERS_M, Need, how_bound
 from core.interpreter.sinumerik.modes_and_offsets import tell_idle
@@ -14,6 +14,7 @@ from core.language.diagnostics import ProgramError
 from core.language.sinumerik.sinumerik_words import Word
 from core.language.sinumerik.word_table import M_FUNCTIONS
 
+COLLET = "collet"  # the output of the chuck, whatever codes the builder has given it
 _OF_ISO = frozenset({98, 99})  # which call and end subprograms in the other language of this control
 
 
@@ -30,12 +31,20 @@ def check_m(state: State, statement: Statement, lacking: list[Need]) -> None:
         elif code in M_FUNCTIONS:
             tell_idle(state, statement, word, f"M{code}", _idle(state, code))
         elif code in limits.m_outputs:
-            continue
+            _check_chuck(state, statement, word, *limits.m_outputs[code])
         elif code in limits.m_disabled or code in _OF_ISO:
             raise _refused(state, statement, code, word)
         else:
             lacking.append(Need(f"{BUILDERS_M}{code}", statement.line.number))
             _tell_unanswered(state, statement, code, word)
+
+
+def _check_chuck(state: State, statement: Statement, word: Word, name: str, on: bool) -> None:
+    """A code that opens the chuck is kept to the interlock that M13 of the other language has."""
+    turns = state.modal.spindle and 5 not in statement.m
+    if name == COLLET and not on and turns and not state.setup.limits.unclamp_while_turning:
+        text = f"{word.text} opens the chuck while the spindle turns."
+        raise statement.refuse(word, "unclamp-turning", text, "Write M5 before it.")
 
 
 def _idle(state: State, code: int) -> str:
@@ -78,7 +87,10 @@ def functions_after(state: State, statement: Statement) -> Iterator[Block]:
 def _outputs(state: State, statement: Statement, *, on: bool) -> Iterator[Block]:
     for code in statement.m:
         name, wanted = state.setup.limits.m_outputs.get(code, ("", not on))
-        if name and wanted is on:
+        if name == COLLET and wanted is on:
+            state.adopt(state.modal._replace(collet_closed=on))
+            yield state.action(statement.line.number, f"M{code}", Collet(closed=on))
+        elif name and wanted is on:
             outputs = state.modal.outputs | {name} if on else state.modal.outputs - {name}
             state.adopt(state.modal._replace(outputs=outputs))
             yield state.action(statement.line.number, f"M{code}", Output(name, on))
