@@ -247,6 +247,15 @@ def test_refused(lines: tuple[str, ...], error: tuple[int, int, str]) -> None:
     assert all(block.line < 4 for block in result.moves)
 
 
+def test_a_contour_that_falls_at_once_is_told_how_it_begins() -> None:
+    """From .4 at Z0 to .2 at Z-.5; .4 at Z0 reached up the face from .2 is roughed."""
+    fall = ("X.4Z0", "X.2Z-.5", "Z-.6", "RF")
+    result = passed(body("X.5Z.1", "G75I.05U.01F4", *fall))
+    (refused,) = [each for each in result.interpreter.diagnostics if each.code == "cycle-start-near"]
+    assert "up the face from its lowest X" in refused.hint
+    assert not passed(body("X.5Z.1", "G75I.05U.01F4", "X.2Z0", "X.4", *fall[1:])).errors
+
+
 def test_refused_per_revolution_of_a_spindle_that_stands() -> None:
     result = passed(body("M05", "X.4Z.1", "G95G75I.1F.003", *SHAFT, "RF"))
     assert result.errors == [(5, 0, "spindle-stopped")]

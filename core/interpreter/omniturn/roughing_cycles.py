@@ -16,6 +16,7 @@ from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
 
 _WHOLE = 1e-6  # of a pass: what a decimal fraction lacks in binary
+_SAME = 1e-6  # mm
 _MOST_ELEMENTS = 2_000
 _MOST_LOOKS = 200_000  # elements times passes: a few seconds
 
@@ -46,6 +47,10 @@ def contour_moves(state: State, statement: Statement, lines: Sequence[Statement]
     except StartNearError:
         text = "On the way from the start point to the contour and back the tool comes nearer to it than U."
         hint = "Move the start point away from the contour."
+        if _falls_at_once(view.from_start(contour)[0]):
+            hint = (
+                "The contour falls from its first point: begin it with a way up the face from its lowest X."
+            )
         raise statement.refuse("G", "cycle-start-near", text, hint) from None
     if area.turns_back:
         text = "The contour runs back along Z: behind that edge the pass along it cuts all that is there."
@@ -53,6 +58,12 @@ def contour_moves(state: State, statement: Statement, lines: Sequence[Statement]
             statement.line, statement.code_column, "cycle-undercut", text, "Look whether the tool fits."
         )
     return [view.placed(move) for move in rougher.moves]
+
+
+def _falls_at_once(first: Element) -> bool:
+    """Whether a contour, in depth and way from the start point, goes deeper as soon as it goes on."""
+    (depth, way), (there, further) = first.start, first.end
+    return there > depth + _SAME and abs(further - way) > _SAME
 
 
 def _passes(
