@@ -12,6 +12,7 @@ from app.cli.store_command import opened_store
 from app.cli.who_changes import add_as_option, note_change, who_may
 from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError
 from core.access.access_table import Act
+from core.language.source import Dialect, dialect_of
 from core.shapes.cutting_data import MATERIALS
 
 if TYPE_CHECKING:
@@ -39,7 +40,9 @@ def add_parser(subparsers: SubParsers) -> None:
     _add_drawing_options(parser)
     _add_part_options(parser)
     _add_tool_options(parser)
-    parser.add_argument("--out", metavar="FILE", help="where the program goes (default: stdout)")
+    parser.add_argument(
+        "--out", metavar="FILE", help="the program: .nc is OmniTurn, .mpf SINUMERIK (default: stdout)"
+    )
     add_as_option(parser)
     parser.add_argument("--json", action="store_true", help="machine-readable output alone on stdout")
 
@@ -70,7 +73,7 @@ def _add_part_options(parser: argparse.ArgumentParser) -> None:
 def _add_tool_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--tool", type=int, metavar="T", help="turning tool (default: the first that fits)")
     parser.add_argument("--groove-tool", type=int, metavar="T", help="groove tool (default: the first)")
-    parser.add_argument("--comp", type=int, metavar="D", help="secondary offset of the nose; 0: no G41")
+    parser.add_argument("--comp", type=int, metavar="D", help="offset or edge of the nose; 0: no G41")
     parser.add_argument("--tools", metavar="FILE", help="shapes of the tools, instead of the stored ones")
     parser.add_argument("--machine", metavar="FILE", help="machine file (default: the simulated lathe)")
 
@@ -99,6 +102,7 @@ def _run(args: argparse.Namespace) -> int:
     if args.side == "bore" and args.hole is None and not args.list:
         raise CommandError("a bore begins with a hole: say its diameter with --hole")
     args.metric = args.metric or not machine.inch
+    args.dialect = _language(args, machine)
     drawing = read_drawing(Path(args.file))
     if args.layer and args.layer not in drawing.layers:
         raise CommandError(f"{drawing.name} has no layer {args.layer}: say {', '.join(drawing.layers)}")
@@ -110,6 +114,16 @@ def _run(args: argparse.Namespace) -> int:
     if not 1 <= args.contour <= len(found):
         raise CommandError(f"{drawing.name} has {len(found)} contours: say --contour 1 to {len(found)}")
     return _make(drawing, view, found[args.contour - 1], args, machine)
+
+
+def _language(args: argparse.Namespace, machine: Machine) -> Dialect:
+    """By the name of the program, without one that of the machine."""
+    if args.out is None:
+        return Dialect.SINUMERIK if machine.language == Dialect.SINUMERIK else Dialect.OMNITURN
+    said = dialect_of(Path(args.out).name)
+    if said is Dialect.KLARTEXT:
+        raise CommandError(f"{args.out}: a turned profile is OmniTurn or SINUMERIK; name it .nc or .mpf")
+    return said
 
 
 def _view(drawing: Drawing, args: argparse.Namespace) -> View:
@@ -185,7 +199,7 @@ def _make(drawing: Drawing, view: View, net: Net, args: argparse.Namespace, mach
     text = "\n".join([*made.lines, "M30"]) + "\n"
     bar = float(typed["BAR"]) * mm
     stock = TrialStock(bar, float(typed.get("STOCK", 0.0)) * mm, (args.hole or 0.0) * mm)
-    trial = tried(text, chosen, stock, made.nose, machine, shapes)
+    trial = tried(text, chosen, stock, made.nose, machine, shapes, dialect=args.dialect)
     _write(text, args)
     _tell(made, trial, chosen, text, args)
     return EXIT_ERRORS if trial.errors else EXIT_OK
@@ -213,7 +227,7 @@ def _typed(chosen: Profile, args: argparse.Namespace, shapes: Mapping[int, ToolS
         "MATERIAL": args.material,
     }
     given = {word: value for word, value in said.items() if value is not None}
-    return proposed_fields(chosen, given, shapes, metric=args.metric)
+    return proposed_fields(chosen, given, shapes, metric=args.metric, dialect=args.dialect)
 
 
 def _program(
@@ -227,7 +241,7 @@ def _program(
     from core.drawings.profile_program import profile_program
     from core.shapes.shape_setting import Setting
 
-    setting = Setting(metric=args.metric, shop=shop_of(machine, shapes))
+    setting = Setting(metric=args.metric, shop=shop_of(machine, shapes), dialect=args.dialect)
     return profile_program(chosen, typed, [], setting)
 
 

@@ -44,7 +44,7 @@ def attempt(
 
     bar = length("FROM") or 1.5 * greatest_diameter(chosen)
     stock = TrialStock(bar, length("STOCK"), length("HOLE"))
-    trial = tried(text, chosen, stock, made.nose, machine, shapes(), watch)
+    trial = tried(text, chosen, stock, made.nose, machine, shapes(), watch, plan.asked.setting.dialect)
     return trial.comparison, trial.errors
 
 
@@ -57,8 +57,18 @@ def shop_of(machine: Machine, tools: Mapping[int, ToolShape]) -> Shop:
         slide_accel=z.amax if z is not None else 0.0,
         c_rpm=c.vmax / 6.0 if c is not None and c.vmax else Shop().c_rpm,
         live=_live(machine),
+        live_output=bool(machine.live_output),
+        third_axis=machine.third_axis if machine.c_enabled else "",
+        spindle_is_c=machine.spindle_is_c,
+        chuck=_chuck(machine),
         tools=dict(tools),
     )
+
+
+def _chuck(machine: Machine) -> tuple[int, int] | None:
+    """The M codes that open and close the chuck; None where the machine file binds none to it."""
+    codes = {on: code for code, (output, on) in sorted(machine.m_codes.items()) if output == "collet"}
+    return (codes[False], codes[True]) if len(codes) == 2 else None
 
 
 def _live(machine: Machine) -> tuple[int, int]:

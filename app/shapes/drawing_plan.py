@@ -189,7 +189,8 @@ class _Making:
         given = {name: asked.values[name] for name in (*_NUMBERS, "MATERIAL") if name in asked.values}
         if "FROM" in given:
             given["BAR"] = given["FROM"]
-        fields = proposed_fields(chosen, given, asked.setting.shop.tools, metric=asked.setting.metric)
+        now = asked.setting
+        fields = proposed_fields(chosen, given, now.shop.tools, metric=now.metric, dialect=now.dialect)
         if chosen.side is Side.INSIDE and not given.get("HOLE"):
             raise DrawingError("A bore begins with a hole: type its diameter.")
         return profile_program(chosen, fields, asked.lines, asked.setting), fields

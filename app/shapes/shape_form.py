@@ -12,7 +12,7 @@ from core.shapes.contour import Row, row_word
 from core.shapes.number_words import plain
 from core.shapes.pieces import Piece
 from core.shapes.shape import Filled, Shape, filled
-from core.shapes.shape_fields import Field, Kind, Refusal, Value
+from core.shapes.shape_fields import Field, Kind, Refusal, Value, choice_text
 from core.shapes.shape_setting import Setting
 from core.shapes.sketch import Sketch
 from core.shapes.thread_series import SIZES
@@ -167,7 +167,7 @@ class ShapeForm:
             Cell(
                 each.word,
                 each.label,
-                self.figure(each),
+                self.shown(each),
                 each.word in self.typed,
                 self.troubles.get(each.word, ""),
                 bool(self.choices(each)),
@@ -184,13 +184,18 @@ class ShapeForm:
             return ""
         return value if isinstance(value, str) else plain(value, 6)
 
+    def shown(self, each: Field) -> str:
+        """The same as an operator reads it: a choice in his language, names and sizes as they are."""
+        said = self.figure(each)
+        return shown_choice(each, said) if said in each.choices else said
+
     def dimension(self, word: str) -> str:
         """The figure of a dimension of the drawing."""
         if word.startswith("#"):
             number = int(word[1:]) - 1
             return word if number < len(self.rows) else ""
         known = self.shape.field(word)
-        return self.figure(known) if known is not None and known in self.fields else ""
+        return self.shown(known) if known is not None and known in self.fields else ""
 
     def choices(self, each: Field) -> tuple[str, ...]:
         """What a field is chosen from; none where it is typed."""
@@ -244,7 +249,7 @@ class ShapeForm:
         if here.kind is Kind.NAME:
             return key.upper() in _NAMES
         if here.kind is Kind.CHOICE:
-            return any(_begins(each, key) for each in self.choices(here))
+            return any(self._begins(here, each, key) for each in self.choices(here))
         return key in CHARACTERS
 
     def typed_key(self, key: str) -> bool:
@@ -291,7 +296,12 @@ class ShapeForm:
             return
         start = choices.index(now) + 1 if now in choices else 0
         order = (*choices[start:], *choices[:start])
-        self._set(here.word, next(each for each in order if _begins(each, key)))
+        self._set(here.word, next(each for each in order if self._begins(here, each, key)))
+
+    def _begins(self, here: Field, choice: str, key: str) -> bool:
+        """Whether a choice begins with a letter as it is shown."""
+        said = shown_choice(here, choice) if choice in here.choices else choice
+        return said.upper().startswith(key.upper())
 
     def _write_point(self, key: str) -> None:
         """A letter leads to its column, figures are written there; the empty point behind the last begins."""
@@ -329,5 +339,8 @@ class ShapeForm:
             self.work()
 
 
-def _begins(choice: str, key: str) -> bool:
-    return choice.upper().startswith(key.upper())
+def shown_choice(each: Field, choice: str) -> str:
+    """A choice in the operator's language, which may call it otherwise beside another label."""
+    known = choice_text(each, choice)
+    said = tr(known)
+    return choice if said == known else said

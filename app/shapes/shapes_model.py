@@ -15,14 +15,24 @@ from app.shapes.shape_form import ShapeForm
 from core.drawings.drawing_file import read_drawing
 from core.drawings.part_against_drawing import Comparison
 from core.language.source import Dialect, dialect_of
-from core.shapes.pieces import Piece, begun, ends_program, pieces, renewed, setting_at, with_shape
+from core.shapes.pieces import (
+    Piece,
+    begins_subroutine,
+    begun,
+    ends_program,
+    pieces,
+    renewed,
+    setting_at,
+    with_shape,
+)
 from core.shapes.program_head import HEAD
 from core.shapes.shape import Shape
 from core.shapes.shape_setting import Setting, Shop
-from core.shapes.shape_table import HELPERS, SHAPES, SHAPES_OF
+from core.shapes.shape_table import HELPERS, SHAPES_OF
 
-FORMS = {**SHAPES, "X": PROFILE}
-"""Of OmniTurn; another language has those of ``SHAPES_OF``."""
+FORMS_OF = {dialect: {**table, "X": PROFILE} for dialect, table in SHAPES_OF.items()}
+"""The forms by the language of the program."""
+FORMS = FORMS_OF[Dialect.OMNITURN]
 
 
 def written_in(name: str) -> bool:
@@ -94,7 +104,7 @@ class Shapes:
         if dialect is not Dialect.OMNITURN:
             if table is not FORMS:
                 return tr("CALCULATORS AND TEMPLATES WRITE OMNITURN: THIS PROGRAM SPEAKS ANOTHER LANGUAGE")
-            table = SHAPES_OF[dialect]
+            table = FORMS_OF[dialect]
         self.new = replace(self.new, dialect=dialect)
         self.worker.ask(lambda _request: self.fetch(), self._have_shop, self._no_shop)
         self.notice, self.asked, self.form, self.table = "", None, None, table
@@ -149,7 +159,7 @@ class Shapes:
         here = self.piece_at(line)
         at = here.behind if here is not None else min(line + 1, len(self.lines))
         ends = [n for n, each in enumerate(self.lines) if ends_program(each, self.new.dialect)]
-        started = [n for n, each in enumerate(self.lines) if each.strip().startswith("}")]
+        started = [n for n, each in enumerate(self.lines) if begins_subroutine(each)]
         for end in ends:
             begin = max((n for n in started if n < end), default=-1)
             if at <= end or end == ends[-1]:
@@ -208,12 +218,8 @@ class Shapes:
         return DrawingForm(PROFILE, setting, files=files, before=tuple(self.lines[: self.at]))
 
     def open_wanted(self) -> None:
-        """The form of the drawing that is waiting to be opened; of another language why there is none."""
-        if "X" in self.table:
-            self.open_shape("X")
-        else:
-            self.wanted = None
-            self.notice = tr("A DRAWING IS WRITTEN IN OMNITURN: OPEN IT BESIDE A PROGRAM OF THAT LANGUAGE")
+        """The form of the drawing that is waiting to be opened."""
+        self.open_shape("X")
 
     def _open_piece(self, piece: Piece) -> None:
         """A piece of the program; of one that somebody has changed by hand it is said."""

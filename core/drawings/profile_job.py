@@ -7,17 +7,24 @@ from collections.abc import Mapping
 
 from core.drawings.drawing_view import Profile, Side
 from core.drawings.profile_program import greatest_diameter, nose_of
+from core.language.source import Dialect
 from core.part.tool_shape import ToolKind, ToolShape
 from core.shapes.shape_fields import Value, Values
 
 _BAR = {True: 1.0, False: 0.0625}  # by metric: bars come in these steps
 _FACE = {True: 0.5, False: 0.02}
 _SKIN = 0.2  # mm of a diameter that is taken off a bar at least
+_EDGE = 1.0  # the cutting edge that a tool of SINUMERIK has first
 _ROUGH = {True: 1.0, False: 0.04}
 
 
 def proposed_fields(
-    profile: Profile, given: Values, shapes: Mapping[int, ToolShape], *, metric: bool
+    profile: Profile,
+    given: Values,
+    shapes: Mapping[int, ToolShape],
+    *,
+    metric: bool,
+    dialect: Dialect = Dialect.OMNITURN,
 ) -> dict[str, Value]:
     """The fields of ``profile_program``: what is given, and what is proposed for the rest."""
     inside = profile.side is Side.INSIDE
@@ -33,7 +40,8 @@ def proposed_fields(
     if blade:
         fields.setdefault("BLADE", float(blade))
     tool = shapes.get(int(float(fields["T"])))
-    fields.setdefault("COMP", float(fields["T"]) if nose_of(tool) else 0.0)
+    number = float(fields["T"]) if dialect is Dialect.OMNITURN else _EDGE
+    fields.setdefault("COMP", number if nose_of(tool) else 0.0)
     return {word: float(value) if not isinstance(value, str) else value for word, value in fields.items()}
 
 

@@ -12,16 +12,15 @@ from core.drawings.nose_reach import reached_by_nose
 from core.drawings.turning_contour import Groove, TurningContour, joined, reach_of, turning_contour
 from core.geometry.intersections import intersections
 from core.geometry.lines_and_arcs import Arc, Element, Line
+from core.language.source import Dialect
 from core.part.insert_codes import decoded
 from core.part.tool_shape import ToolShape
 from core.shapes.contour import Row
-from core.shapes.grooving import GROOVE
 from core.shapes.pieces import setting_at
-from core.shapes.program_head import HEAD
 from core.shapes.shape import Filled, Shape, filled
 from core.shapes.shape_fields import Refusal, Value, Values
 from core.shapes.shape_setting import Setting
-from core.shapes.turning import FACE, TURN
+from core.shapes.shape_table import SHAPES_OF
 from core.tool_edges import TIP_DIRECTIONS
 
 _SAME = 1e-3  # mm
@@ -38,12 +37,16 @@ class Left:
 
 
 class NoseOffset(NamedTuple):
-    """The secondary offset that G41 and G42 of the program call: its number, and mm, X a radius."""
+    """What G41 and G42 of the program reckon with: mm, X a radius.
+
+    ``number`` is that of a secondary offset, where the tool has a ``quadrant`` that of its cutting edge.
+    """
 
     number: int
     x: float
     z: float
     r: float
+    quadrant: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,12 +69,13 @@ def profile_program(
     """The shapes for a profile behind these ``lines``; without any it begins with a head.
 
     ``typed`` are fields of HEAD, FACE, TURN and GROOVE by their words: T and BLADE (the tools), STOCK, FROM,
-    HOLE, ROUGH, LEAVE, FEED, RFEED, RPM, SURF, COMP, WIDE, MATERIAL. Raises DrawingError.
+    HOLE, ROUGH, LEAVE, FEED, RFEED, RPM, SURF, COMP, WIDE, MATERIAL. The language is that of ``setting``.
+    Raises DrawingError.
     """
     writer = _Writer(list(lines), setting)
     if not lines:
         words = {key: typed[key] for key in ("UNIT", "MATERIAL", "BAR") if key in typed}
-        writer.add(HEAD, words)
+        writer.add("N", words)
     tool = setting.tool(float(typed.get("T", 0) or 0))
     outside = profile.side is Side.OUTSIDE
     mm = writer.now.mm
@@ -84,18 +88,18 @@ def profile_program(
         reached = reached_by_nose(contour.elements, nose_of(tool), inside=not outside)
         contour = replace(contour, elements=reached)
     past = _number(typed, "PAST") * mm if "PAST" in typed else past_end(tool)
-    beyond = tuple(joined(_past(contour.elements, past, nose_of(tool))))
-    contour = replace(contour, elements=beyond)
+    beyond = [*_before_fall(contour.elements, outside=outside)]
+    contour = replace(contour, elements=tuple(joined(_past(beyond, past, nose_of(tool)))))
     if outside and _number(typed, "STOCK"):
-        writer.add(FACE, _face(profile, typed, writer.now))
+        writer.add("F", _face(profile, typed, writer.now))
     rows = tuple(rows_of(contour.elements, mm))
-    writer.add(TURN, _turn(profile, contour, typed, writer.now), rows)
+    writer.add("T", _turn(profile, contour, typed, writer.now), rows)
     left = [Left(*each) for each in contour.left]
     for groove in contour.grooves:
         over = _way_in(contour.elements, groove, 1.0 if outside else -1.0)
         left += writer.groove(_groove(groove, typed, writer.now, over, outside=outside), groove)
     shapes, made = tuple(writer.shapes), tuple(writer.lines[len(lines) :])
-    nose = nose_offset(tool, int(_number(typed, "COMP")))
+    nose = nose_offset(tool, int(_number(typed, "COMP")), setting.dialect)
     return ProfileProgram(
         shapes, made, tuple(left), contour, tuple(writer.refusals), nose, nose_of(tool), _number(typed, "T")
     )
@@ -114,10 +118,13 @@ class _Writer:
         """What is in force behind the lines so far."""
         return setting_at(self.lines, len(self.lines), self._new.shop, self._new)
 
-    def add(self, shape: Shape, typed: Values, rows: tuple[Row, ...] = ()) -> None:
-        """One more shape; of one that refuses something nothing is written."""
+    def _shape(self, key: str) -> Shape:
+        return SHAPES_OF[self._new.dialect][key]
+
+    def add(self, key: str, typed: Values, rows: tuple[Row, ...] = ()) -> None:
+        """One more shape, by the key of its form; of one that refuses something nothing is written."""
         now = self.now
-        one = filled(shape, typed, now, rows)
+        one = filled(self._shape(key), typed, now, rows)
         refused = one.refusals(now)
         self.refusals += refused
         if not refused:
@@ -134,7 +141,7 @@ class _Writer:
             yield Left(*span, typed)
             return
         now = self.now
-        one = filled(GROOVE, typed, now)
+        one = filled(self._shape("G"), typed, now)
         refused = one.refusals(now)
         if refused:
             yield Left(*span, refused[0].text)
@@ -166,7 +173,9 @@ def _turn(profile: Profile, contour: TurningContour, typed: Values, setting: Set
 
 
 def _left_for_finish(contour: TurningContour, typed: Values, setting: Setting) -> dict[str, Value]:
-    """Roughing is not compensated: in a fall of angle a the nose R cuts R (1 + sin a - cos a) too deep."""
+    """G75 is not compensated: in a fall of angle a the nose R cuts R (1 + sin a - cos a) too deep."""
+    if setting.dialect is Dialect.SINUMERIK:
+        return {}  # CYCLE95 reckons with the nose
     tool, a = setting.tool(_number(typed, "T")), contour.steepest
     deep = nose_of(tool) * (1.0 + math.sin(a) - math.cos(a)) if a > 0.0 else 0.0
     usual = 0.25 if setting.metric else 0.01
@@ -184,10 +193,15 @@ def nose_of(tool: ToolShape | None) -> float:
     return decoded(tool.insert).nose_radius
 
 
-def nose_offset(tool: ToolShape | None, number: int) -> NoseOffset | None:
-    """What the secondary offset holds, so that the tip that was touched off cuts on size; None: not asked."""
+def nose_offset(tool: ToolShape | None, number: int, dialect: Dialect) -> NoseOffset | None:
+    """What the secondary offset holds, so that the tip that was touched off cuts on size; None: not asked.
+
+    In SINUMERIK the cutting edge holds R and the tip quadrant beside the tip.
+    """
     if not number or tool is None:
         return None
+    if dialect is Dialect.SINUMERIK:
+        return NoseOffset(number, 0.0, 0.0, nose_of(tool), tool.tip)
     along, across = TIP_DIRECTIONS[tool.tip]
     r = nose_of(tool)
     return NoseOffset(number, across * r, along * r, r)
@@ -196,6 +210,19 @@ def nose_offset(tool: ToolShape | None, number: int) -> NoseOffset | None:
 def past_end(tool: ToolShape | None) -> float:
     """How far a contour goes on behind the part, mm: its nose would leave a fillet at the end."""
     return math.ceil(10.0 * (nose_of(tool) + _ROOM)) / 10.0
+
+
+def _before_fall(elements: Sequence[Element], *, outside: bool) -> Iterator[Element]:
+    """A contour that falls from the face, begun by a way up the face from its lowest point.
+
+    Roughing refuses one that falls at once, as its way back crosses it.
+    """
+    side = 1.0 if outside else -1.0
+    r, z = elements[0].start
+    lowest = side * min(side * p[0] for each in elements for p in (each.start, each.end))
+    if side * (r - elements[0].end[0]) > _SAME and not _upright(elements[0]):
+        yield Line((lowest, z), (r, z))
+    yield from elements
 
 
 def _past(elements: Sequence[Element], far: float, nose: float) -> Iterator[Element]:

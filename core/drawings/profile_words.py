@@ -22,7 +22,11 @@ def in_words(
     if made.nose is not None:
         n = made.nose
         x, z, r = (plain(v / mm, places + 1) for v in (2.0 * n.x, n.z, n.r))
-        yield f"secondary offset {n.number} has to hold X {x} (as a diameter), Z {z}, R {r} {unit}"
+        if n.quadrant:
+            edge = f"T{made.tool:.0f} D{n.number}"
+            yield f"{edge} has to hold the nose radius {r} {unit} and tip quadrant {n.quadrant}"
+        else:
+            yield f"secondary offset {n.number} has to hold X {x} (as a diameter), Z {z}, R {r} {unit}"
     elif not made.nose_radius:
         yield f"the sheet of T{made.tool:.0f} states no nose radius: the contour is not compensated"
     if profile.closed > _CLOSED:
@@ -57,11 +61,10 @@ def is_corner(found: Deviation, nose: float) -> bool:
 
 def in_json(made: ProfileProgram, comparison: Comparison | None, profile: Profile) -> dict[str, Any]:
     """The same in mm."""
-    nose = made.nose
     return {
         "side": str(profile.side),
         "closed_gap_mm": round(profile.closed, 5),
-        "secondary_offset": None if nose is None else {**nose._asdict(), "x": round(nose.x, 6)},
+        **_nose_in_json(made),
         "left": [{"back_mm": each.back, "front_mm": each.front, "why": each.why} for each in made.left],
         "worst_mm": None if comparison is None else round(comparison.worst, 5),
         "deviations": []
@@ -71,3 +74,14 @@ def in_json(made: ProfileProgram, comparison: Comparison | None, profile: Profil
             for d in comparison.found
         ],
     }
+
+
+def _nose_in_json(made: ProfileProgram) -> dict[str, Any]:
+    """What G41 needs, where the language keeps it."""
+    nose = made.nose
+    if nose is not None and nose.quadrant:
+        edge = {"tool": int(made.tool), "edge": nose.number, "r": nose.r, "quadrant": nose.quadrant}
+        return {"secondary_offset": None, "cutting_edge": edge}
+    if nose is None:
+        return {"secondary_offset": None}
+    return {"secondary_offset": {"number": nose.number, "x": round(nose.x, 6), "z": nose.z, "r": nose.r}}

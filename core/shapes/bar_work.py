@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
+from core.shapes.bar_lines import Bars, write_bars
 from core.shapes.code_lines import Code
-from core.shapes.number_words import plain
 from core.shapes.shape import Filled, Shape
 from core.shapes.shape_fields import Field, Kind, Refusal, Value, Values, size
 from core.shapes.shape_setting import Setting
@@ -19,28 +20,14 @@ def _sub(_values: Values, setting: Setting) -> Value | None:
     return float(setting.free_sub)
 
 
-def _loop(filled: Filled, setting: Setting, code: Code) -> None:
-    """G97 changes nothing: it carries the comment, which has no place inside a loop."""
-    many, out = int(filled.n("COUNT")), filled.n("LONG")
-    call = f"P{filled.n('SUB'):.0f}"
-    if filled.t("FEEDS") == EACH:
-        code.write("G97", f"LS{many}")
-        _feed_out(filled, setting, code, out)
-        code.write(call, "LF")
-    else:
-        code.write("G97")
-        _feed_out(filled, setting, code, many * out)
-        code.write(f"LS{many}", call, f"G10{code.point(0.0, -out)}", "LF", "T0")
-
-
-def _feed_out(filled: Filled, setting: Setting, code: Code, out: float) -> None:
-    """The stop to the end of the bar, collet open, the bar follows it, collet closed."""
-    code.write(f"T{filled.n('STOP'):.0f}")
-    code.rapid(0.0, setting.clear)
-    code.rapid(z=filled.n("STOCK") - out)
-    code.write("M13", f"G94F{plain(filled.n('RATE'))}{code.z(filled.n('STOCK'))}", "M12")
-    code.forget()
-    code.away()
+def _loop(filled: Filled, _setting: Setting, code: Code) -> None:
+    write_bars(
+        code,
+        Bars(
+            int(filled.n("COUNT")), filled.n("LONG"), filled.t("FEEDS") == EACH, filled.n("STOP"),
+            filled.n("STOCK"), filled.n("RATE"), int(filled.n("SUB")),
+        )
+    )  # fmt: skip
 
 
 def _checks(_filled: Filled, setting: Setting) -> Iterator[Refusal]:
@@ -87,3 +74,18 @@ LOOP = Shape(
     _checks,
     ends=_tail,
 )
+
+
+def _sinumerik_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
+    if setting.shop.chuck is None:
+        words = "No M code of this machine opens and closes the chuck: bind two to the output collet"
+        yield Refusal("FEEDS", f"{words} under [m_codes] of the machine file.")
+    yield from _checks(filled, setting)
+
+
+def _sinumerik_tail(filled: Filled) -> tuple[str, ...]:
+    return f"%_N_PART_{filled.n('SUB'):.0f}_SPF", "M17"
+
+
+SINUMERIK_LOOP = replace(LOOP, checks=_sinumerik_checks, ends=_sinumerik_tail)
+"""The same with a subprogram, and M codes of the machine's own for the chuck."""

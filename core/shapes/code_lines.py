@@ -29,6 +29,21 @@ class Along(NamedTuple):
     label: float = 0.0
 
 
+class Tap(NamedTuple):
+    """A tap on the axis: from ``start`` in to ``end``, by ``pitch`` at ``rpm``, turned by ``into``.
+
+    ``rigid``: the spindle is held and turned with Z, where the language can; else a holder gives.
+    """
+
+    start: float
+    end: float
+    pitch: float
+    rpm: float
+    into: str
+    dwell: float
+    rigid: bool = False
+
+
 class Code:
     """Lines in the modes of a program. X is given as a radius; what is in force is not written again."""
 
@@ -169,6 +184,14 @@ class Code:
         else:
             self.write(f"G81{self.z(end)}{word}")
         self.forget()
+
+    def tap(self, tool: float, tap: Tap) -> None:
+        """In at the pitch, the spindle turned back, out at the pitch."""
+        self.begin(tool, tap.rpm, 0.0, tap.start, tap.into)
+        self.cut(z=tap.end, feed=tap.pitch)
+        self.write("M03" if tap.into == "M04" else "M04")
+        self.dwell(tap.dwell)
+        self.cut(z=tap.start)
 
     # --- spindle
 

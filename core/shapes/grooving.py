@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 
 from core.part.tool_shape import ToolKind
 from core.shapes.blade import (
@@ -19,7 +20,7 @@ from core.shapes.blade import (
 )
 from core.shapes.code_lines import Code
 from core.shapes.cutting_data import Work
-from core.shapes.number_words import plain
+from core.shapes.number_words import figure, plain
 from core.shapes.shape import Filled, Shape
 from core.shapes.shape_fields import Field, Kind, Refusal, Values, number
 from core.shapes.shape_setting import Setting
@@ -212,3 +213,58 @@ GROOVE = Shape(
     _groove_sketch,
     _groove_checks,
 )
+
+
+# --- SINUMERIK: by CYCLE93 where the tool has two cutting edges
+
+
+def _by_cycle(values: Values) -> bool:
+    return number(values, "DN") > 0.0
+
+
+def _sinumerik_groove(filled: Filled, setting: Setting, code: Code) -> None:
+    if not _by_cycle(filled.values):
+        _groove(filled, setting, code)
+        return
+    inside, top = filled.t("SIDE") == INSIDE, filled.n("TOP")
+    free = -FREE[setting.metric] if inside else FREE[setting.metric]
+    over, deep = (filled.n("OVER") or top) / 2.0 + free, abs(top - filled.n("BOTTOM")) / 2.0
+    begin_spindle(filled, setting, code, over, None)
+    code.rapid(z=Blade(filled, code).at(-filled.n("AT") - filled.n("LONG")))
+    code.set_feed(filled.n("FEED"))
+    across, width, depth, dwell = (figure(v) for v in (top, filled.n("LONG"), deep, filled.n("DWELL")))
+    kind = "7" if inside else "5"
+    for k in range(int(filled.n("COUNT"))):
+        begin = figure(-filled.n("AT") - k * filled.n("PITCH"))
+        words = (across, begin, width, depth, *[""] * 10, dwell, kind, "", figure(filled.n("DN")))
+        code.write("CYCLE93(" + ", ".join(words) + ")")
+    code.forget()
+    if filled.n("OVER"):
+        code.rapid(over)
+    end_spindle(filled, code)
+
+
+def _sinumerik_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
+    yield from _groove_checks(filled, setting)
+    if not _by_cycle(filled.values):
+        return
+    if filled.n("DN") == 1.0:
+        yield Refusal("DN", "D1 is the corner that cuts: type the D of the other one, or 0 for G1.")
+    if filled.t("SIDE") == REAR:
+        yield Refusal("SIDE", "CYCLE93 knows no tool at X negative: type 0 for the other corner.")
+    if filled.n("EDGE"):
+        yield Refusal("EDGE", "CYCLE93 breaks no edges here: type 0, or 0 for the other corner.")
+    if any(_slants(filled)):
+        yield Refusal("FANGLE", "CYCLE93 has square walls here: type 0, or 0 for the other corner.")
+
+
+SINUMERIK_GROOVE = replace(
+    GROOVE,
+    cut=_sinumerik_groove,
+    checks=_sinumerik_checks,
+    fields=(
+        *GROOVE.fields,
+        Field("DN", "CYCLE93: D OF THE OTHER CORNER", Kind.OFFSET, 0.0, most=9, zero=True),
+    ),
+)
+"""The same; CYCLE93 takes the width of the blade from two cutting edges, of which the form sets none."""

@@ -3,22 +3,26 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from dataclasses import replace
 
+from core.language.source import Dialect
 from core.part.tool_shape import ToolKind
 from core.shapes import cutting_data
 from core.shapes.code_lines import Code
 from core.shapes.cutting_data import Work
 from core.shapes.drilling import _across
-from core.shapes.number_words import plain
+from core.shapes.live_lines import Faces, Holes, LiveLines, Slots
 from core.shapes.shape import Filled, Shape
 from core.shapes.shape_fields import Field, Kind, Proposal, Refusal, Value, Values, number
 from core.shapes.shape_setting import Setting
+from core.shapes.sinumerik_live_lines import SinumerikLiveLines
 from core.shapes.sketch import Dim, Outline, Sketch, cut, part, sketch, tool
-from core.shapes.usual_fields import bar, too_deep, tool_field
+from core.shapes.usual_fields import MOST_RPM, bar, too_deep, tool_field
 
-_LIVE_RPM = 3000.0  # of a small live tool; nothing commands it
+_LIVE_RPM = 3000.0  # of a small live tool; OmniTurn has no word for it
 _TEETH = 2.0
+Checks = Callable[[Filled, Setting], Iterator[Refusal]]
 FRONT, REAR = "FRONT", "REAR"
 
 
@@ -26,40 +30,25 @@ def _rate(work: Work) -> Proposal:
     """A minute, since the live tool's speed is its own: by ``_LIVE_RPM`` and two teeth of a mill."""
 
     def proposed(values: Values, setting: Setting) -> Value | None:
+        turns = number(values, "LRPM") or _LIVE_RPM
         if work is Work.DRILL:
             turn = cutting_data.feed(work, setting, number(values, "T"), number(values, "DIA"))
-            return round(turn * _LIVE_RPM * 0.5, 0 if setting.metric else 1)
+            return round(turn * turns * 0.5, 0 if setting.metric else 1)
         turn = cutting_data.feed(work, setting) * _TEETH
-        return round(turn * _LIVE_RPM, 0 if setting.metric else 1)
+        return round(turn * turns, 0 if setting.metric else 1)
 
     return proposed
+
+
+def _lines(filled: Filled, setting: Setting, code: Code) -> LiveLines:
+    """In the language of the program."""
+    kind = SinumerikLiveLines if setting.dialect is Dialect.SINUMERIK else LiveLines
+    return kind(code, filled.n("LRPM"))
 
 
 def _step(values: Values, _setting: Setting) -> Value | None:
     many = number(values, "COUNT")
     return round(360.0 / many, 4) if many else None
-
-
-def _wait(degrees: float, setting: Setting) -> float:
-    """Seconds of dwell in which C has arrived: the drive gives no word of it."""
-    return math.ceil(10.0 * (abs(degrees) / (6.0 * setting.shop.c_rpm) + 0.5)) / 10.0
-
-
-def _held(filled: Filled, setting: Setting, code: Code, x: float, z: float) -> None:
-    """The tool beside the part, the spindle stopped and held, the live tool on."""
-    code.begin(filled.n("T"), 0.0, x, z)
-    code.write("M05", f"M{setting.shop.live[0]:02d}", "M19")
-
-
-def _released(setting: Setting, code: Code) -> None:
-    code.forget()
-    code.away()
-    code.write(f"M{setting.shop.live[1]:02d}", "M05")
-
-
-def _angle(code: Code, word: str, degrees: float, setting: Setting) -> None:
-    if word == "CA" or degrees:
-        code.write(f"{word}{plain(degrees, 3)}", f"G04F{plain(_wait(degrees, setting), 1)}")
 
 
 # --- cross holes
@@ -68,17 +57,11 @@ def _angle(code: Code, word: str, degrees: float, setting: Setting) -> None:
 def _cross(filled: Filled, setting: Setting, code: Code) -> None:
     sign = -1.0 if filled.t("SIDE") == REAR else 1.0
     surface = filled.n("FROM") / 2.0
-    out, deep = sign * (surface + setting.near / 2.0), sign * (surface - filled.n("DEEP"))
-    many = int(filled.n("COUNT"))
-    _held(filled, setting, code, out, -filled.n("AT"))
-    _angle(code, "CA", filled.n("ANGLE"), setting)
-    if many > 1:
-        code.write(f"LS{many}")
-    code.write(f"G94F{plain(filled.n('RATE'))}{code.x(deep)}", f"G00{code.x(out)}")
-    if many > 1:
-        _angle(code, "CI", filled.n("STEP"), setting)
-        code.write("LF")
-    _released(setting, code)
+    holes = Holes(
+        sign * (surface + setting.near / 2.0), sign * (surface - filled.n("DEEP")), -filled.n("AT"),
+        filled.n("ANGLE"), int(filled.n("COUNT")), filled.n("STEP"), filled.n("RATE"),
+    )  # fmt: skip
+    _lines(filled, setting, code).holes(filled.n("T"), holes)
 
 
 def _cross_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
@@ -156,31 +139,14 @@ def _flat_path(filled: Filled, setting: Setting) -> tuple[float, list[tuple[floa
 
 def _flats(filled: Filled, setting: Setting, code: Code) -> None:
     entry, path = _flat_path(filled, setting)
-    _held(filled, setting, code, -entry, setting.near)
     long, deep = filled.n("LONG"), filled.n("DEEP") or filled.n("LONG")
-    levels = max(1, math.ceil(long / deep - 1e-9))
-    rate = f"F{plain(filled.n('RATE'))}"
-    start = path[0]
-    code.write(f"G94{rate}", "(~PLXC)")  # a shape before may have left feeds by the turn
-    for k in range(1, levels + 1):
-        code.write(f"(X{plain(entry, 4)}Y0F{plain(_QUICK * _mm(setting), 0)})") if k > 1 else None
-        code.write(f"({code.z(-long * k / levels)}{rate})")
-        code.write(f"(X{plain(start[0], 4)}Y{plain(start[1], 4)}{rate})")
-        code.lines += [f"(X{plain(x, 4)}Y{plain(y, 4)})" for x, y in path[1:]]
-        code.write(f"(X{plain(entry, 4)}Y0)") if path[-1] == start or len(path) != 4 else None
-    code.write("(END)")
-    code.write(f"G00{code.x(-entry)}")
-    _released(setting, code)
+    many = max(1, math.ceil(long / deep - 1e-9))
+    levels = [-long * k / many for k in range(1, many + 1)]
+    faces = Faces(entry, path, levels, filled.n("RATE"), int(filled.n("FLATS")) == 2)
+    _lines(filled, setting, code).faces(filled.n("T"), faces)
 
 
-_QUICK = 50.0  # in/min: beside the part, in the plane
-
-
-def _mm(setting: Setting) -> float:
-    return 25.4 / setting.mm
-
-
-def _flats_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
+def _flats_checks(filled: Filled, _setting: Setting) -> Iterator[Refusal]:
     across, stock, many = filled.n("ACROSS"), filled.n("FROM"), int(filled.n("FLATS"))
     if across >= stock:
         yield Refusal(
@@ -192,8 +158,6 @@ def _flats_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
         yield Refusal("ACROSS", f"{words}: type less, or CORNERS ROUND.")
     if filled.n("DEEP") > filled.n("LONG"):
         yield Refusal("DEEP", "A pass is deeper than the flats are long: type less.")
-    if setting.called:
-        return
 
 
 def _flats_sketch(filled: Filled) -> Sketch:
@@ -256,26 +220,15 @@ FLATS = Shape(
 
 
 def _slot(filled: Filled, setting: Setting, code: Code) -> None:
-    surface = filled.n("FROM")
-    out = surface / 2.0 + setting.near / 2.0
-    _held(filled, setting, code, -out, -filled.n("AT"))
-    rate, many = filled.n("RATE"), int(filled.n("COUNT"))
-    along, around = filled.n("LONG"), filled.n("TURN") / 360.0 * math.pi * surface
-    levels = max(1, math.ceil(filled.n("DEEP") / (filled.n("PASS") or filled.n("DEEP")) - 1e-9))
-    for k in range(many):
-        angle = filled.n("ANGLE") + k * filled.n("STEP")
-        if k or angle:
-            _angle(code, "CA", angle, setting)
-        code.write(f"G94F{plain(rate)}", "(~PLZC)", f"(D{plain(surface, 4)})")
-        for level in range(1, levels + 1):
-            z = surface - 2.0 * filled.n("DEEP") * level / levels
-            there, back = f"(X{plain(along, 4)}Y{plain(around, 4)}F{plain(rate)})", "(X0Y0)"
-            code.write(f"(Z{plain(z, 4)}F{plain(rate / 2.0)})", there if level % 2 else back)
-        code.write(f"(Z{plain(2.0 * out, 4)}F{plain(_QUICK * _mm(setting), 0)})")
-        if levels % 2:
-            code.write("(X0Y0)")
-        code.write("(END)")
-    _released(setting, code)
+    radius, deep = filled.n("FROM") / 2.0, filled.n("DEEP")
+    levels = max(1, math.ceil(deep / (filled.n("PASS") or deep) - 1e-9))
+    angles = [filled.n("ANGLE") + k * filled.n("STEP") for k in range(int(filled.n("COUNT")))]
+    depths = [radius - deep * level / levels for level in range(1, levels + 1)]
+    slots = Slots(
+        filled.n("FROM"), -filled.n("AT"), filled.n("LONG"), filled.n("TURN"), angles, depths,
+        radius + setting.near / 2.0, filled.n("RATE"),
+    )  # fmt: skip
+    _lines(filled, setting, code).slots(filled.n("T"), slots)
 
 
 def _slot_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
@@ -327,3 +280,30 @@ SLOT = Shape(
     _slot_sketch,
     _slot_checks,
 )
+
+
+# --- SINUMERIK: the live tool is spindle 2, C and its planes need an axis
+
+
+def _live_checks(checks: Checks) -> Checks:
+    def checked(filled: Filled, setting: Setting) -> Iterator[Refusal]:
+        if not setting.shop.third_axis:
+            yield Refusal("T", "This machine has no third axis: nothing holds the part and turns it.")
+        elif setting.shop.third_axis.startswith("Y") and filled.shape.name != CROSS.name:
+            words = "The third axis of this machine is called Y, and the plane needs a Y of its own"
+            yield Refusal("T", f"{words}: mill it elsewhere.")
+        elif not setting.shop.live_output:
+            words = "No output of this machine turns a live tool"
+            yield Refusal("T", f"{words}: name one live under [io.out] of the machine file.")
+        yield from checks(filled, setting)
+
+    return checked
+
+
+def _spindle_two(shape: Shape) -> Shape:
+    speed = Field("LRPM", "SPEED OF THE LIVE TOOL", Kind.RPM, _LIVE_RPM, most=MOST_RPM)
+    fields = (*shape.fields[:-1], speed, shape.fields[-1])
+    return replace(shape, fields=fields, checks=_live_checks(shape.checks))
+
+
+SINUMERIK_CROSS, SINUMERIK_FLATS, SINUMERIK_SLOT = map(_spindle_two, (CROSS, FLATS, SLOT))

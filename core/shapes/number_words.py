@@ -6,6 +6,7 @@ import re
 
 _STEPS = {False: 0.00005, True: 0.0005}  # by metric: what a word is rounded to; a diameter twice of it
 _NUMBER = re.compile(r"(M?)(\d+)(?:P(\d+))?(?:MM)?")
+_NO_ZERO = re.compile(r"(?<![\d.])\.(?=\d)")
 _NAME = str.maketrans({"/": "S", "-": "A", ".": "P", "#": "N"})
 _BACK = str.maketrans({"S": "/", "A": "-", "P": ".", "N": "#"})
 
@@ -18,6 +19,16 @@ def plain(value: float, places: int = 5) -> str:
     if text in {"-0", "-", ""}:
         return "0"
     return text.replace("0.", ".", 1) if text.startswith(("0.", "-0.")) else text
+
+
+def figure(value: float, places: int = 5) -> str:
+    """``value`` as SINUMERIK programs have it: 0.5, -0.035, 2."""
+    return with_zero(plain(value, places))
+
+
+def with_zero(word: str) -> str:
+    """A word of ``plain`` with the zero before its point."""
+    return _NO_ZERO.sub("0.", word)
 
 
 def rounded(value: float, *, metric: bool, twice: bool = False) -> float:

@@ -28,12 +28,13 @@ _BLOCK_NUMBER = re.compile(r"N\d+(?=[A-Z])")
 _TOOL = re.compile(r"(?:^|[^A-Z])T(\d+)")
 _SUB = {
     Dialect.OMNITURN: re.compile(r"}(\d+)"),
-    Dialect.SINUMERIK: re.compile(r"^CONTOUR_(\d+):"),
+    Dialect.SINUMERIK: re.compile(r"^(?:CONTOUR_|%_N_PART_)(\d+)(?::|_SPF)"),
 }
 _END = {
     Dialect.OMNITURN: re.compile(r"\s*(?:M30|M02|M99|})"),
-    Dialect.SINUMERIK: re.compile(r"\s*(?:N\d+\s*)?(?:M30|M0?2|M17|RET)\b", re.IGNORECASE),
+    Dialect.SINUMERIK: re.compile(r"\s*(?:N\d+\s*)?(?:M30|M0?2|M17|RET)\b(?!=)", re.IGNORECASE),
 }
+_BEGINS = ("}", "%_N_PART_")  # a subroutine
 _LABEL = re.compile(r"CONTOUR_\d+(?:_END)?:")
 _FIRST_CUT = re.compile(r"G1X-?[.\d]+Z-?[.\d]+F[.\d]+")
 _WORD = re.compile(r"([A-Z~_=:,(\"]+)([-+]?(?:\d+\.?\d*|\.\d+))?")
@@ -78,7 +79,12 @@ def code_of(line: str, dialect: Dialect = Dialect.OMNITURN) -> str:
 
 def ends_program(line: str, dialect: Dialect) -> bool:
     """Whether a line ends a program or a subroutine."""
-    return _END[dialect].match(line) is not None and not line.lstrip().startswith("}")
+    return _END[dialect].match(line) is not None and not begins_subroutine(line)
+
+
+def begins_subroutine(line: str) -> bool:
+    """Whether a subroutine that a form has written, or may write into, begins at a line."""
+    return line.lstrip().upper().startswith(_BEGINS)
 
 
 def begun(lines: Sequence[str], dialect: Dialect) -> bool:
@@ -115,8 +121,8 @@ def _after(line: str, now: Setting) -> Setting:
         now = replace(now, **words)
     for tool in _TOOL.findall(code):
         now = replace(now, used=now.used | {int(tool)})
-    if code.startswith(("}", "M99")):
-        now = replace(now, called=code.startswith("}"))
+    if code.startswith((*_BEGINS, "M99", "M17")):
+        now = replace(now, called=code.startswith(_BEGINS))
     head = _head_of(line, now.dialect)
     return now if head is None or head[0].name != "HEAD" else _with_head(head[1], now)
 
@@ -244,11 +250,11 @@ def _contours(shape: Shape, there: list[str], setting: Setting) -> Iterator[tupl
 
 
 def _sinumerik_contours(there: list[str], setting: Setting) -> Iterator[tuple[Row, ...]]:
-    """Between two labels; without roughing from the first cut on to the one beside the part, or before it."""
+    """From the first cut to the way off the part: the last line, or the one behind it."""
     labels = [n for n, line in enumerate(there) if _LABEL.fullmatch(line)]
     begin = next((n for n, line in enumerate(there) if _FIRST_CUT.fullmatch(line)), len(there))
     end = next((n for n in range(begin, len(there)) if there[n].startswith(("G0", "G40"))), len(there))
-    for last in labels[1:2] or (end - 1, end):
+    for last in (labels[1] - 1, labels[1]) if len(labels) > 1 else (end - 1, end):
         rows = read_contour(there[begin:last], setting)
         if rows:
             yield rows
@@ -348,7 +354,7 @@ def with_shape(
     new = one.lines(setting)
     at = instead.first if instead is not None else min(at, len(text))
     text[at : instead.behind if instead is not None else at] = new
-    ends = r"\s*/?M(30|02)" if setting.dialect is Dialect.OMNITURN else r"\s*(N\d+\s*)?M(30|0?2|17)\b"
+    ends = r"\s*/?M(30|02)" if setting.dialect is Dialect.OMNITURN else r"\s*(N\d+\s*)?M(30|0?2|17)\b(?!=)"
     if not any(re.match(ends, line) for line in text):
         text.append("M30")
     behind = at + len(new)

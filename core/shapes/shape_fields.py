@@ -100,6 +100,11 @@ class Field:
         return ""
 
 
+def choice_text(each: Field, choice: str) -> str:
+    """How the catalogues of translations know a choice: with the label of its field."""
+    return f"{each.label}: {choice}"
+
+
 def size(inch: float, metric: float) -> Proposal:
     """A proposal for a length, in the unit of the program."""
     return lambda _values, setting: metric if setting.metric else inch

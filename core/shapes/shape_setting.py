@@ -19,6 +19,10 @@ class Shop:
     slide_accel: float = 0.0  # mm/s²; 0: not known
     c_rpm: float = 200.0
     live: tuple[int, int] = (15, 16)  # M codes of the live tool: on, off
+    live_output: bool = True  # SINUMERIK: an output turns the live tool as spindle 2
+    third_axis: str = "C"  # what SINUMERIK programs call C; empty: there is none
+    spindle_is_c: bool = True  # C is a second use of the spindle: it taps without a holder that gives
+    chuck: tuple[int, int] | None = None  # SINUMERIK: M codes that open and close it
     tools: Mapping[int, ToolShape] = field(default_factory=dict)
 
 

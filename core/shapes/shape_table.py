@@ -5,17 +5,24 @@ from __future__ import annotations
 from dataclasses import replace
 
 from core.language.source import Dialect
-from core.shapes.bar_work import LOOP
+from core.shapes.bar_work import LOOP, SINUMERIK_LOOP
 from core.shapes.calculators import SPEED, THREADS, TRIANGLE
 from core.shapes.drilling import DRILL
-from core.shapes.grooving import GROOVE
-from core.shapes.live_tools import CROSS, FLATS, SLOT
+from core.shapes.grooving import GROOVE, SINUMERIK_GROOVE
+from core.shapes.live_tools import (
+    CROSS,
+    FLATS,
+    SINUMERIK_CROSS,
+    SINUMERIK_FLATS,
+    SINUMERIK_SLOT,
+    SLOT,
+)
 from core.shapes.parting import PART_OFF
 from core.shapes.program_head import HEAD, SINUMERIK_HEAD
 from core.shapes.shape import Shape
 from core.shapes.shape_fields import Field, Kind, Value, Values, number
 from core.shapes.shape_setting import Setting
-from core.shapes.tapping import TAP
+from core.shapes.tapping import SINUMERIK_TAP, TAP
 from core.shapes.templates import BAR_FEED, ROUGH, START, THREADING, TOOL_CHANGE
 from core.shapes.threading import SINUMERIK_THREAD, THREAD
 from core.shapes.turning import BORE, EDGE, FACE, TAPER, TURN
@@ -77,11 +84,16 @@ SINUMERIK_SHAPES: dict[str, Shape] = {
     "T": _labelled(TURN),
     "A": _labelled(TAPER),
     "K": EDGE,
-    "G": GROOVE,
+    "G": SINUMERIK_GROOVE,
     "R": SINUMERIK_THREAD,
     "D": DRILL,
     "B": _labelled(BORE),
+    "O": SINUMERIK_TAP,
     "P": PART_OFF,
+    "L": SINUMERIK_LOOP,
+    "C": SINUMERIK_CROSS,
+    "M": SINUMERIK_FLATS,
+    "S": SINUMERIK_SLOT,
 }
 
 SHAPES_OF = {Dialect.OMNITURN: SHAPES, Dialect.SINUMERIK: SINUMERIK_SHAPES}

@@ -1,25 +1,16 @@
 """The lines of a shape in SINUMERIK: words apart, zeros before the point, CYCLE95, CYCLE81 and CYCLE83.
 
-Grooves are cut by G1: CYCLE93 takes the width of the blade from a second cutting edge, which has to be set,
-and knows no walls that lean.
+Grooves are cut by G1, or by CYCLE93 where the form is told the second cutting edge of the blade.
 """
 
 from __future__ import annotations
 
-import re
-
-from core.shapes.code_lines import Along, Code
+from core.shapes.code_lines import Along, Code, Tap
 from core.shapes.contour import points
-from core.shapes.number_words import plain
+from core.shapes.number_words import figure, with_zero
 from core.shapes.shape_setting import Setting
 
-_NO_ZERO = re.compile(r"(?<![\d.])\.(?=\d)")
 _TURNS = {"M03": "M3", "M04": "M4"}
-
-
-def figure(value: float, places: int = 5) -> str:
-    """A number as this control's programs have it: 0.5, -0.035, 2."""
-    return _NO_ZERO.sub("0.", plain(value, places))
 
 
 class SinumerikCode(Code):
@@ -44,11 +35,11 @@ class SinumerikCode(Code):
 
     def x(self, radius: float, letter: str = "X") -> str:
         """The word of a radius, as the program has X."""
-        return _NO_ZERO.sub("0.", super().x(radius, letter))
+        return with_zero(super().x(radius, letter))
 
     def z(self, value: float, letter: str = "Z") -> str:
         """The word of a length along Z."""
-        return _NO_ZERO.sub("0.", super().z(value, letter))
+        return with_zero(super().z(value, letter))
 
     def point(self, x: float | None, z: float | None) -> str:
         """X and Z of a move; what is None is not written."""
@@ -85,6 +76,10 @@ class SinumerikCode(Code):
         said, self._feed = ("" if word == self._feed else word), word
         return said
 
+    def set_feed(self, feed: float) -> None:
+        """A feed alone on its line, for the cycle behind it."""
+        self.write(self._fresh(feed) or f"F{figure(feed, 6)}")
+
     def line(self, x: float | None, z: float | None, chamfer: float, radius: float) -> None:
         """A line of a contour, with the corner to the next."""
         corner = self.z(chamfer, "CHR=") if chamfer else self.z(radius, "RND=") if radius else ""
@@ -104,7 +99,10 @@ class SinumerikCode(Code):
     # --- along a contour, holes
 
     def along(self, way: Along) -> None:
-        """CYCLE95 on the contour between two labels where it is roughed; then the contour once."""
+        """CYCLE95 on the contour between two labels where it is roughed; then the contour once.
+
+        The cycle takes the metal up to the outermost point of its contour, so the way off the part is one.
+        """
         there, name = points(way.rows), f"CONTOUR_{way.label or 1.0:.0f}"
         (z, x), feed = there[0], self._fresh(way.feed)
         if way.rough:
@@ -120,14 +118,16 @@ class SinumerikCode(Code):
         self._motion = ""
         self._move("G1", self.point(x, z), feed or f"F{figure(way.feed, 6)}")
         self.contour(way.rows)
+        off, leaves = "G40" if way.offset else "", abs(way.beside - there[-1][1]) > 1e-9
         if way.rough:
+            if leaves:
+                self.cut(way.beside)
             self.write(f"{name}_END:")
-        off = "G40" if way.offset else ""
         self._motion = ""
-        if abs(way.beside - there[-1][1]) > 1e-9:
+        if leaves and not way.rough:
             self.write(" ".join(word for word in (off, "G1", self.x(way.beside)) if word))
         elif off:
-            self.write(f"{off} G0 {self.z(self.setting.clear)}")
+            self.write(off)
 
     def let_go(self, offset: float) -> None:
         """Compensation is off: the move away from the contour has done it."""
@@ -141,6 +141,19 @@ class SinumerikCode(Code):
             self.write(f"CYCLE83({planes}, , , {figure(peck)}, 0, 0, 0, 1, 1)")
         else:
             self.write(f"CYCLE81({planes})")
+        self.write("G18")
+        self.forget()
+
+    def tap(self, tool: float, tap: Tap) -> None:
+        """CYCLE840, or CYCLE84 with the spindle held as C, under G17."""
+        self.begin(tool, 0.0 if tap.rigid else tap.rpm, 0.0, tap.start, tap.into)
+        hole = f"{figure(tap.start)}, 0, {figure(tap.start)}, {figure(tap.end)}, , {figure(tap.dwell)}"
+        self.write("G17")
+        if tap.rigid:
+            lead, speed = tap.pitch * (-1.0 if tap.into == "M04" else 1.0), figure(tap.rpm, 0)
+            self.write("M5", f"CYCLE84({hole}, 5, , {figure(lead, 6)}, 0, {speed}, {speed})")
+        else:
+            self.write(f"CYCLE840({hole}, 0, , 0, , {figure(tap.pitch, 6)})")
         self.write("G18")
         self.forget()
 

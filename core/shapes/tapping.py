@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 
 from core.part.tool_shape import ToolKind
-from core.shapes.code_lines import Code
+from core.shapes.code_lines import Code, Tap
 from core.shapes.cutting_data import Work, rpm
 from core.shapes.number_words import plain
 from core.shapes.shape import Filled, Shape
@@ -22,6 +23,13 @@ _SLOW = 0.4  # of the speed of a drill: the flanks of a tap rub
 _MOST_RPM = 600.0
 _SHORT = 1.0  # pitches before the depth: the spindle runs on while it turns back
 _COARSEST = 0.2  # in/rev: the control feeds no more without G35
+
+
+FLOATING, RIGID = "FLOATING", "RIGID"
+
+
+def _rigid(values: Values) -> bool:
+    return text(values, "HOLDER") == RIGID
 
 
 def _named(values: Values) -> bool:
@@ -52,12 +60,10 @@ def _turns(values: Values, setting: Setting) -> Value | None:
 def _tap(filled: Filled, setting: Setting, code: Code) -> None:
     pitch = filled.n("PITCH")
     start = math.ceil(max(setting.near, 3.0 * pitch) * 100.0 - 1e-6) / 100.0
-    into, back = ("M04", "M03") if filled.t("HAND") == LEFT else ("M03", "M04")
-    code.begin(filled.n("T"), filled.n("RPM"), 0.0, start, into)
-    code.cut(z=-(filled.n("DEEP") - filled.n("SHORT")), feed=pitch)
-    code.write(back)
-    code.dwell(filled.n("DWELL"))
-    code.cut(z=start)
+    into = "M04" if filled.t("HAND") == LEFT else "M03"
+    end = -(filled.n("DEEP") - (0.0 if _rigid(filled.values) else filled.n("SHORT")))
+    held = _rigid(filled.values)
+    code.tap(filled.n("T"), Tap(start, end, pitch, filled.n("RPM"), into, filled.n("DWELL"), held))
     code.away()
 
 
@@ -71,7 +77,7 @@ def _checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
     if pitch * setting.mm / 25.4 > _COARSEST:
         most = _COARSEST * 25.4 / setting.mm
         yield Refusal("PITCH", f"A pitch of {pitch:g} is more than a feed may be, {most:g}: cut it with G33.")
-    if filled.n("SHORT") >= filled.n("DEEP"):
+    if filled.n("SHORT") >= filled.n("DEEP") and not _rigid(filled.values):
         yield Refusal(
             "SHORT", f"It stops {filled.n('SHORT'):g} short of {filled.n('DEEP'):g}: nothing is cut."
         )
@@ -126,6 +132,7 @@ TAP = Shape(
             Kind.LENGTH,
             lambda v, _s: round(_SHORT * number(v, "PITCH"), 4),
             zero=True,
+            only=lambda v: not _rigid(v),
         ),
         Field("DWELL", "DWELL WHILE IT TURNS BACK", Kind.SECONDS, 0.5, zero=True, most=60),
         Field("RPM", "SPEED RPM", Kind.RPM, _turns, most=MOST_RPM),
@@ -135,3 +142,34 @@ TAP = Shape(
     _checks,
     says=_says,
 )
+
+
+def _sinumerik_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
+    yield from _checks(filled, setting)
+    if not _rigid(filled.values):
+        return
+    if not setting.shop.spindle_is_c:
+        words = "The spindle of this machine cannot be held and turned with Z"
+        yield Refusal("HOLDER", f"{words}: take a holder that gives.")
+    elif filled.n("RPM") > setting.shop.c_rpm:
+        most = f"{setting.shop.c_rpm:g}"
+        yield Refusal("RPM", f"A rigid tap turns as C, which does {most} rpm: type {most} or less.")
+
+
+def _held_turns(values: Values, setting: Setting) -> Value | None:
+    """Of a rigid tap no more than C turns."""
+    turns = _turns(values, setting)
+    most = setting.shop.c_rpm if _rigid(values) else math.inf
+    return min(turns, most) if isinstance(turns, float) else turns
+
+
+SINUMERIK_TAP = replace(
+    TAP,
+    checks=_sinumerik_checks,
+    fields=(
+        TAP.fields[0],
+        Field("HOLDER", "HOLDER", Kind.CHOICE, FLOATING, (FLOATING, RIGID)),
+        *(replace(each, start=_held_turns) if each.word == "RPM" else each for each in TAP.fields[1:]),
+    ),
+)
+"""The same by CYCLE840, or by CYCLE84 without a holder that gives."""

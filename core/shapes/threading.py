@@ -11,11 +11,10 @@ from core.language.source import Dialect
 from core.part.tool_shape import ToolKind
 from core.shapes.code_lines import Code
 from core.shapes.cutting_data import Work, rpm
-from core.shapes.number_words import plain
+from core.shapes.number_words import figure, plain
 from core.shapes.shape import Filled, Shape
 from core.shapes.shape_fields import Field, Kind, Proposal, Refusal, Value, Values, number, text
 from core.shapes.shape_setting import Setting
-from core.shapes.sinumerik_lines import figure
 from core.shapes.sketch import Dim, Sketch, cut, part, sketch
 from core.shapes.thread_limits import Limits, classes, in_unit, limits, pipe_length
 from core.shapes.thread_series import TAPERED, Series, size_of

@@ -6,9 +6,10 @@ import math
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
+from core.language.source import Dialect
 from core.part.tool_shape import ToolKind
 from core.shapes.code_lines import Along, Code
-from core.shapes.contour import Row, contour_refusals, outline, points, row_word
+from core.shapes.contour import SAME, Row, contour_refusals, outline, points, row_word
 from core.shapes.cutting_data import Work
 from core.shapes.shape import Filled, Shape
 from core.shapes.shape_fields import Field, Kind, Refusal, Value, Values, number, size, text
@@ -96,6 +97,7 @@ def _contour_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
                 text_ = f"Point {at} goes back towards the face: roughing goes along Z to the chuck only."
                 yield Refusal(row_word(at), text_)
                 break
+        yield from _falls_at_once(there, inside=inside)
     if (
         not inside
         and filled.n("FROM")
@@ -106,8 +108,16 @@ def _contour_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
         yield Refusal(row_word(at + 1), words)
 
 
+def _falls_at_once(there: Sequence[tuple[float, float]], *, inside: bool) -> Iterator[Refusal]:
+    """Roughing comes back across a contour that leads into the metal from its first point on."""
+    side = -1.0 if inside else 1.0
+    if len(there) > 1 and there[1][0] < there[0][0] - SAME and side * (there[0][1] - there[1][1]) > SAME:
+        words = "The contour falls from its first point, and roughing cannot come back past it"
+        yield Refusal(row_word(1), f"{words}: put a point before it at the same Z, at the lowest X.")
+
+
 def _compensated(filled: Filled, setting: Setting) -> Iterator[Refusal]:
-    if filled.n("COMP") and setting.called:
+    if filled.n("COMP") and setting.called and setting.dialect is Dialect.OMNITURN:
         yield Refusal("COMP", "G41 does not work in a subroutine, so not in a bar loop: type 0.")
 
 

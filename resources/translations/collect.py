@@ -14,6 +14,7 @@ import xml.etree.ElementTree as ET
 from itertools import count
 from pathlib import Path
 
+from app.shapes.drawing_form import PROFILE
 from core.access.access_table import Act, Level
 from core.alarms import CATALOGUE
 from core.interpreter.dialects import code_book
@@ -22,7 +23,9 @@ from core.language.klartext import klartext_faults
 from core.language.sinumerik.cycle_names import CYCLES, CYCLES_OUTSIDE
 from core.language.sinumerik.word_table import FUNCTIONS, M_FUNCTIONS, OUTSIDE, WORDS
 from core.language.source import Dialect
-from core.shapes.shape_table import HELPERS, SHAPES
+from core.shapes.shape_fields import Field, choice_text
+from core.shapes.shape_table import HELPERS, SHAPES, SINUMERIK_SHAPES
+from core.shapes.thread_series import Series
 from resources.translations.reading import marked, texts_of
 
 HERE = Path(__file__).parent
@@ -78,7 +81,8 @@ APART = frozenset(
         ),
         *("desk/command_errors.py", "desk/toml_file.py", "offsets/offsets_file.py", "screen/display.py"),
         *("sharing/git_command.py", "shared_git.py", "shared_database.py", "sharing/version_record.py"),
-        *("screen/pdf_pages.py", "shapes/sinumerik_lines.py"),
+        *("screen/pdf_pages.py", "shapes/sinumerik_lines.py", "shapes/bar_lines.py"),
+        *("shapes/live_lines.py", "shapes/sinumerik_live_lines.py"),
         *(
             "klartext_book.py",
             "klartext_cycle_book.py",
@@ -274,9 +278,18 @@ def _of_books() -> list[str]:
 
 def _of_shapes() -> list[str]:
     """Names of shapes and of their fields: many are single words."""
-    shapes = (*SHAPES.values(), *HELPERS.values())
-    labels = {field.label for shape in shapes for field in shape.fields}
-    return sorted({shape.name for shape in shapes} | {each for each in labels if len(each) > 1})
+    shapes = (*SHAPES.values(), *SINUMERIK_SHAPES.values(), *HELPERS.values(), PROFILE)
+    fields = [field for shape in shapes for field in shape.fields]
+    labels = {field.label for field in fields if len(field.label) > 1}
+    choices = {choice_text(field, choice) for field in fields for choice in _in_words(field)}
+    return sorted({shape.name for shape in shapes} | labels | choices)
+
+
+def _in_words(field: Field) -> tuple[str, ...]:
+    """The choices that are words: series and classes of threads have names that all languages use."""
+    if field.word == "SERIES":
+        return (Series.OWN.value,)
+    return () if field.word in {"CLASS", "SIZE"} else field.choices
 
 
 def _with_numbered_holes(text: str) -> str:

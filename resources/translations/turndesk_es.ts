@@ -775,8 +775,38 @@
     </message>
     <message>
       <location filename="" />
+      <source>COOLANT: OFF</source>
+      <translation>NO</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>COOLANT: ON</source>
+      <translation>SÍ</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>CORNER TOUCHED OFF: LEFT</source>
+      <translation>IZQUIERDA</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>CORNER TOUCHED OFF: RIGHT</source>
+      <translation>DERECHA</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>CORNERS</source>
       <translation>ESQUINAS</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>CORNERS: ROUND</source>
+      <translation>DE LA BARRA</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>CORNERS: SHARP</source>
+      <translation>VIVAS</translation>
     </message>
     <message>
       <location filename="" />
@@ -1380,6 +1410,16 @@
     </message>
     <message>
       <location filename="" />
+      <source>FACE IS AT THE: LEFT</source>
+      <translation>IZQUIERDA</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>FACE IS AT THE: RIGHT</source>
+      <translation>DERECHA</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>FLATS</source>
       <translation>CARAS PLANAS</translation>
     </message>
@@ -1581,7 +1621,7 @@
     <message>
       <location filename="" />
       <source>GROOVE</source>
-      <translation>RANURA</translation>
+      <translation>RANURADO</translation>
     </message>
     <message>
       <location filename="" />
@@ -1635,8 +1675,28 @@
     </message>
     <message>
       <location filename="" />
+      <source>HAND: LEFT</source>
+      <translation>A IZQUIERDAS</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>HAND: RIGHT</source>
+      <translation>A DERECHAS</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>HEAD</source>
-      <translation>INICIO</translation>
+      <translation>CABECERA</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>HOLDER: FLOATING</source>
+      <translation>CON COMPENSACIÓN</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>HOLDER: RIGID</source>
+      <translation>RÍGIDO</translation>
     </message>
     <message>
       <location filename="" />
@@ -1820,6 +1880,16 @@
     </message>
     <message>
       <location filename="" />
+      <source>KIND: CHAMFER</source>
+      <translation>CHAFLÁN</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>KIND: RADIUS</source>
+      <translation>RADIO</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>Keep one way.</source>
       <translation>Deje una sola forma.</translation>
     </message>
@@ -1957,6 +2027,66 @@
       <location filename="" />
       <source>M13 opens the collet while the spindle turns.</source>
       <translation>M13 abre la boquilla con el husillo girando.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>MATERIAL: ALLOY STEEL</source>
+      <translation>ACERO ALEADO</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>MATERIAL: ALUMINIUM</source>
+      <translation>ALUMINIO</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>MATERIAL: BRASS</source>
+      <translation>LATÓN</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>MATERIAL: BRONZE</source>
+      <translation>BRONCE</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>MATERIAL: CAST IRON</source>
+      <translation>FUNDICIÓN</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>MATERIAL: COPPER</source>
+      <translation>COBRE</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>MATERIAL: FREE STEEL</source>
+      <translation>ACERO DE FÁCIL MECANIZADO</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>MATERIAL: PLASTIC</source>
+      <translation>PLÁSTICO</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>MATERIAL: STAINLESS</source>
+      <translation>INOXIDABLE</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>MATERIAL: STEEL</source>
+      <translation>ACERO</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>MATERIAL: TITANIUM</source>
+      <translation>TITANIO</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>MATERIAL: TOOL STEEL</source>
+      <translation>ACERO DE HERRAMIENTAS</translation>
     </message>
     <message>
       <location filename="" />
@@ -2227,6 +2357,16 @@
       <location filename="" />
       <source>PLANE not permitted with M128: %1</source>
       <translation>PLANE no permitido con M128: %1</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>PULLS OUT WHILE GOING ON: NO</source>
+      <translation>NO</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>PULLS OUT WHILE GOING ON: YES</source>
+      <translation>SÍ</translation>
     </message>
     <message>
       <location filename="" />
@@ -2615,6 +2755,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>SERIES: OWN</source>
+      <translation>PROPIA</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>SERVICE</source>
       <translation>SERVICIO</translation>
     </message>
@@ -2625,13 +2770,33 @@
     </message>
     <message>
       <location filename="" />
+      <source>SIDE: BORE</source>
+      <translation>INTERIOR</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>SIDE: FRONT</source>
+      <translation>DELANTE</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>SIDE: OUTSIDE</source>
+      <translation>EXTERIOR</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>SIDE: REAR</source>
+      <translation>DETRÁS</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>SIMULATED INPUTS</source>
       <translation>ENTRADAS SIMULADAS</translation>
     </message>
     <message>
       <location filename="" />
       <source>SLOTS</source>
-      <translation>CANALES</translation>
+      <translation>RANURAS</translation>
     </message>
     <message>
       <location filename="" />
@@ -2902,6 +3067,16 @@
       <location filename="" />
       <source>Syntax error: %1</source>
       <translation>Error de sintaxis: %1</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>THE BAR IS FED: EACH PART</source>
+      <translation>CADA PIEZA</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>THE BAR IS FED: ONCE</source>
+      <translation>UNA VEZ</translation>
     </message>
     <message>
       <location filename="" />
@@ -3460,6 +3635,16 @@
     </message>
     <message>
       <location filename="" />
+      <source>UNIT: INCH</source>
+      <translation>PULGADAS</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>UNIT: METRIC</source>
+      <translation>MILÍMETROS</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>Unclamps the collet.</source>
       <translation>Abre la pinza.</translation>
     </message>
@@ -3507,6 +3692,46 @@
       <location filename="" />
       <source>WORK</source>
       <translation>TRABAJO</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>WORK: BORE</source>
+      <translation>MANDRINAR</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>WORK: DRILL</source>
+      <translation>TALADRAR</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>WORK: FINISH</source>
+      <translation>ACABAR</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>WORK: GROOVE</source>
+      <translation>RANURAR</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>WORK: MILL</source>
+      <translation>FRESAR</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>WORK: PART</source>
+      <translation>TRONZAR</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>WORK: THREAD</source>
+      <translation>ROSCAR</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>WORK: TURN</source>
+      <translation>CILINDRAR</translation>
     </message>
     <message>
       <location filename="" />
@@ -3755,6 +3980,16 @@
     </message>
     <message>
       <location filename="" />
+      <source>X WORDS: DIAMETER</source>
+      <translation>DIÁMETRO</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>X WORDS: RADIUS</source>
+      <translation>RADIO</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>X and Y mill the face of the part, which C turns under the tool; under DIAMON X is a diameter, Y is none. Arcs and radius compensation lie in G17. TRANS and ROT begin anew.</source>
       <translation>X e Y fresan la cara de la pieza, que C gira bajo la herramienta; con DIAMON X es un diámetro, Y no. Los arcos y la compensación de radio están en G17. TRANS y ROT empiezan de nuevo.</translation>
     </message>
@@ -3812,6 +4047,21 @@
       <location filename="" />
       <source>Z, the end of the thread, is missing.</source>
       <translation>Falta Z, el final de la rosca.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Z0 IS AT THE: BACK</source>
+      <translation>FONDO</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Z0 IS AT THE: FACE</source>
+      <translation>CARA</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Z0 IS AT THE: ORIGIN</source>
+      <translation>ORIGEN</translation>
     </message>
     <message>
       <location filename="" />
@@ -5236,7 +5486,7 @@
     <message>
       <location filename="app/desk/modal_rows.py" />
       <source>X WORDS</source>
-      <translation>PALABRAS X</translation>
+      <translation>COTAS X EN</translation>
     </message>
     <message>
       <location filename="app/desk/modal_rows.py" />
@@ -6996,7 +7246,7 @@
     <message>
       <location filename="app/jog/hand_functions_view.py" />
       <source>FACE</source>
-      <translation>CARA</translation>
+      <translation>REFRENTADO</translation>
     </message>
     <message>
       <location filename="app/jog/hand_functions_view.py" />
@@ -8076,7 +8326,7 @@
     <message>
       <location filename="app/offsets/offset_values.py" />
       <source>DRILL</source>
-      <translation>BROCA</translation>
+      <translation>TALADRADO</translation>
     </message>
     <message>
       <location filename="app/offsets/offset_values.py" />
@@ -8106,7 +8356,7 @@
     <message>
       <location filename="app/offsets/offset_values.py" />
       <source>HAND</source>
-      <translation>MANO</translation>
+      <translation>SENTIDO</translation>
     </message>
     <message>
       <location filename="app/offsets/offset_values.py" />
@@ -8121,7 +8371,7 @@
     <message>
       <location filename="app/offsets/offset_values.py" />
       <source>KIND</source>
-      <translation>CLASE</translation>
+      <translation>TIPO</translation>
     </message>
     <message>
       <location filename="app/offsets/offset_values.py" />
@@ -8191,7 +8441,7 @@
     <message>
       <location filename="app/offsets/offset_values.py" />
       <source>TAP</source>
-      <translation>MACHO</translation>
+      <translation>ROSCADO CON MACHO</translation>
     </message>
     <message>
       <location filename="app/offsets/offset_values.py" />
@@ -8296,7 +8546,7 @@
     <message>
       <location filename="app/offsets/part_effect.py" />
       <source>BORE</source>
-      <translation>AGUJERO</translation>
+      <translation>MANDRINADO</translation>
     </message>
     <message>
       <location filename="app/offsets/part_effect.py" />
@@ -10866,7 +11116,7 @@
     <message>
       <location filename="app/scope/analyses.py" />
       <source>THREAD</source>
-      <translation>ROSCA</translation>
+      <translation>ROSCADO</translation>
     </message>
     <message>
       <location filename="app/scope/analyses.py" />
@@ -12612,11 +12862,6 @@
       <location filename="app/shapes/shapes_model.py" />
       <source>1 SHAPE WAS CHANGED BY HAND AND STAYS AS IT IS</source>
       <translation>1 FORMA SE CAMBIÓ A MANO Y QUEDA COMO ESTÁ</translation>
-    </message>
-    <message>
-      <location filename="app/shapes/shapes_model.py" />
-      <source>A DRAWING IS WRITTEN IN OMNITURN: OPEN IT BESIDE A PROGRAM OF THAT LANGUAGE</source>
-      <translation>UN DIBUJO SE ESCRIBE EN OMNITURN: ÁBRALO JUNTO A UN PROGRAMA DE ESE LENGUAJE</translation>
     </message>
     <message>
       <location filename="app/shapes/shapes_model.py" />
@@ -16207,6 +16452,11 @@
       <location filename="core/drawings/profile_words.py" />
       <source>%1 %2 stays in the corner at Z %3, by the nose of the tool</source>
       <translation>%1 %2 queda en el rincón en Z %3, por la punta del útil</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/profile_words.py" />
+      <source>%1 has to hold the nose radius %2 %3 and tip quadrant %4</source>
+      <translation>%1 debe contener el radio de punta %2 %3 y el cuadrante %4</translation>
     </message>
     <message>
       <location filename="core/drawings/profile_words.py" />
@@ -20760,6 +21010,11 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/roughing_cycles.py" />
+      <source>The contour falls from its first point: begin it with a way up the face from its lowest X.</source>
+      <translation>El contorno baja desde su primer punto: empiécelo con una subida por la cara desde su X más baja.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
       <source>The contour has %1 lines and arcs; %2 are the most.</source>
       <translation>El contorno tiene %1 líneas y arcos; lo más son %2.</translation>
     </message>
@@ -21905,6 +22160,11 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/m_functions.py" />
+      <source>%1 opens the chuck while the spindle turns.</source>
+      <translation>%1 abre el plato mientras gira el husillo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/m_functions.py" />
       <source>%1: the machine will not start.</source>
       <translation>%1: la máquina no arrancará.</translation>
     </message>
@@ -21927,6 +22187,11 @@
       <location filename="core/interpreter/sinumerik/m_functions.py" />
       <source>T changes the tool by itself on this machine</source>
       <translation>en esta máquina T cambia la herramienta por sí sola</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/m_functions.py" />
+      <source>Write M5 before it.</source>
+      <translation>Escriba M5 antes.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/m_functions.py" />
@@ -28520,6 +28785,11 @@
     </message>
     <message>
       <location filename="core/shapes/bar_work.py" />
+      <source>%1 under [m_codes] of the machine file.</source>
+      <translation>%1 bajo [m_codes] del archivo de máquina.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/bar_work.py" />
       <source>BAR A PART, CUT INCLUDED</source>
       <translation>BARRA POR PIEZA, CON EL CORTE</translation>
     </message>
@@ -28537,6 +28807,11 @@
       <location filename="core/shapes/bar_work.py" />
       <source>FEED OF THE BAR A MINUTE</source>
       <translation>AVANCE DE LA BARRA POR MINUTO</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/bar_work.py" />
+      <source>No M code of this machine opens and closes the chuck: bind two to the output collet</source>
+      <translation>Ningún código M de esta máquina abre y cierra el plato: asigne dos a la salida collet</translation>
     </message>
     <message>
       <location filename="core/shapes/bar_work.py" />
@@ -28576,7 +28851,7 @@
     <message>
       <location filename="core/shapes/blade.py" />
       <source>CORNER TOUCHED OFF</source>
-      <translation>ESQUINA TOMADA</translation>
+      <translation>ESQUINA DE REFERENCIA</translation>
     </message>
     <message>
       <location filename="core/shapes/blade.py" />
@@ -28850,6 +29125,31 @@
     </message>
     <message>
       <location filename="core/shapes/grooving.py" />
+      <source>CYCLE93 breaks no edges here: type 0, or 0 for the other corner.</source>
+      <translation>CYCLE93 no mata cantos aquí: escriba 0, o 0 en la otra esquina.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/grooving.py" />
+      <source>CYCLE93 has square walls here: type 0, or 0 for the other corner.</source>
+      <translation>CYCLE93 tiene aquí paredes rectas: escriba 0, o 0 en la otra esquina.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/grooving.py" />
+      <source>CYCLE93 knows no tool at X negative: type 0 for the other corner.</source>
+      <translation>CYCLE93 no conoce herramientas en X negativa: escriba 0 en la otra esquina.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/grooving.py" />
+      <source>CYCLE93: D OF THE OTHER CORNER</source>
+      <translation>CYCLE93: D DE LA OTRA ESQUINA</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/grooving.py" />
+      <source>D1 is the corner that cuts: type the D of the other one, or 0 for G1.</source>
+      <translation>D1 es la esquina que corta: escriba la D de la otra, o 0 para G1.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/grooving.py" />
       <source>DIAMETER TO PASS ON THE WAY</source>
       <translation>DIÁMETRO QUE HAY QUE PASAR</translation>
     </message>
@@ -28945,6 +29245,16 @@
     </message>
     <message>
       <location filename="core/shapes/live_tools.py" />
+      <source>%1: mill it elsewhere.</source>
+      <translation>%1: frésela en otra máquina.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/live_tools.py" />
+      <source>%1: name one live under [io.out] of the machine file.</source>
+      <translation>%1: llame live a una bajo [io.out] del archivo de máquina.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/live_tools.py" />
       <source>%1: type less, or CORNERS ROUND.</source>
       <translation>%1: escriba menos, o esquinas ROUND.</translation>
     </message>
@@ -28986,7 +29296,7 @@
     <message>
       <location filename="core/shapes/live_tools.py" />
       <source>CROSS DRILL</source>
-      <translation>AGUJERO TRANSVERSAL</translation>
+      <translation>TALADRADO TRANSVERSAL</translation>
     </message>
     <message>
       <location filename="core/shapes/live_tools.py" />
@@ -29016,17 +29326,37 @@
     <message>
       <location filename="core/shapes/live_tools.py" />
       <source>MILL FLATS</source>
-      <translation>FRESAR CARAS</translation>
+      <translation>FRESADO DE CARAS</translation>
     </message>
     <message>
       <location filename="core/shapes/live_tools.py" />
       <source>MILL SLOT</source>
-      <translation>FRESAR RANURA</translation>
+      <translation>FRESADO DE RANURA</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/live_tools.py" />
+      <source>No output of this machine turns a live tool</source>
+      <translation>Ninguna salida de esta máquina mueve una herramienta motorizada</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/live_tools.py" />
+      <source>SPEED OF THE LIVE TOOL</source>
+      <translation>VELOCIDAD DE LA MOTORIZADA</translation>
     </message>
     <message>
       <location filename="core/shapes/live_tools.py" />
       <source>The slot goes nowhere: type its length, or the angle that it goes round.</source>
       <translation>La ranura no va a ninguna parte: escriba su longitud o el ángulo que rodea.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/live_tools.py" />
+      <source>The third axis of this machine is called Y, and the plane needs a Y of its own</source>
+      <translation>El tercer eje de esta máquina se llama Y, y el plano necesita una Y propia</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/live_tools.py" />
+      <source>This machine has no third axis: nothing holds the part and turns it.</source>
+      <translation>Esta máquina no tiene tercer eje: nada sujeta la pieza y la gira.</translation>
     </message>
     <message>
       <location filename="core/shapes/live_tools.py" />
@@ -29071,7 +29401,7 @@
     <message>
       <location filename="core/shapes/parting.py" />
       <source>PART OFF</source>
-      <translation>TRONZAR</translation>
+      <translation>TRONZADO</translation>
     </message>
     <message>
       <location filename="core/shapes/parting.py" />
@@ -29165,8 +29495,18 @@
     </message>
     <message>
       <location filename="core/shapes/tapping.py" />
+      <source>%1: take a holder that gives.</source>
+      <translation>%1: use un portamachos con compensación.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/tapping.py" />
       <source>A pitch of %1 is more than a feed may be, %2: cut it with G33.</source>
       <translation>Un paso de %1 es más de lo que puede ser un avance, %2: córtelo con G33.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/tapping.py" />
+      <source>A rigid tap turns as C, which does %1 rpm: type %2 or less.</source>
+      <translation>Un macho rígido gira como C, que da %1 rpm: escriba %2 o menos.</translation>
     </message>
     <message>
       <location filename="core/shapes/tapping.py" />
@@ -29187,6 +29527,11 @@
       <location filename="core/shapes/tapping.py" />
       <source>STOPS SHORT OF THE DEPTH</source>
       <translation>PARA ANTES DEL FONDO</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/tapping.py" />
+      <source>The spindle of this machine cannot be held and turned with Z</source>
+      <translation>El husillo de esta máquina no se puede retener y girar con Z</translation>
     </message>
     <message>
       <location filename="core/shapes/tapping.py" />
@@ -29370,13 +29715,18 @@
     </message>
     <message>
       <location filename="core/shapes/turning.py" />
+      <source>%1: put a point before it at the same Z, at the lowest X.</source>
+      <translation>%1: ponga antes un punto en la misma Z, en la X más baja.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/turning.py" />
       <source>CHAMFER AT THE MOUTH</source>
       <translation>CHAFLÁN EN LA BOCA</translation>
     </message>
     <message>
       <location filename="core/shapes/turning.py" />
       <source>EDGE TURN</source>
-      <translation>MATAR CANTO</translation>
+      <translation>MATAR CANTOS</translation>
     </message>
     <message>
       <location filename="core/shapes/turning.py" />
@@ -29432,6 +29782,11 @@
       <location filename="core/shapes/turning.py" />
       <source>The chamfer is as long as the bore of %1: type less.</source>
       <translation>El chaflán es tan largo como el taladro de %1: escriba menos.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/turning.py" />
+      <source>The contour falls from its first point, and roughing cannot come back past it</source>
+      <translation>El contorno baja desde su primer punto, y el desbaste no puede volver por él</translation>
     </message>
     <message>
       <location filename="core/shapes/turning.py" />

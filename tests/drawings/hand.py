@@ -15,6 +15,7 @@ from core.drawings.drawing_view import Profile, Side, View, axis_named, contours
 from core.drawings.profile_job import proposed_fields
 from core.drawings.profile_program import ProfileProgram, profile_program
 from core.interpreter.job_setup import SecondaryOffset
+from core.language.source import Dialect
 from core.part.tool_shape import ToolKind, ToolShape
 from core.shapes.shape_setting import Setting, Shop
 from tests.shapes.hand import machine, proved
@@ -50,12 +51,18 @@ def profile_of(path: Path, *, side: Side = Side.OUTSIDE, axis: str = "", **view:
 
 
 def program(
-    chosen: Profile, tools: dict[int, ToolShape] | None = None, *, metric: bool = True, **typed: Any
+    chosen: Profile,
+    tools: dict[int, ToolShape] | None = None,
+    *,
+    metric: bool = True,
+    dialect: Dialect = Dialect.OMNITURN,
+    **typed: Any,
 ) -> ProfileProgram:
     """The program of a profile; what is not typed is as it is proposed."""
     shapes = TOOLS if tools is None else tools
-    fields = proposed_fields(chosen, typed, shapes, metric=metric)
-    return profile_program(chosen, fields, [], Setting(metric=metric, shop=Shop(tools=shapes)))
+    fields = proposed_fields(chosen, typed, shapes, metric=metric, dialect=dialect)
+    setting = Setting(metric=metric, shop=Shop(tools=shapes), dialect=dialect)
+    return profile_program(chosen, fields, [], setting)
 
 
 def text_of(made: ProfileProgram) -> str:

@@ -8,8 +8,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from app.compose.profile_trial import TrialStock, tried
 from core.drawings.drawing_view import Front, Side, Zero
+from core.drawings.profile_words import is_corner
+from core.language.source import Dialect
+from core.shapes.contour import points
 from tests.drawings.hand import BLADE, SLIM, chain, dxf, profile_of, program, radii, text_of
+from tests.shapes.hand import machine
+from tests.sinumerik.lathe import LINEAR
 
 NEAR = 0.01  # mm of a radius: columns of .008 and what the profile of a part is fitted to
 QUARTER = math.tan(math.radians(90.0) / 4.0)
@@ -207,6 +213,26 @@ def test_a_shallow_fall_is_turned_and_a_steep_one_followed_by_the_edge(tmp_path:
     slope = math.tan(math.radians(30.0))
     at = [-9.0, -10.0, -12.0]
     assert radii(made, "bar:20.5mm:80mm", at) == pytest.approx([10 + (z + 8) * slope for z in at], abs=0.02)
+
+
+@pytest.mark.parametrize("dialect", [Dialect.OMNITURN, Dialect.SINUMERIK])
+@pytest.mark.parametrize(
+    "behind", [((-20, 4), (-30, 4), (-30, 0)), ((-20, 4), (-30, 4), (-30, 10), (-40, 10), (-40, 0))]
+)
+def test_a_cone_that_falls_from_the_face_is_roughed_up_the_face(
+    tmp_path: Path, behind: tuple[tuple[float, float], ...], dialect: Dialect
+) -> None:
+    """20 mm at the face, 8 mm at Z-20: G75 and CYCLE95 begin at the lowest X, so nothing crosses the cone."""
+    chosen = profile_of(dxf(tmp_path / "cone.dxf", chain((0, 0), (0, 10), *behind)))
+    made = program(chosen, {1: SLIM}, dialect=dialect)
+    lathe = machine() if dialect is Dialect.OMNITURN else LINEAR
+    trial = tried(text_of(made), chosen, TrialStock(21.0, 0.5), made.nose, lathe, {1: SLIM}, dialect=dialect)
+    assert not trial.errors
+    assert trial.comparison is not None
+    assert not [each for each in trial.comparison.found if not is_corner(each, made.nose_radius)]
+    assert trial.comparison.worst < 0.02
+    contour = points(made.shapes[-1][0].rows)
+    assert contour[:3] == [(0.0, 4.0), (0.0, 10.0), (-20.0, 4.0)]
 
 
 def test_nothing_is_ever_cut_too_deep_where_the_contour_goes_back_under_itself(tmp_path: Path) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from pathlib import Path
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -24,6 +24,7 @@ from core.shapes.shape import filled
 from core.shapes.shape_fields import Value
 from core.shapes.shape_setting import Setting, Shop
 from core.shapes.shape_table import HELPERS, SHAPES_OF
+from core.tool_edges import edge_key
 from tests.shapes.hand import machine, setup_of
 from tests.sinumerik.lathe import LINEAR
 
@@ -82,9 +83,11 @@ def source(text: list[str], dialect: Dialect) -> Source:
     return Source("x.mpf" if dialect is OURS else "x.nc", "\n".join(text) + "\n", dialect)
 
 
-def setup_in(dialect: Dialect, nose: float = 0.0) -> Setup:
+def setup_in(dialect: Dialect, nose: float = 0.0, *, right: bool = False) -> Setup:
+    """Tools at one place. In SINUMERIK D2 lies 2 mm from D1: to the face, of a ``right`` D1 to the chuck."""
     tools = {n: ToolOffset(50.0, 100.0, nose, 3) for n in range(1, 10)}
-    return setup_for(LINEAR, tools=tools, secondary={}) if dialect is OURS else setup_of()
+    edges = {edge_key(n, 2): ToolOffset(50.0, 102.0 if right else 98.0, nose, 4) for n in tools}
+    return setup_for(LINEAR, tools=tools | edges, secondary={}) if dialect is OURS else setup_of()
 
 
 def tools_of(steps: list[Step]) -> dict[int, ToolShape]:
@@ -100,12 +103,19 @@ def tools_of(steps: list[Step]) -> dict[int, ToolShape]:
 
 
 def metal(
-    text: list[str], dialect: Dialect, tools: dict[int, ToolShape] | None = None, nose: float = 0.0
+    text: list[str],
+    dialect: Dialect,
+    tools: dict[int, ToolShape] | None = None,
+    nose: float = 0.0,
+    *,
+    right: bool = False,
 ) -> tuple[np.ndarray, list[str]]:
     """Outer and inner radii of the proved part by Z, and what the proof says against the program."""
     lathe = LINEAR if dialect is OURS else machine()
     setting = PartSetting(stock=stock_spec("bar:30mm:60mm"), shapes=tools or {})
-    report, part = prove_with_part(source(text, dialect), setup_in(dialect, nose), lathe, setting)
+    report, part = prove_with_part(
+        source(text, dialect), setup_in(dialect, nose, right=right), lathe, setting
+    )
     assert part is not None
     assert part.last is not None
     at = np.arange(-30.0, -0.05, 0.0625) + 0.01
@@ -129,6 +139,44 @@ def test_the_same_metal_as_in_omniturn_and_found_again(name: str) -> None:
     for piece, (_, typed, rows) in zip(found[1:], STEPS[name], strict=True):
         assert (piece.foreign, piece.taken, len(piece.filled.rows)) == (-1, (), len(rows))
         assert {word: piece.filled.values[word] for word in typed} == typed
+
+
+@pytest.mark.parametrize(
+    "typed",
+    [
+        {"AT": 10.0, "LONG": 5.0, "TOP": 30.0, "BOTTOM": 20.0},
+        {"AT": 10.0, "LONG": 2.0, "TOP": 30.0, "BOTTOM": 24.0, "COUNT": 3.0, "PITCH": 5.0},
+        {"AT": 10.0, "LONG": 5.0, "TOP": 26.0, "BOTTOM": 20.0, "OVER": 30.0, "CORNER": "RIGHT"},
+    ],
+)
+def test_a_groove_by_its_cycle_is_that_of_its_lines(typed: dict[str, Value]) -> None:
+    """The blade of 2 mm has D1 at the corner that was touched off, and D2."""
+    turned: Step = ("T", {"FROM": 30.0}, (Row(30.0, 0.0), Row(z=-9.0), Row(26.0), Row(z=-28.0)))
+    before = [turned] if "OVER" in typed else []
+    steps = [*before, ("G", {"WIDE": 2.0, **typed}, ())]
+    cycle = [*before, ("G", {"WIDE": 2.0, "DN": 2.0, **typed}, ())]
+    text = written(cycle, OURS)
+    assert sum(line.startswith("CYCLE93") for line in text) == typed.get("COUNT", 1.0)
+    tools = tools_of(steps)
+    if typed.get("CORNER") == "RIGHT":
+        tools = {n: replace(each, tip=4) for n, each in tools.items()}
+    mine, said = metal(text, OURS, tools, right="CORNER" in typed)
+    there, _ = metal(written(steps, OURS), OURS, tools)
+    assert not said, text
+    assert np.quantile(np.abs(mine - there), 0.97) <= NEAR
+    piece = pieces(text, SHOP, Setting(dialect=OURS))[-1]
+    assert (piece.foreign, piece.taken, piece.filled.values["DN"]) == (-1, (), 2.0)
+
+
+@pytest.mark.parametrize(
+    ("typed", "word"),
+    [({"DN": 1.0}, "DN"), ({"SIDE": "REAR"}, "SIDE"), ({"EDGE": 0.5}, "EDGE"), ({"CANGLE": 10.0}, "FANGLE")],
+)
+def test_what_the_cycle_of_grooves_does_not_do_is_refused(typed: dict[str, Value], word: str) -> None:
+    setting = setting_at(written([], OURS), 1, SHOP, Setting(dialect=OURS))
+    groove = {"TOP": 30.0, "BOTTOM": 20.0, "AT": 9.0, "WIDE": 2.0, "LONG": 8.0, "DN": 2.0, **typed}
+    one = filled(SHAPES_OF[OURS]["G"], groove, setting)
+    assert [each.word for each in one.refusals(setting)] == [word]
 
 
 @pytest.mark.parametrize(
@@ -166,8 +214,8 @@ def test_the_program_is_that_of_a_good_programmer() -> None:
     assert text[3:] == [
         "G95 S1200 M3", "G0 X31 Z25", "Z2.5",
         'CYCLE95("CONTOUR_1:CONTOUR_1_END", 2, , , 0.25, 0.2, 0.2, , 1)',
-        "G0 X0 Z2.5", "G42", "CONTOUR_1:", "G1 X0 Z0 F0.1", "X12 CHR=1", "Z-12 RND=1", "X18",
-        "CONTOUR_1_END:", "G40 G1 X31", "G0 Z25", "M30",
+        "G0 X0 Z2.5", "G42", "CONTOUR_1:", "G1 X0 Z0 F0.1", "X12 CHR=1", "Z-12 RND=1", "X18", "X31",
+        "CONTOUR_1_END:", "G40", "G0 Z25", "M30",
     ]  # fmt: skip
     assert not metal(text, OURS, nose=0.4)[1]
 
@@ -225,11 +273,6 @@ def test_what_no_part_can_have_is_refused_at_its_field(key: str, typed: dict[str
     assert [each.word for each in one.refusals(setting)] == [word]
 
 
-@pytest.mark.parametrize("name", ["BAR LOOP", "TAP", "CROSS HOLES", "MILL FLATS", "MILL SLOT"])
-def test_shapes_of_the_other_control_alone_are_not_offered(name: str) -> None:
-    assert name not in {shape.name for shape in SHAPES_OF[OURS].values()}
-
-
 @pytest.fixture
 def desk() -> Iterator[Shapes]:
     shapes = Shapes(lambda: SHOP, Setting(metric=True), shop=SHOP)
@@ -263,11 +306,6 @@ def test_a_program_without_a_head_asks_for_it(desk: Shapes) -> None:
     assert (desk.form, "PRESS N" in desk.notice) == (None, True)
 
 
-def test_what_is_written_in_the_other_language_alone_is_refused(desk: Shapes, tmp_path: Path) -> None:
+def test_what_is_written_in_the_other_language_alone_is_refused(desk: Shapes) -> None:
     assert desk.open("x.mpf", "", 1, HELPERS).startswith("CALCULATORS AND TEMPLATES WRITE OMNITURN")
     assert desk.open("x.h", "", 1).startswith("SHAPES ARE WRITTEN IN OMNITURN OR SINUMERIK")
-    assert desk.open("x.mpf", "", 1) == ""
-    desk.wanted = tmp_path / "part.dxf"
-    desk.open_wanted()
-    assert (desk.form, desk.wanted) == (None, None)
-    assert desk.notice.startswith("A DRAWING IS WRITTEN IN OMNITURN")
