@@ -103,13 +103,17 @@ class BlockSink(Protocol):
         ...
 
     @property
-    def caps(self) -> frozenset[str]: ...
+    def caps(self) -> frozenset[str]:
+        """What it can do, by the names of ``machine_requirements``."""
+        ...
 
     def submit(self, op: BlockOp) -> int | None:
         """Hand a block over: its ticket, or None while it takes no more. Raises DriverError."""
         ...
 
-    def state(self) -> BlockState: ...
+    def state(self) -> BlockState:
+        """How far it has come, as last told; from memory, at once."""
+        ...
 
     def hold(self) -> None:
         """Come to rest on the path; a thread pass first ends."""
@@ -223,7 +227,9 @@ class AxisSink(Protocol):
     axes: tuple[str, ...]
     commit: float  # nothing before now() + commit can be changed any more
 
-    def now(self) -> float: ...
+    def now(self) -> float:
+        """Seconds of the driver's clock, by which setpoints are played."""
+        ...
 
     def horizon(self) -> float:
         """End of what is queued; not before now() when something is queued."""
@@ -241,15 +247,25 @@ class AxisSink(Protocol):
         """Queued position and velocity at ``t``; what a splice at ``t`` has to continue."""
         ...
 
-    def sample(self) -> AxisSample: ...
+    def sample(self) -> AxisSample:
+        """What is known of the axes now; from memory, at once."""
+        ...
 
-    def enable(self, on: bool) -> None: ...
+    def enable(self, on: bool) -> None:
+        """Switch the drives of all axes on or off. Raises DriverError; a drive that then fails is a fault."""
+        ...
 
-    def stop(self, how: Stop) -> None: ...
+    def stop(self, how: Stop) -> None:
+        """Drop the queue and come to rest in this way. Raises DriverError."""
+        ...
 
-    def home(self, axis: str) -> None: ...
+    def home(self, axis: str) -> None:
+        """Begin to home this axis; ``sample`` tells when it is done. Raises DriverError."""
+        ...
 
-    def clear_fault(self) -> None: ...
+    def clear_fault(self) -> None:
+        """Ask for a way out of a fault; ``sample`` tells whether there was one. Raises DriverError."""
+        ...
 
 
 class Spindle(Protocol):
@@ -357,13 +373,17 @@ class Gear(Protocol):
 class DigitalIO(Protocol):
     """Inputs and outputs by the names of the machine file."""
 
-    def inputs(self) -> Mapping[str, bool]: ...
+    def inputs(self) -> Mapping[str, bool]:
+        """All inputs as last told; from memory, at once."""
+        ...
 
     def outputs(self) -> Mapping[str, bool]:
         """As they are, whoever has switched them, as far as the driver is told; else as last written."""
         ...
 
-    def write(self, name: str, on: bool) -> None: ...
+    def write(self, name: str, on: bool) -> None:
+        """Switch one output. Raises DriverError."""
+        ...
 
     def safe(self) -> None:
         """Every output to its safe state."""
@@ -390,7 +410,9 @@ class StationState:
 class Station(Protocol):
     """Buttons, pots and switches of the operator station."""
 
-    def snapshot(self) -> StationState: ...
+    def snapshot(self) -> StationState:
+        """The station as last told, with its age; from memory, at once."""
+        ...
 
 
 PROBE = "probe"  # the input of a touch probe or tool setter, on while it is touched
@@ -439,9 +461,13 @@ class Tripping(Protocol):
     and switches nothing on, with TrippedError, until the control has acknowledged what it did.
     """
 
-    def tripped(self) -> Trip | None: ...
+    def tripped(self) -> Trip | None:
+        """What it has switched off and nobody has acknowledged; None: nothing."""
+        ...
 
-    def acknowledge(self, trip: Trip) -> None: ...
+    def acknowledge(self, trip: Trip) -> None:
+        """The control knows of this very trip; a newer one stays. Raises DriverError."""
+        ...
 
 
 class Unknown(StrEnum):
@@ -477,9 +503,13 @@ class Wakeup(Protocol):
 class Clock(Protocol):
     """Monotonic time, and the only way to wait for it."""
 
-    def now(self) -> float: ...
+    def now(self) -> float:
+        """Seconds; the beginning means nothing."""
+        ...
 
-    def sleep_until(self, t: float) -> None: ...
+    def sleep_until(self, t: float) -> None:
+        """Back at ``t`` or a little later; at once where that is past."""
+        ...
 
 
 @dataclass(frozen=True, slots=True)

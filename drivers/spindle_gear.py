@@ -289,10 +289,12 @@ class GearedQueue(SetpointQueue):
         return motion
 
     def rest_at(self, position: Sequence[float]) -> None:
+        """At rest there, and no longer led by the spindle."""
         self._gearing = None
         super().rest_at(position)
 
     def horizon(self, now: float) -> float:
+        """End of what is queued, s; of a way by the spindle as its speed of now foretells it."""
         if self._gearing is None:
             return super().horizon(now)
         then = self._gearing.cam.then
@@ -300,9 +302,11 @@ class GearedQueue(SetpointQueue):
         return max(ends, now + self.commit)  # foretold as over, and yet not played to its end
 
     def demand_at(self, t: float) -> State:
+        """Position and velocity that are queued for ``t``, or foretold by the spindle's speed."""
         return super().demand_at(t) if self._gearing is None else self._gearing.at(t)
 
     def splice(self, segments: Segments, now: float) -> None:
+        """Go on by time. Raises DriverError while the slides still follow the spindle at its beginning."""
         gearing = self._gearing
         if gearing is not None and len(segments.t) and not gearing.still_at(float(segments.t[0])):
             raise DriverError(
@@ -312,6 +316,7 @@ class GearedQueue(SetpointQueue):
         self._gearing = None
 
     def brake(self, now: float, decel: Sequence[float]) -> float:
+        """Leave the spindle, and straight to rest (decelerations in mm/s²); returns when it ends, s."""
         state = self.demand_at(now)
         if self._gearing is not None:
             self.rest_at(state[0])

@@ -3,30 +3,25 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QRectF
+from PySide6.QtCore import QRect, QRectF
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QWidget
 
-from app.desk.formats import MM_PER_INCH
 from app.desk.machine_status import MachineStatus
 from app.desk.program_loading import Loaded
 from app.desk.translation import tr
 from app.jog.drive_test_model import DriveTests
 from app.jog.held_keys_view import HeldKeysPage
 from app.jog.jog_cross_view import JogCross
-from app.scope.analyses import scaled
-from app.scope.analyses_view import PLOTS, Above, chart_class
+from app.scope.analyses_view import Above
+from app.scope.drawing_room_view import DrawingRoom
 from app.screen import page_table
 from app.screen.look import CENTRE, Look, Painter
 from app.screen.page_base import Host, KeyActions
 from app.screen.panel import Shown
 from app.screen.sheet_panel import SheetPanel
 from core.executor.snapshot import Snapshot
-
-if TYPE_CHECKING:
-    from app.scope.analyses_chart_view import AnalysisChart
 
 _TABLE, _HEAD, _PAD = 50.0, 3.4, 0.42  # units, units, share of the height
 
@@ -62,22 +57,14 @@ class DriveTestPage(HeldKeysPage):
     def __init__(self, host: Host, model: DriveTests, parent: QWidget) -> None:
         super().__init__(host, model, parent)
         self.above = Above(self.look, self)
-        self.room = QWidget(self)
+        self.drawing = DrawingRoom(self.look, model.scope.filing, self.desk.say, self)
         self.pad: DriveTestPad = DriveTestPad(self.look, model, self)
         self.table = SheetPanel(self.look, model.choose, self)
-        self.chart: AnalysisChart | None = None
-        self._drawn: object = None
-        model.scope.filing.queue(chart_class, self._chart_there, self.desk.say)
-
-    def _chart_there(self, chart: type[AnalysisChart]) -> None:
-        self.chart = chart(self.look, self.room)
-        self.chart.setGeometry(self.room.rect())
-        self.chart.show()
 
     def ahead(self) -> bool:
         """The chart, then its plots."""
         self.model.scope.filing.poll()
-        return self.chart is None or not self.chart.ready(PLOTS)
+        return not self.drawing.ready()
 
     def key_actions(self) -> KeyActions:
         """The choice, figures, and the pages beside it."""
@@ -118,17 +105,11 @@ class DriveTestPage(HeldKeysPage):
         self.above.words = model.words()
         self.table.show_sheet(model.sheet())
         self.pad.shown = (model.hold.asked, model.hold.held and model.hold.held.source, snapshot.state)
-        shown = (model.found, model.metric)
-        if self.chart is not None and shown != self._drawn:
-            drawing = scaled(model.drawing(), 1.0 if model.metric else 1.0 / MM_PER_INCH)
-            if self.chart.show_drawing(drawing):
-                self._drawn = shown
+        self.drawing.show_drawing((model.found, model.metric), model.drawing, metric=model.metric)
 
     def dress(self) -> None:
         """Other colours, or another language, are in force."""
-        self._drawn = None
-        if self.chart is not None:
-            self.chart.dress()
+        self.drawing.dress()
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
         """Drawing over the cross at the left, choice and figures at the right."""
@@ -136,9 +117,6 @@ class DriveTestPage(HeldKeysPage):
         gap, side, high = max(4, round(0.7 * u)), round(_TABLE * u), round(_HEAD * u)
         left, pad = self.width() - side - gap, round(_PAD * self.height())
         self.above.setGeometry(0, 0, left, high)
-        self.room.setGeometry(0, high, left, self.height() - high - pad - gap)
+        self.drawing.lay_out(QRect(0, high, left, self.height() - high - pad - gap))
         self.pad.setGeometry(0, self.height() - pad, left, pad)
         self.table.setGeometry(left + gap, 0, side, self.height())
-        if self.chart is not None:
-            self.chart.setGeometry(self.room.rect())
-            self.chart.dress()

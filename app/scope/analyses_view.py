@@ -4,18 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import partial
-from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QRectF
+from PySide6.QtCore import QRect, QRectF
 from PySide6.QtGui import QResizeEvent, QWheelEvent
 from PySide6.QtWidgets import QWidget
 
-from app.desk.formats import MM_PER_INCH
 from app.desk.machine_status import MachineStatus
 from app.desk.program_loading import Loaded
 from app.desk.sheet import Key
 from app.desk.translation import tr
-from app.scope.analyses import Analyses, Kind, scaled
+from app.scope.analyses import Analyses, Kind
+from app.scope.drawing_room_view import DrawingRoom
 from app.screen import page_table
 from app.screen.look import Painter
 from app.screen.page_base import Host, KeyActions
@@ -23,18 +22,7 @@ from app.screen.panel import Panel, Shown
 from app.screen.sheet_panel import ListPage, SheetPanel
 from core.executor.snapshot import Snapshot
 
-if TYPE_CHECKING:
-    from app.scope.analyses_chart_view import AnalysisChart
-
 _TABLE, _HEAD = 50.0, 3.4  # units
-PLOTS = 2  # of a drawing at most
-
-
-def chart_class() -> type[AnalysisChart]:
-    """On a worker: pyqtgraph takes a third of a second."""
-    from app.scope.analyses_chart_view import AnalysisChart
-
-    return AnalysisChart
 
 
 class Above(Panel):
@@ -59,21 +47,13 @@ class AnalysesPage(ListPage):
         super().__init__(host, _Keys(analyses), parent)
         self.analyses = analyses
         self.above = Above(self.look, self)
-        self.room = QWidget(self)
+        self.drawing = DrawingRoom(self.look, analyses.worker, self.desk.say, self)
         self.table = SheetPanel(self.look, analyses.mark, self)
-        self.chart: AnalysisChart | None = None
-        self._drawn: object = None
-        analyses.worker.queue(chart_class, self._chart_there, self.desk.say)
-
-    def _chart_there(self, chart: type[AnalysisChart]) -> None:
-        self.chart = chart(self.look, self.room)
-        self.chart.setGeometry(self.room.rect())
-        self.chart.show()
 
     def ahead(self) -> bool:
         """The chart, then its plots."""
         self.analyses.worker.poll()
-        return self.chart is None or not self.chart.ready(PLOTS)
+        return not self.drawing.ready()
 
     def _keys(self) -> Mapping[str, Key]:
         choose = self.analyses.choose
@@ -129,16 +109,11 @@ class AnalysesPage(ListPage):
         self.table.show_sheet(analyses.sheet())
         metric = analyses.scope.metric
         shown = (analyses.found, analyses.magnified, analyses.marked, metric)
-        if self.chart is not None and shown != self._drawn:
-            drawing = scaled(analyses.drawing(), 1.0 if metric else 1.0 / MM_PER_INCH)
-            if self.chart.show_drawing(drawing):
-                self._drawn = shown
+        self.drawing.show_drawing(shown, analyses.drawing, metric=metric)
 
     def dress(self) -> None:
         """Other colours, or another language, are in force."""
-        self._drawn = None
-        if self.chart is not None:
-            self.chart.dress()
+        self.drawing.dress()
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
         """Drawing at the left, figures at the right."""
@@ -146,11 +121,8 @@ class AnalysesPage(ListPage):
         gap, side, high = max(4, round(0.7 * u)), round(_TABLE * u), round(_HEAD * u)
         left = self.width() - side - gap
         self.above.setGeometry(0, 0, left, high)
-        self.room.setGeometry(0, high, left, self.height() - high)
+        self.drawing.lay_out(QRect(0, high, left, self.height() - high))
         self.table.setGeometry(left + gap, 0, side, self.height())
-        if self.chart is not None:
-            self.chart.setGeometry(self.room.rect())
-            self.chart.dress()
 
 
 class _Keys:

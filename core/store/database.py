@@ -102,6 +102,7 @@ def configured(connection: sqlite3.Connection) -> sqlite3.Connection:
 
 
 def version_of(connection: sqlite3.Connection) -> int:
+    """The last migration that was carried out on this store; 0: none, it is empty."""
     return int(connection.execute("PRAGMA user_version").fetchone()[0])
 
 

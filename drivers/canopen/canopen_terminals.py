@@ -13,6 +13,7 @@ from drivers.canopen.canopen_config import CanopenConfig
 from drivers.canopen.canopen_setup import Setup, watching
 from drivers.canopen.canopen_table import CanNode, CanTerminal
 from drivers.canopen.cia402_drives import Drive402
+from drivers.station_inputs import station_of
 
 # --- A CiA 401 module: inputs, outputs with a safe state of their own, analog words.
 
@@ -252,16 +253,12 @@ class CanopenIO:
 
     def snapshot(self) -> StationState:
         """The operator station as its inputs have it; its age is that of the oldest module."""
-        inputs = self.inputs()
         now = self._bus.clock.now()
         age = max((now - module.answered for module in self.modules.values()), default=0.0)
         pot = self._config.pots.get("spindle_pot")
-        auto = inputs.get(pot.switch, True) if pot is not None and pot.switch else True
-        return StationState(
-            estop=inputs.get("estop", False),
-            start=inputs.get("start", False),
-            hold=inputs.get("hold", False),
-            spindle_auto=inputs.get("spindle_auto", auto),
+        return station_of(
+            self.inputs(),
+            pot_switch=pot.switch if pot is not None else "",
             spindle_pot=self._pot("spindle_pot"),
             feed_pot=self._pot("feed_pot"),
             handwheel=self._turned(),

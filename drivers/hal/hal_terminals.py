@@ -9,6 +9,7 @@ from drivers.hal.hal_axes import HalAxes
 from drivers.hal.hal_config import HalConfig
 from drivers.hal.hal_index import SpindleIndex
 from drivers.hal.hal_link import HalLink
+from drivers.station_inputs import station_of
 
 _STANDS = 5.0  # rpm
 
@@ -137,13 +138,10 @@ class HalTerminals:
 
     def snapshot(self) -> StationState:
         """The operator station as its pins have it; its age is that of the bridge's last word."""
-        inputs, pot = self.inputs(), self._config.pots.get("spindle_pot")
-        auto = inputs.get(pot.switch, True) if pot is not None and pot.switch else True
-        return StationState(
-            estop=inputs.get("estop", False),
-            start=inputs.get("start", False),
-            hold=inputs.get("hold", False),
-            spindle_auto=inputs.get("spindle_auto", auto),
+        pot = self._config.pots.get("spindle_pot")
+        return station_of(
+            self.inputs(),
+            pot_switch=pot.switch if pot is not None else "",
             spindle_pot=self._pot("spindle_pot"),
             feed_pot=self._pot("feed_pot"),
             handwheel=round(self._analog("handwheel", 0.0)),

@@ -148,6 +148,7 @@ class OnModbus:
 
     @hurry.setter
     def hurry(self, asked: Callable[[], bool]) -> None:
+        """``asked`` tells whether a stop waits, which breaks off what is no stop."""
         self._line.hurry = asked
 
     @property

@@ -520,7 +520,7 @@ def test_the_analyses_stand_behind_f8(hands: Hands) -> None:
     hands.key(Key.Key_F8)
     page = hands.frame.page
     assert isinstance(page, AnalysesPage)
-    hands.sees(lambda: page.chart is not None and bool(page.chart.drawing.curves))
+    hands.sees(lambda: page.drawing.chart is not None and bool(page.drawing.chart.drawing.curves))
     found = page.analyses.found
     assert found is not None
     assert found.worst
@@ -529,10 +529,10 @@ def test_the_analyses_stand_behind_f8(hands: Hands) -> None:
     assert page.analyses.magnified > before
     hands.key(Key.Key_F3)
     hands.sees(lambda: "by the spindle's angle" in page.above.words)
-    hands.sees(lambda: page.chart is not None and len(page.chart.plots) == 2)
+    hands.sees(lambda: page.drawing.chart is not None and len(page.drawing.chart.plots) == 2)
     hands.key(Key.Key_F4)
     hands.sees(lambda: "no arc" in page.above.words)
-    hands.sees(lambda: page.chart is not None and not page.chart.drawing.curves)
+    hands.sees(lambda: page.drawing.chart is not None and not page.drawing.chart.drawing.curves)
     hands.key(Key.Key_F8)
     assert hands.frame.page.NAME == page_table.SCOPE
 
