@@ -14,7 +14,7 @@ from core.store.store import Store
 from tests import late_computer
 from tests.stories.fork_server import ForkServer
 from tests.stories.operator import Operator
-from tests.stories.x11 import Server, missing, server
+from tests.stories.x11 import SIZE, Server, missing, server
 
 FAILURES = Path(__file__).resolve().parents[2] / "story-failures"
 INCH = 25.4
@@ -86,8 +86,8 @@ def forks() -> Iterator[ForkServer]:
 
 @pytest.fixture
 def story(request: pytest.FixtureRequest, forks: ForkServer, tmp_path: Path) -> Iterator[Story]:
-    """A story is told with this."""
-    with server(tmp_path / "x") as display:
+    """A story is told with this; its parameter is the size of the screen, in pixels."""
+    with server(tmp_path / "x", getattr(request, "param", SIZE)) as display:
         told = Story(display, forks, tmp_path)
         yield told
         if any(report.failed for report in request.node.stash.get(_REPORTS, [])):

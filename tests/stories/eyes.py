@@ -24,7 +24,7 @@ from app.cli.main import console
 from app.desk.desk import Desk
 from app.screen.keyboard import Keyboard
 from app.screen.main_window import MainWindow
-from app.screen.panel import Panel
+from app.screen.panel import FingerPanel, Panel
 from drivers.lookalikes.plant_hands import PlantHands
 
 LOOK = 0.01  # s
@@ -143,6 +143,7 @@ class Eyes(QObject):
             "minimised": window.isMinimized(),
             "field": _field(focus),
             "texts": [each for widget in window.findChildren(QWidget) for each in self._texts(widget)],
+            "targets": [each for panel in window.findChildren(Panel) for each in _targets(panel)],
         }
 
     def _texts(self, widget: QWidget) -> list[tuple[str, float, float, str]]:
@@ -175,6 +176,16 @@ class Eyes(QObject):
             else:
                 getattr(event, do)(finger, at, window)
         event.commit()
+
+
+def _targets(panel: Panel) -> list[tuple[float, float, float, float]]:
+    """Where a panel may be pressed: corner and size on the screen."""
+    if not panel.isVisible():
+        return []
+    corner = panel.mapToGlobal(QPoint(0, 0))
+    boxes = [box for box, _press in panel._places]
+    boxes += [each.box for each in panel.controls] if isinstance(panel, FingerPanel) else []
+    return [(corner.x() + box.x(), corner.y() + box.y(), box.width(), box.height()) for box in boxes]
 
 
 def _break(told: Told) -> None:

@@ -24,6 +24,8 @@ AGAIN = 3.0  # s behind which somebody does again what has done nothing
 MEANS = {"y", "F10"}
 _TRIES = 20  # of a hand that the screen has forgotten behind a stall
 NEAR = 0.01  # mm: what a slide at rest may tremble
+FINGERTIP = 18  # pixels: 4 mm of a screen of 1024x600 that is 10 inches across
+_BESIDE = ((1, 1), (-1, 1), (1, -1), (-1, -1))
 Told = dict[str, Any]
 
 
@@ -41,6 +43,7 @@ class Operator:
         self.seen: list[Told] = []  # every change of the machine since the start
         self._answers: dict[int, Any] = {}
         self._asked = 0
+        self._tapped = 0
         self._window = ""
         self._told = threading.Condition()
         environment = server.environment | {"TURNDESK_HOME": str(home)}
@@ -350,6 +353,25 @@ class Operator:
         for number, place in enumerate(at):
             self.finger(number, place)
         self.ask("touch", fingers=[(number, "release", *place) for number, place in enumerate(at)])
+
+    def taps(self, text: str, on: str = "") -> None:
+        """One finger, up again, on the target with this text: 4 mm beside its middle, as fingers are."""
+        x, y = self._middle(*self.find(text, on))
+        self._tapped += 1
+        across, down = _BESIDE[self._tapped % len(_BESIDE)]
+        at = (x + across * FINGERTIP, y + down * FINGERTIP)
+        self.finger(0, at)
+        self.ask("touch", fingers=[(0, "release", *at)])
+
+    def _middle(self, x: float, y: float) -> tuple[float, float]:
+        """Of the smallest target at a place; it has to be one."""
+        there = [
+            (wide * high, left + wide / 2, top + high / 2)
+            for left, top, wide, high in self.screen["targets"]
+            if left <= x <= left + wide and top <= y <= top + high
+        ]
+        assert there, f"nothing to press at {x}, {y}"
+        return min(there)[1:]
 
     def finger(self, number: int, at: tuple[float, float]) -> None:
         """A finger goes down there, and stays; again where the screen has forgotten it."""
