@@ -373,6 +373,32 @@ def test_the_live_tool_and_the_held_part_come_before_the_line() -> None:
     assert told_of == ["M89", "LIVE ON"]
 
 
+HELD = """\
+G18 G71 G90 G54 DIAMON G94
+S800 M3
+G0 X60 Z5
+SPOS=90
+G1 Z-20 F100
+G0 Z5
+M5
+G1 Z-10 F100
+M30
+"""
+
+
+@pytest.mark.parametrize(("line", "told_of"), [(5, ["M19 90"]), (6, ["M19 90"]), (8, [])])
+def test_a_spindle_that_the_run_would_have_held_is_brought_to_its_angle(
+    line: int, told_of: list[str]
+) -> None:
+    of = lathe(HELD)
+    found = good(of, line)
+    now = MachineNow((150.0, 100.0, 0.0), Modal())
+    begin = begin_at(found, now, Choices())
+    assert [step.text for step in begin.approach if isinstance(step, FunctionStep)] == told_of
+    behind = [told(block) for block in restarted(of, begin, now.at)][len(begin.approach) :]
+    assert behind == [told(block) for block in whole(of) if block.n > found.checkpoint.blocks]
+
+
 def test_no_search_ends_on_a_corner_in_transmit() -> None:
     assert "on a corner or a contour in TRANSMIT" in refused(milled(), 15).why
 
