@@ -52,7 +52,7 @@ def control_limits(machine: Machine) -> ControlLimits:
         third_axis=machine.third_axis,
         spindle_controlled=machine.spindle.controlled,
         spindle_oriented=machine.spindle.oriented,
-        fixed_points={axis.name: axis.fixed_points for axis in machine.axes[:2]},
+        fixed_points={axis.name: axis.fixed_points for axis in machine.axes if axis.fixed_points},
         speeds=(machine.axes[0].vmax, machine.axes[1].vmax, c_axis.vmax),
     )
 

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+ENDLESS = "endless-loop"
+"""The code of the finding, in every language."""
+
 
 class LoopWatch:
     """Compares what jumps go by whenever a program jumps back.

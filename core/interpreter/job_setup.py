@@ -78,7 +78,7 @@ class ControlLimits:
     control: str = "840d"  # whose words SINUMERIK programs may hold: 802d, 808d, 828d or 840d
     spindle_controlled: bool = True  # S is obeyed, and the control knows the speed
     spindle_oriented: bool = False  # its drive stops it at an angle
-    fixed_points: Mapping[str, tuple[float, ...]] = field(default_factory=dict)  # of X and Z: mm, radius
+    fixed_points: Mapping[str, tuple[float, ...]] = field(default_factory=dict)  # of slides: mm, X a radius
     speeds: tuple[float, float, float] = (127.0, 127.0, 1200.0)  # of X, Z and C at most: mm/s, degrees/s
 
 

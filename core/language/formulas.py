@@ -35,6 +35,8 @@ class Operation(NamedTuple):
 
 
 Formula = Number | Parameter | Operation
+INDICES = "indices"
+"""The operation that stands for several indices of one element; it has no value of its own."""
 TRIGONOMETRY = {
     "SIN": "sine",
     "COS": "cosine",
@@ -177,19 +179,25 @@ class FormulaReader:
             self.at = match.end()
             letters, number = match.group(1), match.group(2)
             if not number and grammar.indexed and self._text.startswith("[", self.at):
-                return Parameter(letters, self._index(), at + 1)
+                return Parameter(letters, self.index(), at + 1)
             return Parameter(letters, int(number) if number else None, at + 1)
         if match := grammar.number.match(self._text, at):
             self.at = match.end()
             return Number(float(match.group().replace(",", ".").replace("EX", "E")))
         raise FormulaError(at, "The formula needs a number or a parameter", "Complete it.")
 
-    def _index(self) -> Formula:
+    def index(self) -> Formula:
+        """The index in the square bracket that opens here; several as an operation INDICES of them all.
+
+        Raises FormulaError.
+        """
         self.at += 1
-        made = self._expression(0)
+        column, found = self.at, [self._expression(0)]
+        while self._grammar.separator and self._takes(self._grammar.separator):
+            found.append(self._expression(0))
         if not self._takes("]"):
             raise FormulaError(self.at, "The square bracket is not closed", "Write ] behind the index.")
-        return made
+        return found[0] if len(found) == 1 else Operation(INDICES, tuple(found), column)
 
     def _enclosed(self) -> Formula:
         made = self._expression(0)

@@ -29,7 +29,7 @@ class Axis:
     home_order: int = 0
     home_speed: float = 0.0
     rotary: bool = False
-    fixed_points: tuple[float, ...] = ()  # from home, X a radius: where G75 of SINUMERIK goes
+    fixed_points: tuple[float, ...] = ()  # from home, X a radius: where G75 goes; of a mill M92's zero
     still_window: float = 0.2  # how far it may be off where it rests
     still_time: float = 0.2  # s from the end of a motion until that counts, and for which it must be off
 

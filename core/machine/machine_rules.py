@@ -53,8 +53,8 @@ def _fixed_points(axis: str) -> Rule:
 
     def wrong(values: Values) -> str:
         points, (low, high) = values.numbers(path), values.pair(f"axis.{axis}.travel")
-        if points and values.text("machine.kind") != "lathe":
-            return "only a lathe goes to fixed points (G75 of SINUMERIK); take them out"
+        if len(points) > 1 and values.text("machine.kind") != "lathe":
+            return "a mill has one a slide, from which M92 counts; G75 with up to four is of lathes"
         outside = next((point for point in points if not low <= point <= high), None)
         if outside is None:
             return ""

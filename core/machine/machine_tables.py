@@ -39,7 +39,7 @@ LIMITS = (
 _STILL = Field("still_ms", _NUMBER, Unit.MILLISECONDS, 0.05, 2.0, default=0.2)  # a servo settles in less
 SLIDE = (
     Field("travel", Kind.PAIR, Unit.LENGTH, -5000.0, 5000.0),
-    Field("fixed_points", Kind.NUMBERS, Unit.LENGTH, -5000.0, 5000.0, default=()),  # G75 of SINUMERIK
+    Field("fixed_points", Kind.NUMBERS, Unit.LENGTH, -5000.0, 5000.0, default=()),  # G75, M92
     Field("vmax", _NUMBER, Unit.FEED, 1.0, 1000.0),
     Field("amax", _NUMBER, Unit.ACCEL, 10.0, 30000.0),
     Field("count", _NUMBER, Unit.LENGTH, 1e-5, 0.02),

@@ -1505,8 +1505,8 @@
     </message>
     <message>
       <location filename="" />
-      <source>First line of a subprogram: its parameters, VAR writes back, = is what counts where nothing is handed over; SAVE brings G functions and frame back at its end.</source>
-      <translation>Primera línea de un subprograma: sus parámetros, VAR devuelve el valor, = es lo que vale si no se pasa nada; SAVE repone al final las funciones G y el frame.</translation>
+      <source>First line of a subprogram: its parameters, VAR writes back, = is what counts where nothing is handed over; VAR REAL LIST[3] takes an array of that size, VAR REAL LIST[] one of any. SAVE brings G functions and frame back at its end.</source>
+      <translation>Primera línea de un subprograma: sus parámetros; VAR devuelve el valor, = es lo que vale si no se entrega nada; VAR REAL LIST[3] toma un array de ese tamaño, VAR REAL LIST[] uno de cualquiera. SAVE restablece al final las funciones G y el frame.</translation>
     </message>
     <message>
       <location filename="" />
@@ -1652,6 +1652,11 @@
       <location filename="" />
       <source>Gives an R parameter a value: + - * / DIV MOD, brackets, SIN COS TAN ASIN ACOS ATAN2 SQRT POT ABS LN EXP TRUNC ROUND MINVAL MAXVAL.</source>
       <translation>Da un valor a un parámetro R: + - * / DIV MOD, paréntesis, SIN COS TAN ASIN ACOS ATAN2 SQRT POT ABS LN EXP TRUNC ROUND MINVAL MAXVAL.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Gives n elements of an array one value, without n all that are left.</source>
+      <translation>Da un mismo valor a n elementos de un array; sin n, a todos los que quedan.</translation>
     </message>
     <message>
       <location filename="" />
@@ -2595,6 +2600,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>Rapid, for this block alone; the feed programmed before holds behind it.</source>
+      <translation>Rápido, solo en esta frase; después vale de nuevo el avance programado antes.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>Rapid; all axes end together.</source>
       <translation>Rápido; todos los ejes terminan juntos.</translation>
     </message>
@@ -3300,6 +3310,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>The coordinates of the block count from the machine's second datum, which is fixed_points of its slides in the machine file: where tools are changed.</source>
+      <translation>Las coordenadas de la frase cuentan desde el segundo cero de la máquina, que es fixed_points de sus carros en el archivo de máquina: donde se cambian las herramientas.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>The current point gets these coordinates; nothing moves.</source>
       <translation>El punto actual recibe estas coordenadas; nada se mueve.</translation>
     </message>
@@ -3675,8 +3690,13 @@
     </message>
     <message>
       <location filename="" />
-      <source>Variables of the program: REAL, INT, BOOL, CHAR, STRING; REAL name[5] is an array.</source>
-      <translation>Variables del programa: REAL, INT, BOOL, CHAR, STRING; REAL nombre[5] es una matriz.</translation>
+      <source>Values for the elements of an array one after the other, the last index first; what is left out keeps its value. Behind DEF the brackets may stand alone.</source>
+      <translation>Valores para los elementos de un array, uno tras otro, primero el último índice; lo que se omite conserva su valor. Tras DEF los paréntesis pueden ir solos.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Variables of the program: REAL, INT, BOOL, CHAR, STRING; REAL name[5] is an array, REAL name[2,3] one of two dimensions (three at most). A name begins with two letters or _.</source>
+      <translation>Variables del programa: REAL, INT, BOOL, CHAR, STRING; REAL nombre[5] es un array, REAL nombre[2,3] uno de dos dimensiones (tres como máximo). Un nombre empieza con dos letras o _.</translation>
     </message>
     <message>
       <location filename="" />
@@ -18960,8 +18980,8 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/m_functions.py" />
-      <source>It has no second datum of the machine: count from the machine's zero with M91.</source>
-      <translation>No tiene segundo origen de máquina: cuente desde el cero de máquina con M91.</translation>
+      <source>Give the machine's second datum as fixed_points under [axis.X], [axis.Y] and [axis.Z], or count from the machine's zero with M91.</source>
+      <translation>Indique el segundo cero de la máquina como fixed_points en [axis.X], [axis.Y] y [axis.Z], o cuente desde el cero de máquina con M91.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/m_functions.py" />
@@ -18997,6 +19017,11 @@
       <location filename="core/interpreter/klartext/m_functions.py" />
       <source>M19 stops the spindle at an angle, and %1.</source>
       <translation>M19 para el cabezal en un ángulo, y %1.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/m_functions.py" />
+      <source>M91 and M92 count from different zeros.</source>
+      <translation>M91 y M92 cuentan desde ceros distintos.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/m_functions.py" />
@@ -21510,6 +21535,11 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/control_structures.py" />
+      <source>%1 has %2 elements too few for this list.</source>
+      <translation>A %1 le faltan %2 elementos para esta lista.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/control_structures.py" />
       <source>%1 has no end.</source>
       <translation>%1 no tiene fin.</translation>
     </message>
@@ -21520,13 +21550,13 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/control_structures.py" />
-      <source>%1[%2] is no array of 1 to %3 elements.</source>
-      <translation>%1[%2] no es una matriz de 1 a %3 elementos.</translation>
+      <source>%1%2 is no array of 1 to %3 elements.</source>
+      <translation>%1%2 no es un array de 1 a %3 elementos.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/control_structures.py" />
-      <source>Correct its size.</source>
-      <translation>Corrija su tamaño.</translation>
+      <source>Correct its sizes; %1 are the most.</source>
+      <translation>Corrija sus tamaños; %1 son los máximos.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/control_structures.py" />
@@ -21542,6 +21572,11 @@
       <location filename="core/interpreter/sinumerik/control_structures.py" />
       <source>Look at the lines before it for the reason.</source>
       <translation>Busque la razón en las líneas de antes.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/control_structures.py" />
+      <source>Shorten the list, or enlarge the array.</source>
+      <translation>Acorte la lista o agrande el array.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/control_structures.py" />
@@ -22325,8 +22360,18 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/parameter_passing.py" />
+      <source>%1 has %2 elements, and %3 other sizes.</source>
+      <translation>%1 tiene %2 elementos, y %3 otros tamaños.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/parameter_passing.py" />
       <source>%1 of %2 is VAR and takes a variable.</source>
       <translation>%1 de %2 es VAR y toma una variable.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/parameter_passing.py" />
+      <source>%1 of %2 is an array of VAR, and takes an array.</source>
+      <translation>%1 de %2 es un array de VAR y toma un array.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/parameter_passing.py" />
@@ -22345,8 +22390,18 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/parameter_passing.py" />
+      <source>Give the array the sizes of the PROC line.</source>
+      <translation>Dé al array los tamaños de la línea PROC.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/parameter_passing.py" />
       <source>Hand over a variable or an R parameter.</source>
       <translation>Pase una variable o un parámetro R.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/parameter_passing.py" />
+      <source>Hand over the name of an array, without an index.</source>
+      <translation>Entregue el nombre de un array, sin índice.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/parameter_passing.py" />
@@ -22740,6 +22795,11 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/sinumerik_interpreter.py" />
+      <source>%1: the array has %2 elements too few for this list.</source>
+      <translation>%1: al array le faltan %2 elementos para esta lista.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/sinumerik_interpreter.py" />
       <source>Add the axes.</source>
       <translation>Agregue los ejes.</translation>
     </message>
@@ -22752,6 +22812,11 @@
       <location filename="core/interpreter/sinumerik/sinumerik_interpreter.py" />
       <source>Look at its loops, and lower the passes of its calls.</source>
       <translation>Mire sus bucles y baje las repeticiones de sus llamadas.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/sinumerik_interpreter.py" />
+      <source>Shorten the list.</source>
+      <translation>Acorte la lista.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/sinumerik_interpreter.py" />
@@ -23130,6 +23195,11 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/subprogram_flow.py" />
+      <source>Change a variable of its condition in the loop; Cycle Start runs a part again.</source>
+      <translation>Cambie en el bucle una variable de su condición; Marcha hace otra pieza.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/subprogram_flow.py" />
       <source>Correct the label.</source>
       <translation>Corrija la etiqueta.</translation>
     </message>
@@ -23157,6 +23227,11 @@
       <location filename="core/interpreter/sinumerik/subprogram_flow.py" />
       <source>the label %1 of %2 is not in this program.</source>
       <translation>la etiqueta %1 de %2 no está en este programa.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/subprogram_flow.py" />
+      <source>the program comes round to this jump with nothing changed that a jump goes by: no end.</source>
+      <translation>el programa vuelve a este salto sin que cambie nada de lo que depende un salto: no tiene fin.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/subprogram_flow.py" />
@@ -23795,8 +23870,8 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/variables.py" />
-      <source>Elements are %1[0] to %2[%3].</source>
-      <translation>Los elementos son de %1[0] a %2[%3].</translation>
+      <source>The elements go to %1[%2], and indices begin with 0.</source>
+      <translation>Los elementos llegan hasta %1[%2], y los índices empiezan en 0.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/variables.py" />
@@ -25500,11 +25575,6 @@
     </message>
     <message>
       <location filename="core/language/klartext/structure_blocks.py" />
-      <source>A tool with an index (%1)</source>
-      <translation>Una herramienta con índice (%1)</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/structure_blocks.py" />
       <source>AXIS POS</source>
       <translation>AXIS POS</translation>
     </message>
@@ -25572,6 +25642,11 @@
       <location filename="core/language/klartext/structure_blocks.py" />
       <source>FUNCTION TCPM with AXIS SPAT or PATHCTRL VECTOR</source>
       <translation>FUNCTION TCPM con AXIS SPAT o PATHCTRL VECTOR</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/structure_blocks.py" />
+      <source>Give this edge a row and a number of its own.</source>
+      <translation>Dé a este filo una fila y un número propios.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/structure_blocks.py" />
@@ -25737,6 +25812,11 @@
       <location filename="core/language/klartext/structure_blocks.py" />
       <source>The bracket behind VC is not closed</source>
       <translation>El paréntesis detrás de VC no está cerrado</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/structure_blocks.py" />
+      <source>The tool table has no %1: it keeps one row a tool, without an index.</source>
+      <translation>La tabla de herramientas no tiene %1: guarda una fila por herramienta, sin índice.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/structure_blocks.py" />
@@ -26509,19 +26589,34 @@
       <translation>Escriba dos cifras.</translation>
     </message>
     <message>
+      <location filename="core/language/sinumerik/array_values.py" />
+      <source>REP takes a value, and a number of elements</source>
+      <translation>REP toma un valor y un número de elementos</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/array_values.py" />
+      <source>The list of values is not closed</source>
+      <translation>La lista de valores no está cerrada</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/array_values.py" />
+      <source>Write ) behind the last value.</source>
+      <translation>Escriba ) tras el último valor.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/array_values.py" />
+      <source>Write REP(0).</source>
+      <translation>Escriba REP(0).</translation>
+    </message>
+    <message>
       <location filename="core/language/sinumerik/call_arguments.py" />
       <source>A parameter needs its type and name</source>
       <translation>Un parámetro necesita su tipo y nombre</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/call_arguments.py" />
-      <source>Arrays as parameters are not read here</source>
-      <translation>Las matrices como parámetros no se leen aquí</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/call_arguments.py" />
-      <source>Pass their values.</source>
-      <translation>Pase sus valores.</translation>
+      <source>An array is handed over with VAR and whole numbers as its sizes</source>
+      <translation>Un array se entrega con VAR y números enteros como tamaños</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/call_arguments.py" />
@@ -26542,6 +26637,11 @@
       <location filename="core/language/sinumerik/call_arguments.py" />
       <source>Write PROC NAME(REAL LENGTH).</source>
       <translation>Escriba PROC NAME(REAL LENGTH).</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/call_arguments.py" />
+      <source>Write PROC NAME(VAR REAL LIST[3]).</source>
+      <translation>Escriba PROC NAME(VAR REAL LIST[3]).</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/call_arguments.py" />
@@ -26572,11 +26672,6 @@
       <location filename="core/language/sinumerik/program_jumps.py" />
       <source>A jump needs a label</source>
       <translation>Un salto necesita una etiqueta</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/program_jumps.py" />
-      <source>An array has one size, in square brackets</source>
-      <translation>Una matriz tiene un tamaño, entre corchetes</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/program_jumps.py" />
@@ -26652,11 +26747,6 @@
       <location filename="core/language/sinumerik/program_jumps.py" />
       <source>Write CASE R1 OF 1 GOTOF A.</source>
       <translation>Escriba CASE R1 OF 1 GOTOF A.</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/program_jumps.py" />
-      <source>Write DEF REAL A[5].</source>
-      <translation>Escriba DEF REAL A[5].</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/program_jumps.py" />

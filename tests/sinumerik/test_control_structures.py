@@ -87,7 +87,36 @@ def test_where_a_program_goes_on(text: str, value: float) -> None:
 
 def test_an_endless_loop_is_an_error() -> None:
     ran = run("LOOP\nR1=1\nENDLOOP\nM30")
-    assert [each.code for each in ran.found] == ["too-many-blocks"]
+    assert [(each.code, each.line) for each in ran.found] == [("endless-loop", 3)]
+
+
+@pytest.mark.parametrize(
+    ("text", "line"),
+    [
+        ("AA: G0 Z=IC(-0.001)\nGOTOB AA\nM30", 2),  # wherever the axes stand
+        ("G0 Z1\nGOTOS", 2),
+        ("R1=1\nAA: R1=3-R1\nIF R1>0 GOTOB AA\nM30", 3),  # a round of two
+        ("WHILE TRUE\nFOR R1=1 TO 3\nG0 Z=R1\nENDFOR\nENDWHILE\nM30", 4),  # the first jump that comes round
+        ("REPEAT\nR1=1\nUNTIL R1==2\nM30", 3),
+    ],
+)
+def test_a_jump_that_comes_round_unchanged_is_told(text: str, line: int) -> None:
+    ran = run(text)
+    assert [(each.code, each.line) for each in ran.found] == [("endless-loop", line)]
+    assert len(ran.blocks) < 20
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "R1=0\nAA: R1=R1+1\nIF R1<400 GOTOB AA\nM30",
+        "DEF REAL LIST[2]\nAA: LIST[1]=LIST[1]+1\nIF LIST[1]<40 GOTOB AA\nM30",
+        "FOR R1=1 TO 9\nFOR R2=1 TO 9\nENDFOR\nENDFOR\nM30",
+        "G0 Z50\nWHILE $AA_IW[Z]>10\nG0 Z=IC(-1)\nENDWHILE\nM30",  # goes by where it stands
+    ],
+)
+def test_a_loop_that_ends_is_none(text: str) -> None:
+    assert run(text).errors == []
 
 
 def test_structures_in_a_subprogram_and_ret() -> None:

@@ -83,9 +83,74 @@ def test_save_brings_back_g_functions_and_frame() -> None:
 def test_arrays_and_r_by_index() -> None:
     text = "DEF REAL DEPTHS[3]=2\nDEPTHS[1]=-4\nR2=1\nR[R2+1]=8\nG0 Z=DEPTHS[2]\nZ=R[2]\nZ=R2\nZ=DEPTHS[R2/8]"
     assert stops(text) == [2, 8, 8, -4]  # R2 is 8 from the fourth line on
-    assert refused("DEF REAL DD[2]\nDD[2]=1").code == "12550"
-    assert refused("DEF REAL DD[2]\nG0 Z=DD[2]").code == "array-index"
-    assert refused("R1=0.5\nG0 Z=R[R1]").code == "array-index"
+    assert refused("DEF REAL DD[2]\nDD[2]=1").code == "17020"
+    assert refused("DEF REAL DD[2]\nG0 Z=DD[2]").code == "17020"
+    assert refused("R1=0.5\nG0 Z=R[R1]").code == "17020"
+
+
+@pytest.mark.parametrize(
+    ("text", "ends"),
+    [
+        ("DEF INT AA[2,3]=(1,2,3,4)\nG0 Z=AA[0,2]\nZ=AA[1,0]\nZ=AA[1,1]", [3, 4, 0]),  # what is left is 0
+        ("DEF REAL AA[3]=SET(1,2,3)\nAA[1]=REP(7)\nG0 Z=AA[0]\nZ=AA[1]+AA[2]", [1, 14]),
+        ("R[5]=SET(1,,3)\nR6=9\nG0 Z=R5+R6+R7", [13]),
+        ("DEF REAL AA[2,2,2]\nAA[1,0,1]=4\nG0 Z=AA[1,0,1]+AA[1,1,0]", [4]),
+        ("DEF REAL AA[4]=REP(2,2)\nG0 Z=AA[1]\nZ=AA[2]", [2, 0]),
+    ],
+)
+def test_lists_fill_arrays(text: str, ends: list[float]) -> None:
+    assert stops(text) == ends
+
+
+@pytest.mark.parametrize(
+    ("text", "code"),
+    [
+        ("DEF REAL AA[2,2]\nG0 Z=AA[2,0]", "17020"),
+        ("DEF REAL AA[2,2]\nG0 Z=AA[0,2]", "17030"),
+        ("DEF REAL AA[2,2]\nG0 Z=AA[0]", "17030"),
+        ("DEF REAL AA[2]\nAA[1]=SET(1,2)", "array-values"),
+        ("DEF REAL AA[2]\nBB[0]=SET(1)", "12550"),
+        ("DEF REAL AA[2]\nAA[0]=SET(1", "12080"),
+        ("DEF REAL AA[0]", "17020"),
+        ("DEF REAL AA[101,100]", "17020"),
+        ("DEF REAL AA[2,2,2,2]", "17020"),
+        ("R[1,2]=3", "17030"),
+        ("R[299]=SET(1,2)", "array-values"),
+        ("DEF REAL AA[2]=REP(1,2,3)", "12080"),
+    ],
+)
+def test_arrays_that_do_not_fit(text: str, code: str) -> None:
+    assert refused(text).code == code
+
+
+SWAP = spf("SWAP", "PROC SWAP(VAR REAL LIST[2], VAR REAL GRID[,2])\nDEF REAL HELD\n"
+           "HELD=LIST[0]\nLIST[0]=GRID[1,0]\nGRID[1,0]=HELD\nM17\n")  # fmt: skip
+
+
+def test_an_array_of_var_comes_back() -> None:
+    text = "DEF REAL ONE[2]=(3,4), TWO[3,2]=(0,0,8)\nSWAP(ONE,TWO)\nG0 Z=ONE[0]\nZ=TWO[1,0]\nZ=ONE[1]"
+    assert stops(source(text, SWAP)) == [8, 3, 4]
+
+
+@pytest.mark.parametrize(
+    ("call", "code"),
+    [
+        ("SWAP(ONE,ONE)", "12360"),  # one dimension where two are asked for
+        ("SWAP(TWO,TWO)", "12360"),
+        ("SWAP(LONG,TWO)", "12360"),
+        ("SWAP(ONE[0],TWO)", "12320"),
+        ("SWAP(3,TWO)", "12320"),
+        ("SWAP(ONE)", "12320"),
+    ],
+)
+def test_arrays_of_var_that_do_not_fit(call: str, code: str) -> None:
+    found = refused(source(f"DEF REAL ONE[2], TWO[3,2], LONG[3]\n{call}", SWAP))
+    assert (found.code, found.line) == (code, 2)
+
+
+def test_an_array_without_var_is_told() -> None:
+    bare = spf("BARE", "PROC BARE(REAL LIST[2])\nM17\n")
+    assert "with VAR" in refused(source("DEF REAL ONE[2]\nBARE(ONE)", bare)).message
 
 
 def test_mcall_acts_behind_each_move_until_mcall_alone() -> None:

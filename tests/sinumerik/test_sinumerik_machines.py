@@ -138,9 +138,9 @@ def test_fixed_points_refused(new: str, told: str) -> None:
     assert told in str(error.value)
 
 
-def test_fixed_points_need_no_order_and_a_mill_has_none() -> None:
+def test_fixed_points_need_no_order_and_a_mill_has_one() -> None:
     machine = changed("fixed_points = [299.0] ", "fixed_points = [100.0, 20.0, -20.0, 300.0] ")
     assert machine.axes[0].fixed_points == (100.0, 20.0, -20.0, 300.0)
     mill = resources.machine_file("ac-table-mill.toml")
-    with pytest.raises(MachineFileError, match="only a lathe goes to fixed points"):
-        parse_machine(mill.replace("[axis.X]\n", "[axis.X]\nfixed_points = [0.0]\n"), "mill.toml")
+    with pytest.raises(MachineFileError, match="a mill has one a slide"):
+        parse_machine(mill.replace("fixed_points = [-100.0]", "fixed_points = [0.0, 1.0]"), "mill.toml")

@@ -6,7 +6,7 @@ import math
 from copy import deepcopy
 from dataclasses import replace
 
-from core.interpreter.endless_loops import LoopWatch
+from core.interpreter.endless_loops import ENDLESS, LoopWatch
 from core.interpreter.klartext import q_functions, system_data, text_values, word_values
 from core.interpreter.klartext.klartext_program import Flow
 from core.interpreter.klartext.klartext_state import State
@@ -27,9 +27,6 @@ def go_on(state: State, flow: Flow, line: int, node: nodes.Label | nodes.Call | 
         flow.call(line, node, math.floor(times))
     elif texts_agree(state, node) if node.texts else q_functions.jumps(state, node):
         flow.jump(replace(node, name=_label(state, flow, node.name, subprogram=False)))
-
-
-ENDLESS = "endless-loop"
 
 
 class EndlessJumps:

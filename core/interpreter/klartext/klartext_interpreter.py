@@ -305,8 +305,8 @@ class Interpreter(Interpretation):
         feed_rates.switch(state, node.codes)
         if any(code.number in m_functions.BEFORE for code in node.codes):
             yield from path.between(lambda: m_functions.before(state, node.codes))
-        machine = any(code.number == m_functions.M91 for code in node.codes)
-        yield from path.move(node, machine=machine, corner_behind=self._corner_is_next())
+        datum = m_functions.datum(state, node.codes)
+        yield from path.move(node, datum=datum, corner_behind=self._corner_is_next())
         yield from self._behind(node.codes, comment)
         moved = any(word.axis in "XY" for word in node.axes) or bool(node.words)
         yield from self._with_cycle(node.codes, node.column, moved=moved)

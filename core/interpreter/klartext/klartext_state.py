@@ -192,9 +192,9 @@ class State:
         """F as mm/s: mm/min, or tenths of an inch a minute in an INCH program."""
         return word / 60.0 if self.scale == 1.0 else word * 0.1 * MM_PER_INCH / 60.0
 
-    def refuse(self, column: int, code: str, message: str, hint: str) -> ProgramError:
-        """An error of the line that is being executed, to be raised: at this column."""
-        return fault(self.line, column, code, message, hint)
+    def refuse(self, column: int, code: str, message: str, hint: str, line: int = 0) -> ProgramError:
+        """An error to be raised, at this column of the line that is being executed, or of ``line``."""
+        return fault(line or self.line, column, code, message, hint)
 
     def tell_once(self, column: int, severity: Severity, code: str, text: str, hint: str = "") -> None:
         """A finding that is the same wherever it stands: told at its first place."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 from core.geometry.plane_figure import Figure
 from core.interpreter import actions
@@ -23,7 +23,7 @@ from core.language.klartext.klartext_faults import (
 )
 from core.language.klartext.klartext_nodes import MCode
 
-M19, M89, M91, M99 = 19, 89, 91, 99
+M19, M89, M91, M92, M99 = 19, 89, 91, 92, 99
 FEEDS = frozenset({103, 136, 137})  # of ``feed_rates``: they count as soon as they are read
 ENDS_NOTHING = frozenset({102, 115, 145})  # they end what is not built
 SISTER_TOOL = 101
@@ -31,6 +31,7 @@ BEFORE = frozenset({3, 4, 8, 13, 14, SISTER_TOOL, 116, 117, 126, 127, 128, 129, 
 ENDS = frozenset({2, 30})
 _BEHIND = frozenset({0, 1, 2, 5, 6, 9, M19, 30})
 _OF_THE_BLOCK = frozenset({M89, M91, M99})
+_SECOND_DATUM = frozenset({M92})  # where the machine file has one
 
 # They steer what this control does in its own way anyhow: smoothing and look-ahead (90, 112, 113, 120, 124),
 # small contour steps and open corners (97, 98), feed at arcs (109, 110, 111), messages (107, 108), the
@@ -45,17 +46,20 @@ UNHEEDED = frozenset(
 _NOT_BUILT = frozenset({104, 114, 130, 138, 142, 143, 144, 150})
 _TURNS = {3: 1, 4: -1, 13: 1, 14: -1}
 _OWN = "It is the machine builder's: give it an output under [m_codes], or take it out."
-_ADVICE = {92: "It has no second datum of the machine: count from the machine's zero with M91."}
+_ADVICE = {
+    M92: "Give the machine's second datum as fixed_points under [axis.X], [axis.Y] and [axis.Z], "
+    "or count from the machine's zero with M91."
+}
 
 
 def check(state: State, codes: Sequence[MCode]) -> None:
     """Raises ProgramError for codes this machine lacks, contradictions, and what M128 forbids."""
     limits = state.setup.limits
     known = BEFORE | _BEHIND | _OF_THE_BLOCK | UNHEEDED | limits.m_outputs.keys() | limits.m_ignored
+    known |= _SECOND_DATUM if limits.fixed_points else frozenset()
     for position, code in enumerate(codes):
-        if code.number in {M91, 92} and state.m128:
-            text = f"M{code.number} while M128 is on."
-            raise state.refuse(code.column, NOT_WITH_M128, text, "Switch it off with M129 before.")
+        if code.number in {M91, M92}:
+            _check_datum(state, code, codes)
         if code.number == M19 and not limits.spindle_oriented:
             text = f"M19 stops the spindle at an angle, and {UNORIENTED}."
             raise state.refuse(
@@ -79,6 +83,24 @@ def check(state: State, codes: Sequence[MCode]) -> None:
     if len(turning) > 1:
         text = "More than one M function of the block steers the spindle."
         raise state.refuse(turning[1].column, CONTRADICTION, text, "Take one out.")
+
+
+def _check_datum(state: State, code: MCode, codes: Sequence[MCode]) -> None:
+    """M91 and M92: not while M128 is on, and one of both."""
+    if state.m128:
+        text = f"M{code.number} while M128 is on."
+        raise state.refuse(code.column, NOT_WITH_M128, text, "Switch it off with M129 before.")
+    if {M91, M92} <= {other.number for other in codes}:
+        text = "M91 and M92 count from different zeros."
+        raise state.refuse(code.column, CONTRADICTION, text, "Take one out.")
+
+
+def datum(state: State, codes: Sequence[MCode]) -> Mapping[str, float] | None:
+    """Machine positions of the slides from which M91 or M92 counts; None for the workpiece's zero."""
+    numbers = {code.number for code in codes}
+    if M92 in numbers:
+        return {axis: points[0] for axis, points in state.setup.limits.fixed_points.items() if points}
+    return {} if M91 in numbers else None
 
 
 def before(state: State, codes: Sequence[MCode]) -> Iterator[Block]:

@@ -22,6 +22,7 @@ from core.interpreter.klartext.klartext_state import SAME_POINT, SLIDES, State
 from core.interpreter.klartext.path_elements import PathElement, elements, goal, pole_plane
 from core.interpreter.klartext.radius_compensation import Contour, Entry, way_in, way_out
 from core.interpreter.klartext.tip_control import swivelled
+from core.language.diagnostics import ProgramError
 from core.language.klartext.klartext_faults import (
     COMPENSATION,
     PREVIOUS,
@@ -54,15 +55,20 @@ class _Approach:
 
 
 _Waiting = PathElement | _Between | _Approach
+_BETWEEN = "Put it between two elements of the contour."
 
 
 class PathRunner:
-    """Makes the blocks of path functions. ``machine`` in ``move`` says that M91 counts."""
+    """Makes the blocks of path functions.
+
+    ``datum`` in ``move`` has the machine positions from which M91 and M92 count; None without them.
+    """
 
     def __init__(self, state: State) -> None:
         self._state = state
         self._waiting: list[_Waiting] = []
         self._corner: Corner | None = None
+        self._corner_line = 0
         self._side = ""  # L or R while radius compensation is on
         self._end: Vector | None = None  # of the path that waits, in the program's coordinates
         self._direction: Point | None = None  # in which the path has come there
@@ -94,10 +100,8 @@ class PathRunner:
         last = next((each for each in reversed(self._waiting) if isinstance(each, PathElement)), None)
         if last is None or last.flat is None or self._corner is not None:
             text = f"{node.form} needs a path in the working plane before it."
-            raise self._state.refuse(
-                node.column, ROUNDING, text, "Put it between two elements of the contour."
-            )
-        self._corner = node
+            raise self._state.refuse(node.column, ROUNDING, text, _BETWEEN)
+        self._corner, self._corner_line = node, self._state.line
 
     def between(self, event: Event) -> Iterator[Block]:
         """What is done between two elements, or at once where nothing waits."""
@@ -124,7 +128,7 @@ class PathRunner:
 
     # --- moves --------------------------------------------------------------------------------------------
 
-    def move(self, node: Move, *, machine: bool, corner_behind: bool) -> Iterator[Block]:
+    def move(self, node: Move, *, datum: Mapping[str, float] | None, corner_behind: bool) -> Iterator[Block]:
         """The blocks of a path function, and of what has waited for it. Raises ProgramError."""
         if not node.axes and not node.words and node.form == "L":
             if node.feed is not None:
@@ -134,9 +138,9 @@ class PathRunner:
         self._demand_axes(node)
         if node.form == "LN":
             self._demand_uncompensated(node)
-        if machine:
+        if datum is not None:
             yield from self.finish(node.column, "M91")
-            yield from self._by_machine(node)
+            yield from self._by_machine(node, datum)
             return
         made = list(self._elements(node))
         if node.form.startswith("APPR"):
@@ -250,16 +254,14 @@ class PathRunner:
         size *= self._state.scale
         if first is None or last is None:
             text = f"{corner.form} needs a path in the working plane behind it."
-            raise self._state.refuse(
-                corner.column, ROUNDING, text, "Put it between two elements of the contour."
-            )
+            raise self._no_corner(corner, text, _BETWEEN)
         if size <= SAME_POINT:
             return after
         try:
             cut = rounding(first, last, size) if corner.form == "RND" else chamfer(first, last, size)
         except CornerError as problem:
             text = f"{corner.form} {size:g} mm: {problem}."
-            raise self._state.refuse(corner.column, ROUNDING, text, "Make it smaller.") from None
+            raise self._no_corner(corner, text, "Make it smaller.") from None
         feed = before.feed if corner.feed is None else self._feed_of(corner)
         z = before.end[2]
         self._waiting[at] = _reshaped(before, cut[0], before.start[2], z)
@@ -289,9 +291,11 @@ class PathRunner:
         corner, self._corner = self._corner, None
         if corner is not None:
             text = f"{corner.form} needs a path in the working plane behind it."
-            raise self._state.refuse(
-                corner.column, ROUNDING, text, "Put it between two elements of the contour."
-            )
+            raise self._no_corner(corner, text, _BETWEEN)
+
+    def _no_corner(self, corner: Corner, text: str, hint: str) -> ProgramError:
+        """Told where RND or CHF stands, though the element behind it was read before that was known."""
+        return self._state.refuse(corner.column, ROUNDING, text, hint, self._corner_line)
 
     def _close(self, leave: Move | None) -> Iterator[Block]:
         """The contour that has been collected, compensated, and the way off it where DEP says one."""
@@ -371,8 +375,8 @@ class PathRunner:
         rate = None if each.feed is None else state.path_feed(each.feed)
         return state.move(Kind.PLANE_ARC, goals, rate, way)
 
-    def _by_machine(self, node: Move) -> Iterator[Block]:
-        """M91: the words count from the machine's own zero."""
+    def _by_machine(self, node: Move, datum: Mapping[str, float]) -> Iterator[Block]:
+        """M91 and M92: the words count from the machine's own zero, or from its second datum."""
         state, feed = self._state, self._take_feed(node)
         if feed is not None:
             _warn(state, node)
@@ -380,7 +384,7 @@ class PathRunner:
         for axis, now in zip(SLIDES, state.slides, strict=True):
             if (word := node.word(axis)) is not None:
                 value = word_values.coordinate(state, word)
-                goals[axis] = now + value if word.incremental else value
+                goals[axis] = value + (now if word.incremental else datum.get(axis, 0.0))
         ways = [goals.get(name, state.at[name]) - state.at[name] for name in SLIDES]
         linear = any(abs(way) > SAME_POINT for way in ways)
         feed = plunged(state, feed, math.hypot(*ways), -ways[2])

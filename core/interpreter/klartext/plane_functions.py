@@ -169,6 +169,8 @@ def plane(state: State, node: Plane) -> Iterator[Block]:
     """
     _demand_possible(state, node)
     made = None if node.form == "RESET" else working_plane(state, node)
+    if made is not None and made.frame != state.kinematics.basic:
+        _demand_tool_axis(state, node)
     targets = state.kinematics.zero if made is None else made.targets
     way = node.positioning.way or "STAY"
     feed = word_values.feed_word(state, node.positioning.feed, node.column) if way != "STAY" else None
@@ -217,7 +219,11 @@ def _demand_possible(state: State, node: Plane) -> None:
     if state.m128:
         text = "M128 is on."
         raise state.refuse(node.column, M128_ON, text, "Switch it off with M129 before.")
-    if not state.tool_axis and node.form != "RESET":
+
+
+def _demand_tool_axis(state: State, node: Plane) -> None:
+    """A plane that is not tilted needs none: programs begin with PLANE SPATIAL SPA+0 SPB+0 SPC+0 STAY."""
+    if not state.tool_axis:
         text = "No TOOL CALL has named a tool axis."
         raise state.refuse(node.column, TOOL_AXIS_MISSING, text, "Write TOOL CALL n Z before.")
 

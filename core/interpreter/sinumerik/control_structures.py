@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from math import prod
 from typing import Protocol
 
 from core.interpreter.sinumerik.sinumerik_state import State
-from core.interpreter.sinumerik.variables import LARGEST_ARRAY
+from core.interpreter.sinumerik.variables import LARGEST_ARRAY, MOST_DIMENSIONS
 from core.language.diagnostics import ProgramError
 from core.language.formulas import Formula, Parameter
-from core.language.sinumerik.program_jumps import Jump, Steering
-from core.language.sinumerik.sinumerik_alarms import NESTING, NO_TARGET, NOT_DEFINED, fault
+from core.language.sinumerik.program_jumps import Defined, Jump, Steering
+from core.language.sinumerik.sinumerik_alarms import FIRST_INDEX, NESTING, NO_TARGET, NOT_DEFINED, fault
 from core.language.sinumerik.sinumerik_words import Line
 
 _ENDS = {
@@ -104,15 +105,27 @@ def _case(line: Line, jump: Jump, state: State, program: Lines, at: int) -> int 
 def _define(line: Line, jump: Jump, state: State) -> None:
     """DEF: numbers, arrays, and texts that MSG shows."""
     scope = state.variables.scope
-    for name, formula, kind, length, text in jump.defined:
-        if kind == "STRING":
-            scope.texts[name] = text
+    for each in jump.defined:
+        if each.kind == "STRING":
+            scope.texts[each.name] = each.text
             continue
-        size = None if length is None else int(_worth(line, jump, state, length))
-        if size is not None and not 1 <= size <= LARGEST_ARRAY:
-            told = f"{name}[{size}] is no array of 1 to {LARGEST_ARRAY:,} elements."
-            raise _refused(line, jump, "array-index", told, "Correct its size.")
-        scope.define(name, 0.0 if formula is None else _worth(line, jump, state, formula), size)
+        first = 0.0 if each.formula is None else _worth(line, jump, state, each.formula)
+        scope.define(each.name, first, _sizes(line, jump, state, each))
+        if each.values is not None:
+            left = state.variables.fill(each.name, scope.elements(each.name)[0], each.values,
+                                        lambda asked: _worth(line, jump, state, asked))  # fmt: skip
+            if left:
+                told = f"{each.name} has {left} elements too few for this list."
+                raise _refused(line, jump, "array-values", told, "Shorten the list, or enlarge the array.")
+
+
+def _sizes(line: Line, jump: Jump, state: State, each: Defined) -> tuple[int, ...]:
+    """How many elements an array has in each dimension. Raises ProgramError for none, and for too many."""
+    sizes = tuple(int(_worth(line, jump, state, size)) for size in each.sizes)
+    if len(sizes) > MOST_DIMENSIONS or min(sizes, default=1) < 1 or prod(sizes) > LARGEST_ARRAY:
+        told = f"{each.name}{list(sizes)} is no array of 1 to {LARGEST_ARRAY:,} elements."
+        raise _refused(line, jump, FIRST_INDEX, told, f"Correct its sizes; {MOST_DIMENSIONS} are the most.")
+    return sizes
 
 
 def _message(line: Line, jump: Jump, state: State) -> str:

@@ -19,6 +19,10 @@ from core.language.sinumerik.sinumerik_words import Line
 TOO_MANY = 12330
 """The alarm of a call whose arguments do not fit the parameters."""
 
+NO_VARIABLE = 12320
+OTHER_SIZE = 12360
+"""Those of an argument of VAR that is no variable, and of an array with other sizes; recalled as 12330 is."""
+
 _GROUPS = ("absolute", "metric", "diameter", "per_rev", "feed", "settable")
 
 
@@ -75,6 +79,9 @@ def _hand_over(
     references: list[tuple[str, str]],
 ) -> None:
     given = argument if argument is not None and argument.given else parameter.default
+    if parameter.sizes:
+        _hand_over_array(state, line, parameter, argument, scope, references)
+        return
     if parameter.by_reference:
         references.append((parameter.name, _place(state, line, parameter, argument)))
     if given is None:  # what is left out is 0, and an empty text
@@ -83,6 +90,32 @@ def _hand_over(
         scope.texts[parameter.name] = given.text
     elif given.formula is not None:
         scope.numbers[parameter.name] = _value(state, line, parameter, given)
+
+
+def _hand_over_array(
+    state: State,
+    line: Line,
+    parameter: Parameter,
+    argument: Argument | None,
+    scope: Scope,
+    references: list[tuple[str, str]],
+) -> None:
+    """An array of VAR: its elements go in, and come back element by element."""
+    outer, formula = state.variables.scope, None if argument is None else argument.formula
+    name = formula.letters if isinstance(formula, Variable) and formula.number is None else ""
+    sizes = outer.sizes.get(name, ())
+    column = line.call_column if argument is None else argument.column
+    if not sizes:
+        text = f"{parameter.name} of {line.call} is an array of VAR, and takes an array."
+        raise _refused(line, column, NO_VARIABLE, text, "Hand over the name of an array, without an index.")
+    asked = tuple(size if each is None else each for each, size in zip(parameter.sizes, sizes, strict=False))
+    if asked != sizes or len(parameter.sizes) != len(sizes):
+        text = f"{name} has {' by '.join(map(str, sizes))} elements, and {parameter.name} other sizes."
+        raise _refused(line, column, OTHER_SIZE, text, "Give the array the sizes of the PROC line.")
+    scope.define(parameter.name, 0.0, sizes)
+    for inside, outside in zip(scope.elements(parameter.name), outer.elements(name), strict=True):
+        scope.numbers[inside] = outer.numbers[outside]
+        references.append((inside, outside))
 
 
 def _keep_nothing(parameter: Parameter, scope: Scope) -> None:

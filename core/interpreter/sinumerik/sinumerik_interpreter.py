@@ -10,6 +10,7 @@ from core.interpreter.actions import Dwell, ProgramEnd, ProgramStop
 from core.interpreter.checkpoint import Begin, Checkpoint
 from core.interpreter.diagnostic_log import Log
 from core.interpreter.elementary_blocks import Block
+from core.interpreter.endless_loops import ENDLESS
 from core.interpreter.interpretation import MOST_BLOCKS, MOST_LINES, MOST_LINES_WITHOUT_BLOCK, Interpretation
 from core.interpreter.job_setup import Setup
 from core.interpreter.lathe_approach import approach_blocks
@@ -214,9 +215,12 @@ class Interpreter(Interpretation):
             if state_call := self._modal_call(statement):
                 yield from self._call(state_call, modal=True)
         except ProgramError as problem:
-            self._refuse(problem.diagnostic)
+            if (
+                problem.diagnostic.code != ENDLESS or not self._stopped
+            ):  # else it may come of the error before
+                self._refuse(problem.diagnostic)
             ends = False
-            if problem.diagnostic.code == "recursion":
+            if problem.diagnostic.code in {"recursion", ENDLESS}:
                 self._flow.end()
         self._steer(line, ends=ends)
 
@@ -427,10 +431,34 @@ class Interpreter(Interpretation):
 def _set_parameters(state: State, statement: Statement) -> None:
     """R parameters and variables that the block sets. Raises ProgramError for a name that no DEF has told."""
     for word in statement.sets:
-        name, value = _place(state, statement, word), state.number(statement, word)
-        if not state.variables.keep(name, value):
-            text = f"the name {name} is not defined: it is no word, and no variable of this program."
-            raise statement.refuse(word, NOT_DEFINED, text, f"Write DEF REAL {word.name} before it.")
+        name = _place(state, statement, word)
+        if word.values is not None:
+            _fill(state, statement, word, name)
+        elif not state.variables.keep(name, state.number(statement, word)):
+            raise _no_place(state, statement, word, name)
+
+
+def _no_place(state: State, statement: Statement, word: Word, name: str) -> ProgramError:
+    if word.name in state.variables.scope.sizes:
+        return statement.refuse(word, *state.variables.missing(word.name, name))
+    text = f"the name {name} is not defined: it is no word, and no variable of this program."
+    return statement.refuse(word, NOT_DEFINED, text, f"Write DEF REAL {word.name} before it.")
+
+
+def _fill(state: State, statement: Statement, word: Word, name: str) -> None:
+    """SET and REP: elements from this place on. Raises ProgramError where the array is too short."""
+    letters = "R" if word.name == "R0" else word.name
+    if name not in state.variables.scope.numbers and letters != "R":
+        raise _no_place(state, statement, word, name)
+
+    def refuse(code: int | str, text: str, hint: str) -> ProgramError:
+        return statement.refuse(word, code, text, hint)
+
+    assert word.values is not None
+    left = state.variables.fill(letters, name, word.values, lambda asked: state.worth(asked, refuse))
+    if left:
+        text = f"{word.text}: the array has {left} elements too few for this list."
+        raise refuse("array-values", text, "Shorten the list.")
 
 
 def _place(state: State, statement: Statement, word: Word) -> str:

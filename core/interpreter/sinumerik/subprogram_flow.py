@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from copy import deepcopy
 from dataclasses import dataclass, field
 
+from core.interpreter.endless_loops import ENDLESS, LoopWatch
 from core.interpreter.interpretation import DEEPEST_CALL
 from core.interpreter.sinumerik.control_structures import belonging, find_label, follow
 from core.interpreter.sinumerik.parameter_passing import Saved, handed_over
@@ -114,6 +116,8 @@ class Flow:
         self._main = Routine(source, found[0].lines, third_axis=axis)
         start = found[0].lines.start
         self._calls = [_Call(self._main, start, 1, 0, scope=state.variables.scope)]
+        read = (source, *source.subprograms)
+        self._loops = None if any(map(_reads_positions, read)) else LoopWatch()
 
     @property
     def called(self) -> bool:
@@ -227,8 +231,29 @@ class Flow:
         if jump.steering is Steering.RETURN:
             self.back()
         elif at is not None:
-            call.routine.repeats = call.routine.repeats or at <= call.at
+            back = at < call.at
+            call.routine.repeats = call.routine.repeats or back
             call.at = at
+            if back and self._comes_round():
+                text = (
+                    "the program comes round to this jump with nothing changed that a jump goes by: no end."
+                )
+                hint = "Change a variable of its condition in the loop; Cycle Start runs a part again."
+                raise _steering_fault(line, jump, ENDLESS, text, hint)
+
+    def _comes_round(self) -> bool:
+        """Whether a jump back has met all that jumps go by before: places, variables, tool and edge."""
+        if self._loops is None:
+            return False
+        state = self._state
+        places = [
+            (id(call.routine), call.at, call.passes, [(part.start, part.left) for part in call.repeats])
+            for call in self._calls
+        ]
+        tool = state.modal.tool, state.modal.edge, state.modal.metric, state.edge, state.modal_call
+        held: list[dict[int, float] | dict[str, float]] = [state.variables.r]
+        held += [call.scope.numbers for call in self._calls]
+        return self._loops.comes_round((places, tool, held), lambda: (places, tool, deepcopy(held)))
 
     def _begin_repeat(self, call: _Call, line: Line, jump: Jump, state: State) -> None:
         """REPEAT and REPEATB: the lines from one label to another, or to here; or the block of the label."""
@@ -285,6 +310,11 @@ def _end_label(routine: Routine, start: int, here: int) -> int:
         if routine.line(at).label == "ENDLABEL":
             return at + 1
     return routine.lines.stop
+
+
+def _reads_positions(source: Source) -> bool:
+    """Whether a program asks where the axes stand, so that jumps may go by what no variable shows."""
+    return any("$AA_I" in line.upper() or "$P_EP" in line.upper() for line in source.lines)
 
 
 def ends_main(statement: Statement, *, called: bool) -> bool:

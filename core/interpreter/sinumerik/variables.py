@@ -4,12 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from itertools import product
 
 from core.language.diagnostics import ProgramError
-from core.language.formulas import Formula, Parameter
-from core.language.sinumerik.sinumerik_alarms import NOT_DEFINED
+from core.language.formulas import INDICES, Formula, Operation, Parameter
+from core.language.sinumerik.array_values import Values
+from core.language.sinumerik.sinumerik_alarms import FIRST_INDEX, NOT_DEFINED, OTHER_INDEX
+from core.language.sinumerik.sinumerik_words import MOST_R
 
 LARGEST_ARRAY = 10_000
+MOST_DIMENSIONS = 3
 
 Refuse = Callable[[int | str, str, str], ProgramError]
 """Makes the error to raise of its code, text and hint."""
@@ -17,19 +21,24 @@ Refuse = Callable[[int | str, str, str], ProgramError]
 
 @dataclass(slots=True)
 class Scope:
-    """What DEF and PROC have named in one program: numbers by name, elements as ``NAME[2]``, texts."""
+    """What DEF and PROC have named in one program: numbers by name, elements as ``NAME[2,0]``, texts."""
 
     numbers: dict[str, float] = field(default_factory=dict)
     texts: dict[str, str] = field(default_factory=dict)
-    sizes: dict[str, int] = field(default_factory=dict)
+    sizes: dict[str, tuple[int, ...]] = field(default_factory=dict)
 
-    def define(self, name: str, value: float, size: int | None) -> None:
-        """A number, or an array of ``size`` elements that all have this value."""
-        if size is None:
+    def define(self, name: str, value: float, sizes: tuple[int, ...]) -> None:
+        """A number, or with ``sizes`` an array whose elements all have this value."""
+        if not sizes:
             self.numbers[name] = value
             return
-        self.sizes[name] = size
-        self.numbers.update((f"{name}[{i}]", value) for i in range(size))
+        self.sizes[name] = sizes
+        self.numbers.update(dict.fromkeys(self.elements(name), value))
+
+    def elements(self, name: str) -> list[str]:
+        """The places of an array in the order in which a list fills them: the last index runs first."""
+        places = product(*(range(size) for size in self.sizes[name]))
+        return [f"{name}[{','.join(map(str, each))}]" for each in places]
 
 
 class Variables:
@@ -50,8 +59,21 @@ class Variables:
         else:
             found = self.scope.numbers.get(name)
         if found is None:
-            raise refuse(*self._missing(asked, name))
+            raise refuse(*self.missing(asked.letters, name))
         return found
+
+    def fill(self, letters: str, first: str, values: Values, worth: Callable[[Formula], float]) -> int:
+        """Give elements their values from the place ``first`` on; how many of them had no element left."""
+        places = _r_places() if letters == "R" else self.scope.elements(letters)
+        places = places[places.index(first) :]
+        formulas = list(values.formulas)
+        if values.repeated:
+            times = len(places) if values.times is None else round(worth(values.times))
+            formulas *= max(times, 0)
+        for place, formula in zip(places, formulas, strict=False):
+            if formula is not None:
+                self.keep(place, worth(formula))
+        return max(len(formulas) - len(places), 0)
 
     def keep(self, name: str, value: float) -> bool:
         """This place holds a value from now on; False where no DEF has named it."""
@@ -63,14 +85,19 @@ class Variables:
             return False
         return True
 
-    def _missing(self, asked: Parameter, name: str) -> tuple[int | str, str, str]:
+    def missing(self, letters: str, name: str) -> tuple[int | str, str, str]:
+        """Why there is no number at this place: code, text and hint."""
         if name in self.scope.texts:
             return "text-variable", f"{name} is a text, and no number.", "Use a variable of REAL or INT."
-        if asked.letters in self.scope.sizes:
-            size = self.scope.sizes[asked.letters]
-            text = f"{name} is no element of {asked.letters}, which has {size}."
-            return "array-index", text, f"Elements are {asked.letters}[0] to {asked.letters}[{size - 1}]."
-        if asked.letters == "R":
+        if letters in self.scope.sizes:
+            sizes = self.scope.sizes[letters]
+            index = name[len(letters) :].strip("[]").split(",")
+            right = index[0].isdigit() and int(index[0]) < sizes[0]
+            text = f"{name} is no element of {letters}, which has {' by '.join(map(str, sizes))}."
+            last = ",".join(str(size - 1) for size in sizes)
+            hint = f"The elements go to {letters}[{last}], and indices begin with 0."
+            return OTHER_INDEX if right else FIRST_INDEX, text, hint
+        if letters == "R":
             return (
                 "r-unset",
                 f"{name} has no value: the program has not set it.",
@@ -86,9 +113,19 @@ def place_name(
     """The name of a place: R7, LENGTH, TABLE[2]. Raises the error for an index that is no whole number."""
     if number is None or isinstance(number, int):
         return f"{letters}{'' if number is None else number}"
-    index = worth(number)
-    if abs(index - round(index)) > 1e-9 or index < 0:
-        raise refuse(
-            "array-index", f"{letters}[{index:g}] does not exist.", "An index is a whole number from 0."
-        )
-    return f"R{round(index)}" if letters == "R" else f"{letters}[{round(index)}]"
+    indices = [worth(each) for each in _several(number)]
+    for place, index in enumerate(indices):
+        if abs(index - round(index)) > 1e-9 or index < 0 or (letters == "R" and place):
+            code = OTHER_INDEX if place else FIRST_INDEX
+            text = f"{letters}[{','.join(f'{each:g}' for each in indices)}] does not exist."
+            raise refuse(code, text, "An index is a whole number from 0.")
+    written = ",".join(str(round(each)) for each in indices)
+    return f"R{written}" if letters == "R" else f"{letters}[{written}]"
+
+
+def _several(index: Formula) -> tuple[Formula, ...]:
+    return index.operands if isinstance(index, Operation) and index.name == INDICES else (index,)
+
+
+def _r_places() -> list[str]:
+    return [f"R{number}" for number in range(MOST_R + 1)]

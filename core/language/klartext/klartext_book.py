@@ -160,6 +160,14 @@ def _paths() -> tuple[Entry, ...]:
             "L X+10 R0 FZ0.1",
             "CUT",
         ),
+        Entry(
+            "FMAX",
+            "",
+            "Rapid, for this block alone; the feed programmed before holds behind it.",
+            "L X+10 R0 F400\nL X+20 FMAX\nL X+30",
+            "L X+20 FMAX F400",
+            "F stands twice",
+        ),
         Entry("R0", "", "Radius compensation off.", "L X+10 R0 F400"),
         Entry(
             "RL",

@@ -342,6 +342,14 @@ def m_functions() -> tuple[Entry, ...]:
             "M128",
         ),
         code(
+            92,
+            "The coordinates of the block count from the machine's second datum, which is fixed_points of "
+            "its slides in the machine file: where tools are changed.",
+            "L Z-20 R0 FMAX M92",
+            "L Z-20 R0 FMAX M91 M92",
+            "different zeros",
+        ),
+        code(
             99,
             "Runs the cycle behind this block.",
             drill + "L X+10 Y+5 R0 FMAX M99",

@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 from core.language.diagnostics import ProgramError
 from core.language.klartext.cycle_blocks import mirrored_axes, rotation, scale
-from core.language.klartext.klartext_faults import NO_PROBE, fault, syntax, unsupported
+from core.language.klartext.klartext_faults import NO_PROBE, TOOL_UNKNOWN, fault, syntax, unsupported
 from core.language.klartext.klartext_nodes import (
     AxisWord,
     Begin,
@@ -148,9 +148,11 @@ def tool_call(cursor: Cursor) -> ToolCall:
 
 
 def _demand_no_index(cursor: Cursor) -> None:
-    """Raises ProgramError for 5.1, another edge of tool 5: the tool table has one row a tool."""
+    """Raises ProgramError for 5.1, another edge of tool 5: the tool table has no such row here."""
     if found := _INDEXED.match(cursor.upper, cursor.at):
-        raise unsupported(cursor.line, cursor.column, f"A tool with an index ({found.group()})")
+        text = f"The tool table has no {found.group()}: it keeps one row a tool, without an index."
+        hint = "Give this edge a row and a number of its own."
+        raise fault(cursor.line, cursor.column, TOOL_UNKNOWN, text, hint)
 
 
 # --- datum shifts, labels, calls and Q parameters

@@ -12,8 +12,9 @@ _QUOTED = re.compile(r'\s*"([^"]*)"\s*(?=[,)])')
 _AXIS = re.compile(r"\s*([A-CU-Z][0-9]?)\s*(?=[,)])")
 _PARAMETER = re.compile(
     r"\s*(?:(VAR)\s+)?(REAL|INT|BOOL|CHAR|STRING|AXIS|FRAME)(?:\s*\[[^\]]*\])?"
-    r"(?:\s+([A-Z_][A-Z_][A-Z0-9_]*)(\s*\[[^\]]*\])?)?\s*(=)?\s*"
+    r"(?:\s+([A-Z_][A-Z_][A-Z0-9_]*)(?:\s*\[([^\]]*)\])?)?\s*(=)?\s*"
 )
+_DIMENSION = re.compile(r"\s*([0-9]*)\s*")
 _NEXT = re.compile(r"\s*([,)])")
 
 
@@ -34,12 +35,16 @@ class Argument(NamedTuple):
 
 
 class Parameter(NamedTuple):
-    """A parameter of PROC: ``kind`` such as REAL, ``by_reference`` with VAR, ``default`` where it has one."""
+    """A parameter of PROC: ``kind`` such as REAL, ``by_reference`` with VAR, ``default`` where it has one.
+
+    ``sizes`` are those of an array, None for one that the caller's array has; without them it is no array.
+    """
 
     name: str
     kind: str
     by_reference: bool
     default: Argument | None
+    sizes: tuple[int | None, ...] = ()
 
 
 def read_arguments(text: str, written: str, at: int) -> tuple[tuple[Argument, ...], int]:
@@ -84,18 +89,28 @@ def read_parameters(text: str, written: str, at: int) -> tuple[tuple[Parameter, 
         match = _PARAMETER.match(text, at)
         if match is None:
             raise FormulaError(at, "A parameter needs its type and name", "Write PROC NAME(REAL LENGTH).")
-        if match[4]:
-            raise FormulaError(match.start(4), "Arrays as parameters are not read here", "Pass their values.")
+        sizes = _sizes(match)
         at, default = match.end(), None
         if match[5]:
             default, at = _argument(text, written, at)
-        found.append(Parameter(match[3] or "", match[2], match[1] is not None, default))
+        found.append(Parameter(match[3] or "", match[2], match[1] is not None, default, sizes))
         end = _NEXT.match(text, at)
         if end is None:
             raise FormulaError(at, "The bracket of the parameters is not closed", "Write ) behind the last.")
         at = end.end()
         if end[1] == ")":
             return tuple(found), at
+
+
+def _sizes(match: re.Match[str]) -> tuple[int | None, ...]:
+    """The sizes of an array parameter, NAME[3] or NAME[,4]. Raises FormulaError."""
+    if match[4] is None:
+        return ()
+    found = [_DIMENSION.fullmatch(each) for each in match[4].split(",")]
+    if None in found or not match[1]:
+        raise FormulaError(match.start(3), "An array is handed over with VAR and whole numbers as its sizes",
+                           "Write PROC NAME(VAR REAL LIST[3]).")  # fmt: skip
+    return tuple(int(each[1][:9]) if each is not None and each[1] else None for each in found)
 
 
 def _blanks(text: str, at: int) -> int:

@@ -11,7 +11,8 @@ CALLS = (
     Entry(
         "PROC", "NAME(REAL LENGTH, VAR INT COUNT, REAL MORE=1) SAVE",
         "First line of a subprogram: its parameters, VAR writes back, = is what counts where nothing is "
-        "handed over; SAVE brings G functions and frame back at its end.",
+        "handed over; VAR REAL LIST[3] takes an array of that size, VAR REAL LIST[] one of any. SAVE brings "
+        "G functions and frame back at its end.",
         "STEP(-3)\nSTEP(-2, 4)", "STEP(1, 2, 3)", "12330", files=_DEPTH,
     ),
     Entry(

@@ -6,7 +6,8 @@ import re
 from enum import StrEnum
 from typing import NamedTuple
 
-from core.language.formulas import Formula, FormulaError, FormulaReader
+from core.language.formulas import INDICES, Formula, FormulaError, FormulaReader, Operation
+from core.language.sinumerik.array_values import Values, read_values
 from core.language.sinumerik.call_arguments import Parameter, read_parameters
 from core.language.sinumerik.sinumerik_formulas import GRAMMAR
 
@@ -47,13 +48,17 @@ class Steering(StrEnum):
 
 
 class Defined(NamedTuple):
-    """A variable of DEF with the formula of its first value; None is 0. ``size`` is that of an array."""
+    """A variable of DEF with the formula of its first value; None is 0.
+
+    ``sizes`` are those of an array, one for each of its dimensions; ``values`` a list for its elements.
+    """
 
     name: str
     formula: Formula | None
     kind: str = "REAL"
-    size: Formula | None = None
+    sizes: tuple[Formula, ...] = ()
     text: str = ""
+    values: Values | None = None
 
 
 class Choice(NamedTuple):
@@ -247,25 +252,33 @@ class _Reader:
         if variable is None:
             raise FormulaError(self._at, "DEF needs the name of a variable", "Write DEF REAL NAME = 0.")
         self._at = variable.end()
-        after, formula, size, text = variable.group(2), None, None, ""
+        made, after = Defined(variable.group(1), None, kind), variable.group(2)
         if after == "[":
-            size = self._size()
+            self._at -= 1
+            made = made._replace(sizes=self._sizes())
             after = self._sign()
         if after == "=":
-            quoted = _JOINED.match(self._written, self._at)
-            if kind == "STRING" and quoted and quoted[1] is not None:
-                self._at, text = quoted.end(), quoted[1]
-            else:
-                formula = self._formula()
+            made = self._first_value(made)
             self._sign()
-        return Defined(variable.group(1), formula, kind, size, text)
+        return made
 
-    def _size(self) -> Formula:
-        size = self._formula()
-        if not self._text.startswith("]", self._at):
-            raise FormulaError(self._at, "An array has one size, in square brackets", "Write DEF REAL A[5].")
-        self._at += 1
-        return size
+    def _first_value(self, made: Defined) -> Defined:
+        """What stands behind the = of DEF: a text, a list for an array, a formula."""
+        quoted = _JOINED.match(self._written, self._at)
+        if made.kind == "STRING" and quoted and quoted[1] is not None:
+            self._at = quoted.end()
+            return made._replace(text=quoted[1])
+        listed = read_values(self._text, self._at, bare=True) if made.sizes else None
+        if listed is None:
+            return made._replace(formula=self._formula())
+        self._at = listed[1]
+        return made._replace(values=listed[0])
+
+    def _sizes(self) -> tuple[Formula, ...]:
+        reader = FormulaReader(GRAMMAR, self._text, self._at)
+        size = reader.index()
+        self._at = reader.at
+        return size.operands if isinstance(size, Operation) and size.name == INDICES else (size,)
 
     def _sign(self) -> str:
         """A comma or = that stands here."""

@@ -220,10 +220,28 @@ def _flow() -> tuple[Entry, ...]:
         Entry(
             "DEF",
             "REAL name = ..",
-            "Variables of the program: REAL, INT, BOOL, CHAR, STRING; REAL name[5] is an array.",
+            "Variables of the program: REAL, INT, BOOL, CHAR, STRING; REAL name[5] is an array, REAL "
+            "name[2,3] one of two dimensions (three at most). A name begins with two letters or _.",
             "DEF REAL DEPTH = 2.5\nG0 Z=-DEPTH",
             "DEF AXIS NAME",
             "AXIS",
+        ),
+        Entry(
+            "SET",
+            "(.., .., ..)",
+            "Values for the elements of an array one after the other, the last index first; what is left "
+            "out keeps its value. Behind DEF the brackets may stand alone.",
+            "DEF REAL DEPTHS[2,2]\nDEPTHS[0,1]=SET(-3, , -5)\nG0 Z=DEPTHS[1,1]",
+            "DEF REAL DEPTHS[2]=(1, 2, 3)",
+            "too few",
+        ),
+        Entry(
+            "REP",
+            "(value, n)",
+            "Gives n elements of an array one value, without n all that are left.",
+            "DEF REAL DEPTHS[3]=REP(-2)\nDEPTHS[1]=REP(-4, 1)\nG0 Z=DEPTHS[1]+DEPTHS[2]",
+            "DEF REAL DEPTHS[3]=REP()",
+            "REP takes a value",
         ),
         Entry(
             "R",

@@ -8,6 +8,7 @@ from typing import NamedTuple
 from core.language.diagnostics import Diagnostic
 from core.language.formulas import Formula, FormulaError, FormulaReader, Number, Operation, Parameter
 from core.language.sinumerik import sinumerik_words as known
+from core.language.sinumerik.array_values import read_values
 from core.language.sinumerik.call_arguments import Argument, read_arguments
 from core.language.sinumerik.cycle_names import CYCLES, CYCLES_OUTSIDE, CYCLES_TAKEN
 from core.language.sinumerik.program_jumps import Jump, Steering, read_jump, steering_word
@@ -90,6 +91,7 @@ _QUOTED = re.compile(r'"([^"]*)"')
 _BLANK = re.compile(r"\s*\([^()]*\)")
 _NUMBERED = re.compile(r"\s*\(\s*([0-9]*)\s*\)")
 _ELEMENT = re.compile(r"(R|[A-Z_][A-Z_][A-Z0-9_]*)\s*\[\s*")
+_SET = re.compile(r"\s*=(?!=)\s*")
 _SYSTEM = re.compile(r"\$[A-Z0-9_]+")
 _BRACKET = re.compile(r"\s*\(")
 _PROGRAM = re.compile(r'\s*"?([A-Z_][A-Z0-9_]*|L[0-9]+)"?(?![A-Z0-9_])')
@@ -333,18 +335,20 @@ class _Scanner:
             return self._outside(match.start(), match.end(), match[1], why)
         name, at = match[1], match.start()
         try:
-            index = value_at(self._text, match.end())
-            close = re.compile(r"\s*\]\s*=(?!=)\s*").match(self._text, index.end)
-            if close is None:
+            reader = FormulaReader(GRAMMAR, self._text, self._text.index("[", at))
+            place = reader.index()
+            _demand_parameters(place, at)
+            sign = _SET.match(self._text, reader.at)
+            if sign is None:
                 return self._skip(at, f"{name}[ ] is not set", f"Write {name}[1]=…")
-            value = value_at(self._text, close.end())
+            listed = read_values(self._text, sign.end(), bare=False)
+            value = value_at(self._text, sign.end()) if listed is None else Value(0.0, None, listed[1])
         except FormulaError as problem:
             return self._skip(at, f"{name}[ ]= has no value: {problem}", problem.hint)
         written = "".join(self._text[at : value.end].split())
-        place = index.formula if index.formula is not None else Number(index.number or 0.0)
         named = "R0" if name == "R" else name
         word = Word(named, value.number, at + 1, written, Form.PLAIN, value.formula, element=place)
-        return self._keep(word, value.end)
+        return self._keep(word if listed is None else word._replace(values=listed[0]), value.end)
 
     def _assigned(self, match: re.Match[str]) -> int:
         """A word with =."""

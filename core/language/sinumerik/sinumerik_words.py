@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from core.language.diagnostics import Diagnostic
 from core.language.formulas import Formula
+from core.language.sinumerik.array_values import Values
 from core.language.sinumerik.call_arguments import Argument
 from core.language.sinumerik.program_jumps import Jump
 from core.language.sinumerik.word_table import FUNCTIONS, M_FUNCTIONS, OUTSIDE, WORDS
@@ -42,6 +43,7 @@ class Word(NamedTuple):
     spindle: int = 0
     element: Formula | None = None  # index of R[ ] or of an array; ``name`` is then R0, or the array's
     arguments: tuple[Argument, ...] = ()  # of TRANSMIT( ) and TRACYL( )
+    values: Values | None = None  # SET( ) or REP( ), from ``element`` on
 
 
 class Line(NamedTuple):

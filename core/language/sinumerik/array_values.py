@@ -1,0 +1,57 @@
+"""Values for the elements of an array: SET(1, 2, 3), REP(0), and the bare (1, 2, 3) of DEF."""
+
+from __future__ import annotations
+
+import re
+from typing import NamedTuple
+
+from core.language.formulas import Formula, FormulaError, FormulaReader
+from core.language.sinumerik.sinumerik_formulas import GRAMMAR
+
+_LIST = re.compile(r"\s*(SET|REP)?\s*\(")
+_NEXT = re.compile(r"\s*([,)])")
+
+
+class Values(NamedTuple):
+    """What elements are given, one after the other; None for one that keeps what it has.
+
+    Of REP there is one formula, for ``times`` elements, or without it for all that are left.
+    """
+
+    formulas: tuple[Formula | None, ...]
+    repeated: bool = False
+    times: Formula | None = None
+
+
+def read_values(text: str, at: int, *, bare: bool) -> tuple[Values, int] | None:
+    """The list that begins at ``at`` and the index behind it; None where none does. Raises FormulaError.
+
+    ``text`` is in capitals. ``bare`` takes brackets without SET before them, which elsewhere begin a formula.
+    """
+    match = _LIST.match(text, at)
+    if match is None or not (match[1] or bare):
+        return None
+    found: list[Formula | None] = []
+    at = match.end()
+    while True:
+        formula, at = _element(text, at)
+        found.append(formula)
+        sign = _NEXT.match(text, at)
+        if sign is None:
+            raise FormulaError(at, "The list of values is not closed", "Write ) behind the last value.")
+        at = sign.end()
+        if sign[1] == ")":
+            break
+    if match[1] != "REP":
+        return Values(tuple(found)), at
+    if found[0] is None or len(found) > 2:
+        raise FormulaError(match.end(), "REP takes a value, and a number of elements", "Write REP(0).")
+    return Values((found[0],), repeated=True, times=found[1] if found[1:] else None), at
+
+
+def _element(text: str, at: int) -> tuple[Formula | None, int]:
+    """A formula, or nothing before the next comma."""
+    if _NEXT.match(text, at):
+        return None, at
+    reader = FormulaReader(GRAMMAR, text, at)
+    return reader.formula(), reader.at
