@@ -213,6 +213,7 @@ class LampStrip(Panel):
 
 
 NOTICE_ROW, NOTICE_KEY = 5.0, 17.0  # units: height of a row, width of a key
+NOTICE_LOW = 4.5  # units: height of a row that is only read
 
 
 class NoticeRows(Panel):
@@ -228,22 +229,29 @@ class NoticeRows(Panel):
     @property
     def high(self) -> int:
         """Pixels that the rows need."""
-        return len(self.rows) * max(FINGER, round(NOTICE_ROW * self.look.u))
+        return sum(self._high_of(row) for row in self.rows)
+
+    def _high_of(self, row: NoticeRow) -> int:
+        """A fingertip where there is something to press; else as high as its two lines."""
+        u = self.look.u
+        return max(FINGER + 2, round(NOTICE_ROW * u)) if row.keys else round(NOTICE_LOW * u)
 
     @property
     def other_room(self) -> bool:
-        """Whether there are more or fewer rows than have been given room."""
-        return len(self.rows) != self._stand_for
+        """Whether the rows need more or less than the room they have been given."""
+        return self.high != self._stand_for
 
     def take_room(self) -> int:
         """They have what they need from now on: how many pixels."""
-        self._stand_for = len(self.rows)
+        self._stand_for = self.high
         return self.high
 
     def draw(self, painter: Painter) -> None:
-        high = self.height() / max(1, len(self.rows))
-        for number, row in enumerate(self.rows):
-            self._row(painter, QRectF(0, number * high, self.width(), high - 2), row)
+        share, top = self.height() / max(1, self.high), 0.0  # less than they need where there is no more
+        for row in self.rows:
+            high = share * self._high_of(row)
+            self._row(painter, QRectF(0, top, self.width(), high - 2), row)
+            top += high
 
     def _row(self, painter: Painter, box: QRectF, row: NoticeRow) -> None:
         u = self.look.u

@@ -6,7 +6,9 @@ from dataclasses import replace
 
 import pytest
 
+from app.desk.interrupted_notice import NoticeRow
 from app.screen import page_table
+from app.screen.window_layout import FINGER
 from core.executor.snapshot import State
 from core.ports import ALL_UNKNOWN, Unknown
 from tests.interrupted import broken_off
@@ -108,3 +110,19 @@ def test_a_machine_that_is_not_heard_says_so_on_every_page(hands: Hands, page: s
     hands.window.refresh()
     (row,) = hands.frame.notices.rows
     assert row.text == "OUTPUTS UNKNOWN: THE MACHINE IS NOT HEARD"
+
+
+def test_a_row_with_a_key_stays_a_fingertip_high(hands: Hands, monkeypatch: pytest.MonkeyPatch) -> None:
+    told = (NoticeRow("INTERRUPTED", "T1", (("F6", "SEARCHTO"),)), NoticeRow("NOT KEPT", "20 parts"))
+    monkeypatch.setattr(hands.frame, "_notices_of", lambda *_what, **_more: told)
+    hands.window.refresh()
+    rows = hands.frame.notices
+    rows.grab()
+    assert len(rows.rows) == 2
+    assert rows._places
+    for box, _press in rows._places:
+        assert box.height() >= FINGER
+        assert rows.area().contains(box)
+    with_key, read = rows._high_of(rows.rows[0]), rows._high_of(rows.rows[1])
+    assert read < with_key
+    assert rows.height() == with_key + read

@@ -11,6 +11,7 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QDialog
 from pytestqt.qtbot import QtBot
 
+from app.desk.interrupted_notice import NoticeRow
 from app.screen.window_layout import FINGER
 from core.executor.snapshot import State
 from tests.screen.jog.bench import INCH, JogBench, Key
@@ -180,6 +181,28 @@ def test_every_target_fits_a_finger_on_the_smallest_screen(wheeled: JogBench, hi
     pad.resize(394, high)
     pad.grab()
     assert len(pad.controls) >= 17
+    for control in pad.controls:
+        assert min(control.box.width(), control.box.height()) >= FINGER - 1
+        assert pad.area().contains(control.box)
+
+
+def test_two_yellow_rows_leave_a_fingertip_to_every_target(
+    wheeled: JogBench, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """They were 43 pixels each without a key on them, and left 21 to what is held."""
+    frame = wheeled.window.frame
+    assert frame is not None
+    rows = (
+        NoticeRow("INTERRUPTED: LINE 4", "T1"),
+        NoticeRow("NOT KEPT: the disk is full", "20 parts"),
+    )
+    monkeypatch.setattr(frame, "_notices_of", lambda *_what, **_more: rows)
+    wheeled.window.resize(1024, 600)
+    wheeled.window.refresh()
+    assert frame.notices.isVisible()
+    pad = wheeled.page.pad
+    pad.grab()
+    assert len(pad.controls) >= 12
     for control in pad.controls:
         assert min(control.box.width(), control.box.height()) >= FINGER - 1
         assert pad.area().contains(control.box)
