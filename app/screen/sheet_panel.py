@@ -62,9 +62,18 @@ class SheetPanel(Panel):
 
     @property
     def rows(self) -> int:
-        """How many rows of the table fit into the panel."""
-        foot = len(self.sheet.notes) * NOTE + (self._asked if self.sheet.question else 0.0)
-        return max(1, int((self.height() / self.look.u - 4.0 - HEAD - foot) / self._high))
+        """How many rows of the table fit into the panel; none where a question needs all of it."""
+        return max(0 if self.sheet.question else 1, self._fit(len(self._notes)))
+
+    def _fit(self, notes: int) -> int:
+        foot = notes * NOTE + (self._asked if self.sheet.question else 0.0)
+        return int((self.height() / self.look.u - 4.0 - HEAD - foot) / self._high)
+
+    @property
+    def _notes(self) -> tuple[str, ...]:
+        """None beside a question where they would leave no row: what is marked is what is asked about."""
+        notes = self.sheet.notes
+        return () if self.sheet.question and self._fit(len(notes)) < 1 else notes
 
     def wheelEvent(self, event: QWheelEvent) -> None:
         """Three rows a notch."""
@@ -78,7 +87,7 @@ class SheetPanel(Panel):
     def _follow(self) -> None:
         """To the mark, where a key has moved it; a finger or a wheel that leafs does not."""
         now = (self.sheet.marked, self.rows)
-        if now != self._followed and self.sheet.marked >= 0:
+        if now != self._followed and self.sheet.marked >= 0 and self.rows:
             self.top = min(max(self.top, self.sheet.marked - self.rows + 1), self.sheet.marked)
         self._followed = now
         self.top = max(0, min(self.top, len(self.sheet.rows) - self.rows))
@@ -90,7 +99,8 @@ class SheetPanel(Panel):
         room = self.inside()
         row = QRectF(room.x(), room.y(), room.width(), HEAD * u)
         body = QRectF(room.x(), row.bottom(), room.width(), self.rows * self._high * u)
-        left = self.leaf(painter, body, (self.top, self.rows, len(sheet.rows)), self.leaf_by)
+        seen = (self.top, self.rows, len(sheet.rows))
+        left = self.leaf(painter, body, seen, self.leaf_by) if self.rows else body
         row.setWidth(left.width())
         self._head(painter, row)
         for number in range(self.top, min(len(sheet.rows), self.top + self.rows)):
@@ -149,8 +159,9 @@ class SheetPanel(Panel):
 
     def _foot(self, painter: Painter, room: QRectF) -> None:
         u, sheet = self.look.u, self.sheet
-        y = room.bottom() - len(sheet.notes) * NOTE * u
-        for number, note in enumerate(sheet.notes):
+        notes = self._notes
+        y = room.bottom() - len(notes) * NOTE * u
+        for number, note in enumerate(notes):
             row = QRectF(room.x(), y + number * NOTE * u, room.width(), NOTE * u)
             painter.write(row, note, 1.8, "soft", bold=False)
         if sheet.question:

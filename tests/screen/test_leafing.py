@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import pytest
 from PySide6.QtCore import QPoint, QPointF, QRectF, Qt
@@ -19,7 +21,7 @@ from app.editor.findings_view import FindingList
 from app.editor.live_proof import Findings
 from app.offsets.offsets_view import HistoryList
 from app.programs.file_prompt_view import FilePrompt
-from app.screen.look import Look
+from app.screen.look import Look, Painter
 from app.screen.panel import Panel
 from app.screen.sheet_panel import SheetPanel
 from app.screen.theme import DARK
@@ -203,3 +205,25 @@ def test_keys_that_leaf_stand_side_by_side_where_there_is_no_height(above: QWidg
     assert min(first.height(), second.height()) >= FINGER
     press(panel, second)
     assert panel.top == 1 == panel.rows
+
+
+@pytest.mark.parametrize(("high", "rows", "notes"), [(145, 1, 0), (176, 1, 2), (110, 0, 0)])
+def test_a_question_lies_over_no_row(above: QWidget, high: int, rows: int, notes: int) -> None:
+    """145 pixels are what drawn letters leave to a table of the special functions at 1024x600."""
+    panel = SheetPanel(Look(DARK, SMALL), lambda _row: None, above)
+    panel.resize(640, high)
+    panel.show_sheet(replace(sheet_of(MANY), question="WHOSE NAME?", notes=("one", "two")))
+    drawn: dict[str, QRectF] = {}
+    write = Painter.write
+
+    def writing(painter: Painter, rect: QRectF, text: str, *rest: Any, **more: Any) -> None:
+        drawn[text] = QRectF(rect)
+        write(painter, rect, text, *rest, **more)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Painter, "write", writing)
+        panel.grab()
+    assert sum(text.startswith("row ") for text in drawn) == rows == panel.rows
+    assert sum(text in {"one", "two"} for text in drawn) == notes
+    for text, box in drawn.items():
+        assert text == "WHOSE NAME?" or not box.intersects(drawn["WHOSE NAME?"]), text
