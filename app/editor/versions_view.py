@@ -58,10 +58,11 @@ class VersionList(Panel):
 
     def draw(self, painter: Painter) -> None:
         u, history = self.look.u, self._history
-        rows = max(1, int((self.height() - 4.0 * u) / (ROW * u)))
+        high = self.look.row(ROW, 9.0, touch=True)
+        rows = max(1, int((self.height() - 4.0 * u) / high))
         first = max(0, min(history.marked - rows // 2, len(history.rows) - rows))
         for place, version in enumerate(history.rows[first : first + rows]):
-            box = QRectF(1.2 * u, (3.0 + place * ROW) * u, (LIST - 1.2) * u, ROW * u)
+            box = QRectF(1.2 * u, 3.0 * u + place * high, (LIST - 1.2) * u, high)
             self._version(painter, box, version, first + place == history.marked)
             self.place(box, partial(history.mark, first + place))
         self._comparison(painter)

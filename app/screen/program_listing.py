@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from textwrap import wrap
 
 from PySide6.QtCore import QRectF
@@ -25,6 +26,7 @@ class Listing(Panel):
     _bad: Shown[Mapping[int, str]] = Shown({})
     _lines: Sequence[str] = ()
     trouble = Shown("")  # why there is nothing to be shown
+    touched: Callable[[int], None] | None = None  # a finger on a line, where lines are chosen
 
     def show_source(self, lines: Sequence[str], bad: Mapping[int, str]) -> None:
         """Another program; ``bad`` are messages by line number."""
@@ -118,6 +120,8 @@ class Listing(Panel):
     def _source(self, painter: Painter, row: QRectF, number: int) -> None:
         u = self.look.u
         here, bad = number == self._line, number in self._bad
+        if self.touched is not None:
+            self.place(QRectF(row), partial(self.touched, number))
         if here:
             painter.fill(row, "here")
             painter.fill(QRectF(row.x(), row.y(), 0.7 * u, row.height()), "lit")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
 from textwrap import wrap
@@ -19,11 +19,12 @@ from app.path.part_player import player_of
 from app.path.path_aspects import Tip, tip_of
 from app.path.path_view import PathView
 from app.screen import page_table
-from app.screen.entry_panel import draw_entry
-from app.screen.look import Painter
+from app.screen.entry_panel import KeyPad, draw_entry
+from app.screen.look import Look, Painter
 from app.screen.page_base import Host, KeyActions, ModelPage
 from app.screen.panel import Panel, Shown
 from app.screen.program_listing import Listing
+from app.screen.window_layout import FINGER
 from app.searchto.searchto_model import SearchtoModel, SearchtoStage
 from app.searchto.searchto_plan import Plan, WayOut
 from app.searchto.searchto_state_view import (
@@ -51,7 +52,13 @@ class SearchEntryPanel(Panel):
     ground = "panel"
     text = Shown("")
 
+    def __init__(self, look: Look, press: Callable[[], None], parent: QWidget) -> None:
+        """``press``: a finger on it."""
+        super().__init__(look, parent)
+        self._press = press
+
     def draw(self, painter: Painter) -> None:
+        self.place(self.area(), self._press)
         u = self.look.u
         room = self.area().adjusted(1.2 * u, 0.4 * u, -0.8 * u, -0.4 * u)
         question = tr("LINE OR TEXT?")
@@ -121,12 +128,15 @@ class SearchtoPage(ModelPage):
     def __init__(self, host: Host, model: SearchtoModel, parent: QWidget) -> None:
         super().__init__(host, parent)
         self.model = model
-        self.asked = SearchEntryPanel(self.look, self)
+        self.asked = SearchEntryPanel(self.look, self._turn_pad, self)
         self.listing = Listing(self.look, self)
+        self.listing.touched = self._mark
         self.state = StatePanel(self.look, host.press, self)
         self.path = PathView(self.look, self, player=player_of(host.desk))
         self.starts = StartsPanel(self.look, self)
         self.space = WorkingPlaneView(self.look, self)  # takes the path's place where the machine is a mill
+        self.pad = KeyPad(self.look, self.touched, own=None, parent=self)
+        self.pad.hide()
         self._loaded: Loaded | None = None
         self._whole = False  # rows that are equal are shown too
         self._stood: tuple[object, int] = (None, 0)  # picture and blocks that the part was shown after
@@ -169,6 +179,26 @@ class SearchtoPage(ModelPage):
             return True
         return self.model.typed(key)
 
+    def touched(self, key: str) -> None:
+        """A finger on the pad: Return and Esc take it away, so that the state is seen."""
+        if key in {"Enter", "Esc"}:
+            self.pad.hide()
+        if key != "Esc":
+            self.typed(key)
+
+    def _turn_pad(self) -> None:
+        self.pad.setVisible(self.pad.isHidden())
+        self.pad.raise_()
+
+    def _mark(self, line: int) -> None:
+        """A finger on a line marks it, on the marked one rebuilds its state."""
+        if not self.model.has_keyboard:
+            return
+        if line == self.model.cursor.line:
+            self.model.search()
+        else:
+            self.model.move(line - self.model.cursor.line)
+
     def _turn_fold(self) -> None:
         self._whole = not self._whole
 
@@ -186,6 +216,7 @@ class SearchtoPage(ModelPage):
 
     def leave(self) -> bool:
         """Cycle Start means programs again."""
+        self.pad.hide()
         self.model.leave()
         return True
 
@@ -318,13 +349,14 @@ class SearchtoPage(ModelPage):
     def resizeEvent(self, _event: QResizeEvent) -> None:
         """Program, state, and the way over what will start."""
         u = self.look.u
-        gap, asked, starts = max(4, round(0.7 * u)), round(ASKED * u), round(STARTS * u)
+        gap, asked, starts = max(4, round(0.7 * u)), max(FINGER, round(ASKED * u)), round(STARTS * u)
         wide, high = self.width(), self.height()
         left, state = round(LIST * wide), round(STATE * wide)
         right = left + gap + state + gap
         self.asked.setGeometry(0, 0, left, asked)
         self.listing.setGeometry(0, asked + gap, left, high - asked - gap)
         self.state.setGeometry(left + gap, 0, state, high)
+        self.pad.setGeometry(left + gap, 0, state, high)
         for part in (self.path, self.space):
             part.setGeometry(right, 0, wide - right, high - starts - gap)
         self.starts.setGeometry(right, high - starts, wide - right, starts)

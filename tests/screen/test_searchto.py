@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import pytest
-from PySide6.QtCore import QPointF
+from PySide6.QtCore import QPointF, QRectF, Qt
+from PySide6.QtTest import QTest
 
 from app.desk.prompt_line import HOW_TO_HOLD
 from app.screen import page_table
+from app.screen.panel import Panel
+from app.screen.window_layout import FINGER
 from app.searchto.searchto_model import SearchtoModel, SearchtoStage
 from app.searchto.searchto_view import SearchtoPage
 from core.executor.snapshot import Starts, State
@@ -116,6 +119,43 @@ def test_a_line_is_found_by_its_text_and_the_list_follows(operator: Operator) ->
     operator.type("QQ")
     operator.key(Key.Key_Return)
     assert operator.prompt() == "QQ IS IN NO LINE"
+
+
+def press(panel: Panel, box: QRectF) -> None:
+    QTest.mouseClick(panel, Qt.MouseButton.LeftButton, pos=box.center().toPoint())
+
+
+def test_a_finger_marks_a_line_or_types_its_number(operator: Operator) -> None:
+    """The lines were no target, and nothing brought figures: a finger had F8 and F9 alone."""
+    loaded(operator)
+    operator.window.resize(1024, 600)
+    operator.key(Key.Key_F6)
+    page = page_of(operator)
+    page.listing.grab()
+    press(page.listing, page.listing._places[3][0])
+    assert model_of(operator).cursor.line == page.listing.top + 4
+    page.asked.grab()
+    entry, _press = page.asked._places[0]
+    assert entry.height() >= FINGER
+    press(page.asked, entry)
+    assert page.pad.isVisible()
+    page.pad.grab()
+    keys = dict(zip("789/456*123-0.(+", page.pad._places, strict=False))
+    for figure in "12":
+        box, _press = keys[figure]
+        assert min(box.width(), box.height()) >= FINGER
+        press(page.pad, box)
+    press(page.pad, page.pad._places[-1][0])  # RETURN
+    assert model_of(operator).cursor.line == 12
+    assert page.pad.isHidden()
+    model_of(operator).finder.worker.settle(60.0)
+    page_of(operator)
+    page.listing.grab()
+    place = 12 - page.listing.top - 1
+    press(page.listing, page.listing._places[place][0])  # on the marked one: its state again
+    model_of(operator).finder.worker.settle(60.0)
+    page_of(operator)
+    assert model_of(operator).answer is not None or model_of(operator).plan is not None
 
 
 def test_a_line_that_is_not_good_offers_its_neighbours(operator: Operator) -> None:
