@@ -63,6 +63,7 @@ def _figures(shift: NightShift, operator: Operator, marks: dict[str, Footprint])
         "done": dict(sorted(operator.did.items())),
         "alarms": dict(sorted(shift.witness.truth.alarms.items())),
         "drift": drift(shift),
+        "at the bar stop": {str(place): ticks for place, ticks in shift.witness.truth.at_stop.items()},
         "underruns": shift.shot.underruns,
     }
 

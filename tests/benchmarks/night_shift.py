@@ -80,7 +80,7 @@ class Truth:
     pins: int = 0  # parted off
     given_up: int = 0  # of them those whose program did not come to its end
     uncounted: int = 0  # of them those that were made with NO COUNT
-    at_stop: set[tuple[float, ...]] = field(default_factory=set)  # setpoints where the feeder pushes
+    at_stop: Counter[tuple[float, ...]] = field(default_factory=Counter)  # ticks by setpoint, feeder pushing
     turned: dict[float, set[float]] = field(default_factory=lambda: defaultdict(set))  # X by T1's X offset
     lag: float = 0.0  # slide against setpoint where the feeder has pushed, the worst
     alarms: Counter[str] = field(default_factory=Counter)
@@ -125,7 +125,7 @@ class Witness:
         self._behind = x < 0.0
 
     def _at_stop(self, shot: Snapshot, where: tuple[float, ...]) -> None:
-        self.truth.at_stop.add(shot.demand)
+        self.truth.at_stop[shot.demand] += 1
         off = [abs(a - b) for a, b in zip(where[:2], shot.demand[:2], strict=True)]
         self.truth.lag = max(self.truth.lag, *off)
 

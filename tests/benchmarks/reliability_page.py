@@ -99,7 +99,10 @@ def _list(counted: dict[str, int]) -> str:
 
 def _screen(result: Result, _folder: Path) -> Iterator[str]:
     counts, minutes = result["counts"], result["minutes"]
-    agrees = "" if counts["seen at the slides"] >= counts["store"] else " (what was seen does not agree)"
+    more = counts["seen at the slides"] - counts["store"]
+    agrees = " (what was seen does not agree)" if more < 0 else ""
+    if more > 0:
+        agrees = f" ({more} parted off in a program that did not come to its end)"
     yield (
         f"`bench_screen_hour`: the real window for {minutes:g} minutes by the real clock under an X server, "
         f"{_list(result['done'])}; {counts['seen at the slides']} pins seen at the slides, {counts['store']} "

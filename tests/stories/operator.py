@@ -438,11 +438,27 @@ class Operator:
         self.during(0.15)
         self.up("F11", "F12")
 
-    def starts(self) -> None:
-        """Both palms as soon as the prompt offers it."""
+    def starts(self, palms: Callable[[], None] | None = None) -> None:
+        """Both palms as soon as the prompt offers it.
+
+        Again where a busy computer has forgotten them, or has shown late what is to be looked at before.
+        """
         self.until(lambda: "TO START" in self.prompt, "ready to start")
-        self.cycle_start()
-        self.reaches("RUNNING", "WAITING")
+        since = len(self.seen)
+
+        def runs() -> bool:
+            return any(each["state"] in {"RUNNING", "WAITING"} for each in self.seen[since:])
+
+        def started() -> bool:
+            if not runs():
+                (palms or self.cycle_start)()
+            if self.soon(runs):
+                return True
+            refused = str(self.machine["refused"])
+            assert not refused or refused.startswith("look first"), refused
+            return False
+
+        self.until(started, "a start")
 
     # --- the end ---------------------------------------------------------------------------------------
 
