@@ -46,6 +46,7 @@ from core.ports import DriverError, MachinePorts, TrippedError, Unknown
 
 _log = logging.getLogger(__name__)
 TICK = 0.01  # s from the end of one to the beginning of the next
+_OFF_BY_ESTOP = frozenset({"power-lost", "spindle-off"})  # of what its chain switches off by itself
 _STALL = 0.2  # s between two ticks that tell of a stalled host
 _STALE = 0.5  # s after which nobody expects a press to move the machine any more
 _STARTS = (CycleStart, DriveTest, EnableDrives, Home, Jog, JogStep, Touch, Wheel)
@@ -318,13 +319,20 @@ class Executor:
             try:
                 part()
             except AlarmError as trouble:
-                self._control.alarm(trouble)
+                self._alarm(trouble)
             except MotionError as error:
                 self._control.alarm(AlarmError("program", str(error)))
             except TrippedError:
                 pass  # refused, since the feeder has stopped something: the next look tells what
             except DriverError as error:
-                self._control.alarm(AlarmError(error.code, str(error)))
+                self._alarm(AlarmError(error.code, str(error)))
+
+    def _alarm(self, trouble: AlarmError) -> None:
+        """An E-stop that was pressed since the station was looked at is the cause of what has no power."""
+        if trouble.code in _OFF_BY_ESTOP and self._ports.station.snapshot().estop:
+            self._control.mirror_estop(True)
+        else:
+            self._control.alarm(trouble)
 
     def _publish(self) -> Snapshot:
         return self._publisher.snapshot(self._context, self._control)

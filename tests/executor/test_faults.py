@@ -38,6 +38,29 @@ def alarm(rig: Rig, code: str, limit: float = 20.0) -> float:
     return took
 
 
+def test_an_estop_pressed_behind_the_look_at_the_station_is_one_and_no_loss_of_power(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    rig = Rig()
+    rig.start("G90G94F300\nG01F20Z-2\nM30\n")
+    rig.run(1.0)
+    station = rig.sim.ports.station
+    look = type(station).snapshot
+
+    def pressed_behind(port: object) -> object:
+        seen = look(port)
+        rig.sim.machine.press_estop()
+        return seen
+
+    monkeypatch.setattr(type(station), "snapshot", pressed_behind)
+    rig.tick()
+    monkeypatch.undo()
+    rig.run(1.0)
+    assert rig.state is State.ESTOP
+    assert rig.shot.alarms == ()
+    assert rig.said("alarm") == []
+
+
 # --- host ---------------------------------------------------------------------------------------------------
 
 
