@@ -201,13 +201,15 @@ class Session:
 
 
 def _found_again(kept: dict[str, Any]) -> Mutant | None:
-    """The mutant in the module as it is now: at its place, or the first with its words in its function."""
+    """The mutant in the module as it is now: at its place, or the nearest with its words in its function."""
     same = [
         each
         for each in mutants_of(Path(kept["path"]))
         if (each.function, each.kind, each.words) == (kept["function"], kept["kind"], kept["words"])
     ]
-    return next((each for each in same if each.place == kept["place"]), same[0] if same else None)
+    return min(
+        same, key=lambda each: (each.place != kept["place"], abs(each.line - kept["line"])), default=None
+    )
 
 
 def say(text: str) -> None:

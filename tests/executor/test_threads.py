@@ -131,6 +131,15 @@ def test_a_gear_follows_a_fast_swing_and_coarse_leads(lead: float, rpm: int, per
     assert rig.said("thread") == []
 
 
+def test_a_slide_that_runs_up_to_a_coarse_lead_is_no_thread_out_of_step() -> None:
+    """It lags behind the spindle by half of its run-up, which lies before the thread."""
+    rig = Rig(gear=False)
+    rig.start(EXTERNAL.replace("K.05", "K.16").replace("Z-1.2", "Z-.4"), TOOLS)
+    rig.until(State.IDLE, State.FAULT)
+    assert rig.shot.alarms == ()
+    assert rig.said("thread") == []
+
+
 def test_without_following_it_would_not_hold() -> None:
     """The wander alone, at the commanded speed, is thirty times what the test above allows."""
     swing = 0.02 * 10.0 * 2.0 / (2.0 * math.pi)  # turns, of 10 a second, in a period of 2 s

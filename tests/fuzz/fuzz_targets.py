@@ -7,6 +7,7 @@ import socket
 import tempfile
 from collections.abc import Iterable, Iterator
 from functools import cache
+from importlib import import_module
 from itertools import islice
 from pathlib import Path
 
@@ -165,6 +166,10 @@ def _scratch() -> Path:
 
 
 def _drawing(ending: str) -> Target:
+    import_module(
+        f"core.drawings.{ending[1:]}_reader"
+    )  # now, while what is loaded is made to tell its branches
+
     def run(data: bytes) -> Iterable[str]:
         path = _scratch() / f"fuzz{ending}"
         path.write_bytes(data)
@@ -190,6 +195,55 @@ def _drawing(ending: str) -> Target:
     return Target(f"drawing{ending}", lambda: _drawings(ending), run, (DrawingError,), pairs)
 
 
+_PLAIN_DXF = b"""0
+SECTION
+2
+ENTITIES
+0
+LINE
+8
+PART
+10
+0
+20
+0
+11
+0
+21
+5
+0
+ARC
+8
+PART
+10
+-5
+20
+5
+40
+5
+50
+0
+51
+90
+0
+LINE
+8
+PART
+10
+-5
+20
+10
+11
+-20
+21
+10
+0
+ENDSEC
+0
+EOF
+"""
+
+
 def _drawings(ending: str) -> Iterator[bytes]:
     if ending == ".svg":
         yield (
@@ -199,6 +253,7 @@ def _drawings(ending: str) -> Iterator[bytes]:
             b'<g transform="rotate(90) scale(2)"><circle cx="4" cy="4" r="2"/></g></svg>'
         )
         return
+    yield _PLAIN_DXF
     from tests.drawings.hand import chain, dxf  # noqa: PLC0415  it needs the library of drawings
 
     for points in (

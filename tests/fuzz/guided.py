@@ -13,7 +13,7 @@ from pathlib import Path
 
 import atheris
 
-_LONGEST, _MEMORY = 6000, 3000  # bytes of an input, MiB
+_LONGEST, _MEMORY = 6000, 3000  # bytes of an input, or half more than its longest seed; MiB
 _WALL = 20.0  # times the processor's time
 _TOLD = 25  # runs between two figures
 _OURS = 0.6  # of the changes that know the language
@@ -30,7 +30,8 @@ def main() -> None:
     target = next(each for each in TARGETS if each.name == name)
     corpus = folder / "corpus"
     corpus.mkdir(parents=True)
-    for number, seed in enumerate(target.seeds()):
+    seeds = list(target.seeds())
+    for number, seed in enumerate(seeds):
         (corpus / f"seed{number}").write_bytes(seed)
     begun = time.process_time()
     examined = Examined(target, folder / "faults.jsonl")
@@ -54,7 +55,8 @@ def main() -> None:
             sys.stdout.flush()
             os._exit(0)
 
-    words = ["fuzz", str(corpus), f"-max_total_time={_WALL * seconds:.0f}", f"-max_len={_LONGEST}"]
+    longest = max(_LONGEST, 3 * max(map(len, seeds)) // 2)
+    words = ["fuzz", str(corpus), f"-max_total_time={_WALL * seconds:.0f}", f"-max_len={longest}"]
     words += [
         "-timeout=60",
         f"-rss_limit_mb={_MEMORY}",

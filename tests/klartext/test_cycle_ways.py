@@ -1,4 +1,4 @@
-"""Ways of older cycles and taps, point by point."""
+"""Ways of older cycles, taps and departures, point by point."""
 
 from __future__ import annotations
 
@@ -57,13 +57,26 @@ def test_which_way_the_spindle_turns_into_a_thread_and_out_of_it(
     assert down.rpm == -up.rpm
 
 
-def test_a_tap_without_chip_breaking_goes_to_its_depth_at_once_on_any_surface() -> None:
-    """Q203 +15 and Q201 -20: to -5, and out to the clearance of 2 over the surface."""
+@pytest.mark.parametrize(
+    ("step", "back", "heights", "turns"),
+    [
+        (0, 0, [-5.0, 17.0], 1),
+        (8, 0, [7.0, 17.0, -1.0, 17.0, -5.0, 17.0], 3),
+        (8, 1, [7.0, 8.0, -1.0, 0.0, -5.0, 17.0], 3),
+        (20, 1, [-5.0, 17.0], 1),
+    ],
+)
+def test_a_tap_breaks_its_chips_by_depth_on_any_surface(
+    step: float, back: float, heights: list[float], turns: int
+) -> None:
+    """Q203 +15 and Q201 -20: to -5, and out to the clearance of 2 over the surface, or back by Q256."""
     ran = ran_of(
-        "CYCL DEF 209 T Q200=2 Q201=-20 Q239=+1 Q203=+15 Q204=30 Q257=0 Q256=0 Q336=+0\nL X+10 R0 FMAX M99"
+        f"CYCL DEF 209 T Q200=2 Q201=-20 Q239=+1 Q203=+15 Q204=30 Q257={step} Q256={back} Q336=+0\n"
+        "L X+10 R0 FMAX M99"
     )
     assert ran.codes == []
-    assert [z for _, _, z in ends([block for block in ran.blocks if block.coupled])] == [-5.0, 17.0]
+    assert [z for _, _, z in ends([block for block in ran.blocks if block.coupled])] == heights
+    assert turned(ran) == [1000.0, *[-1000.0, 1000.0] * turns]
 
 
 def test_a_pocket_is_milled_in_whole_rectangles_from_the_middle_outwards() -> None:
@@ -96,3 +109,14 @@ def test_a_round_pocket_leaves_nothing_between_its_circles() -> None:
     assert ran.codes == []
     circles = [block.length / (2.0 * math.pi) for block in ran.blocks if block.kind is Kind.PLANE_ARC]
     assert circles == pytest.approx([16.0 / 3.0, 32.0 / 3.0, 16.0] * 2)
+
+
+@pytest.mark.parametrize("lift", ["", "L Z+5\n"])
+def test_a_contour_is_left_along_its_last_way_in_the_plane(lift: str) -> None:
+    """Up Y with the tool of 4 at its left: straight on to Y 40, also where Z has moved behind it."""
+    ran = run(
+        f"L X+0 Y+0 Z+10 R0 FMAX M3\nL X+10 Y+10 RL F200\nL Y+30\n{lift}DEP LT LEN10\n",
+        tool="TOOL DEF 5 L+0 R+4\nTOOL CALL 5 Z S1000 F500\n",
+    )
+    assert ran.codes == []
+    assert [(x, y) for x, y, _ in ends(ran.blocks)][-2:] == [(6.0, 40.0)] * 2
