@@ -183,10 +183,9 @@ def _touch(each: Element, point: Point, gap: float) -> Point | None:
 def outer_side(net: Net, gap: float = GAP) -> list[Element]:
     """From the foremost point outwards and along the outside to the end at the chuck.
 
-    Raises DrawingError for a contour that crosses itself, or the axis before its end.
+    Raises DrawingError for a contour that crosses itself, or the axis before its end, or has no end in front.
     """
-    start = min(_at_front(net, gap), key=lambda n: net.nodes[n][0])
-    walked = _walk(net, start, math.radians(270.0), 1.0, gap)
+    walked = _walk(net, _foremost(net, gap), math.radians(270.0), 1.0, gap)
     return _checked(net, walked, gap)
 
 
@@ -199,10 +198,18 @@ def inner_side(net: Net, gap: float = GAP) -> list[Element]:
     front = _at_front(net, gap)  # the edge of the mouth, seen behind a section, is no wall
     mouth = {number for number, (a, b) in enumerate(net.ends) if a in front and b in front}
     walked = _walk(net, start, math.radians(90.0), -1.0, gap, mouth)
-    outer = _walk(net, min(_at_front(net, gap), key=lambda n: net.nodes[n][0]), math.radians(270.0), 1.0, gap)
+    outer = _walk(net, _foremost(net, gap), math.radians(270.0), 1.0, gap)
     if walked and any(walked[0] == each for each in outer):
         raise DrawingError("has no bore at its face: choose the outside, or another contour.")
     return _checked(net, walked, gap)
+
+
+def _foremost(net: Net, gap: float) -> int:
+    """The end of an element that is furthest in front, nearest to the axis. Raises DrawingError."""
+    front = _at_front(net, gap)
+    if not front:
+        raise DrawingError("has its foremost point inside an arc: end the arc there.")
+    return min(front, key=lambda n: net.nodes[n][0])
 
 
 def _at_front(net: Net, gap: float) -> set[int]:

@@ -14,6 +14,7 @@ MOST_BYTES = 16 * 1024 * 1024
 MOST_ELEMENTS = 50_000
 _NEAREST = 0.002  # mm between a curve and the arcs that are taken for it
 _OF_UNKNOWN = 0.0002  # the same in units of a drawing that does not say its unit: .005 mm if it is the inch
+_FARTHEST = 1e8  # units: beyond it what is a thousandth of a unit is no longer told apart
 _NONE = 1e-9
 
 
@@ -110,6 +111,9 @@ def within_limits(found: Iterable[Drawn], name: str) -> Iterator[Drawn]:
             raise DrawingError(
                 f"{name} has more than {MOST_ELEMENTS} lines: leave the layer of the contour in it alone."
             )
-        if not all(math.isfinite(v) for p in (each.element.start, each.element.end) for v in p):
+        values = [v for p in (each.element.start, each.element.end) for v in p]
+        if not all(map(math.isfinite, values)):
             raise DrawingError(f"{name} has a point that is no number: save the drawing anew.")
+        if max(map(abs, values)) > _FARTHEST:
+            raise DrawingError(f"{name} has a point too far from its zero: move the contour to the zero.")
         yield each

@@ -45,9 +45,12 @@ def _shapes(path: Path) -> Any:
         raise DrawingError(f"{path.name} has entities of its own, which are not read: save it as plain SVG.")
     try:
         with path.open("rb") as file:
-            return SVG.parse(file, reify=True, ppi=_PIXELS)
+            root = SVG.parse(file, reify=True, ppi=_PIXELS)
     except Exception as error:
         raise damaged(path, "SVG", error) from error
+    if not isinstance(root, SVG):
+        raise damaged(path, "SVG", ValueError("its first element is of another namespace"))
+    return root
 
 
 def _drawn(root: Any, near: float, left_out: Counter[str]) -> Iterator[Drawn]:

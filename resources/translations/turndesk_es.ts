@@ -16345,6 +16345,11 @@
     </message>
     <message>
       <location filename="core/drawings/contour_walk.py" />
+      <source>has its foremost point inside an arc: end the arc there.</source>
+      <translation>tiene su punto más adelantado dentro de un arco: termine el arco allí.</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/contour_walk.py" />
       <source>has no bore at its face: choose the outside, or another contour.</source>
       <translation>no tiene agujero en su cara: elija el exterior u otro contorno.</translation>
     </message>
@@ -16357,6 +16362,11 @@
       <location filename="core/drawings/drawing.py" />
       <source>%1 has a point that is no number: save the drawing anew.</source>
       <translation>%1 tiene un punto que no es un número: guarde el dibujo de nuevo.</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/drawing.py" />
+      <source>%1 has a point too far from its zero: move the contour to the zero.</source>
+      <translation>%1 tiene un punto demasiado lejos de su cero: lleve el contorno al cero.</translation>
     </message>
     <message>
       <location filename="core/drawings/drawing.py" />

@@ -9,6 +9,7 @@ import pytest
 
 from core.drawings.drawing import DrawingError
 from core.drawings.drawing_file import read_drawing
+from core.drawings.drawing_view import Side, View, axis_named, contours, profile
 from core.geometry.lines_and_arcs import Arc, Line
 from tests.drawings.hand import SLIM, profile_of, program, radii
 
@@ -74,12 +75,21 @@ def test_shapes_and_units(tmp_path: Path) -> None:
     assert bare.unit == 0.0
 
 
+HEAD = "<svg xmlns='http://www.w3.org/2000/svg' width='40mm' height='20mm' viewBox='0 0 40 20'>"
+
+
 @pytest.mark.parametrize(
     ("text", "says"),
     [
         ("<svg xmlns='http://www.w3.org/2000/svg'><text>M8</text></svg>", "no path nor line"),
         ("<svg xmlns='http://www.w3.org/2000/svg'><path d='M0 0L1", "damaged"),
         ("no drawing at all", "damaged or no SVG"),
+        (
+            "<svg xmlns='http://www.w6.org/2000/svg'><path d='M0 0L1 5'/></svg>",
+            "damaged or no SVG .*namespace",
+        ),
+        (f"{HEAD}<rect x='1' y='1' width='5e24' height='2'/></svg>", "point too far from its zero"),
+        (f"{HEAD}<path d='M0 0 A5 50 0 0 0 {'5' * 50} 10 h10'/></svg>", "point too far from its zero"),
         ("<?xml version='1.0'?><!DOCTYPE s [<!ENTITY a 'b'>]><svg>&a;</svg>", "entities of its own"),
     ],
 )
@@ -88,3 +98,16 @@ def test_what_is_no_drawing(tmp_path: Path, text: str, says: str) -> None:
     path.write_text(text)
     with pytest.raises(DrawingError, match=says):
         read_drawing(path)
+
+
+def test_a_contour_that_bulges_before_all_its_ends_is_refused(tmp_path: Path) -> None:
+    """An arc of R 5 about 20, 5 from -30 to 60 degrees: its foremost point, at 25, is none of its ends."""
+    path = tmp_path / "x.svg"
+    path.write_text(f"{HEAD}<path d='M0 2.5 H24.330127 A5 5 0 0 1 22.5 9.330127 H0'/></svg>")
+    drawing = read_drawing(path)
+    view = View(axis_named(drawing, ""), drawing.unit or 1.0)
+    (net,) = contours(drawing, view)
+    with pytest.raises(DrawingError, match="foremost point inside an arc: end the arc there"):
+        profile(drawing, view, net, Side.OUTSIDE)
+    with pytest.raises(DrawingError, match="no bore at its face"):
+        profile(drawing, view, net, Side.INSIDE)

@@ -1,0 +1,121 @@
+"""Pins and signals as halcmd shows them: what is wrong with one, and how the machine is hung on ours."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from drivers.hal.bridge.hal_pins import Pin, Signal, Wanted, halcmd, is_on, nets, pins_of, signals_of, trouble
+
+# ``halcmd -s show pin`` and ``show sig``: owner, type, way, value, name, arrow and signal.
+SHOWN_PINS = """\
+4  float IN    0          x-motor.in ==> x-cmd
+4  float OUT   1.25       x-motor.out
+4  bit   OUT   TRUE       guard.out ==> guard
+5  bit   IN    FALSE      lamp.in
+5  bit   IN    TRUE       ear.in <== guard
+5  bit   I/O   FALSE      index
+"""
+SHOWN_SIGNALS = """\
+float 0         x-cmd
+                         ==> x-motor.in
+bit   TRUE      guard
+                         <== guard.out
+bit   FALSE     by-hand
+"""
+PINS = pins_of(SHOWN_PINS)
+SIGNALS = signals_of(PINS, SHOWN_SIGNALS)
+
+
+def wanted(pin: str, kind: str = "bit", *, drives: bool = False, ours: str = "ours") -> Wanted:
+    return Wanted("io.some", pin, kind, drives, ours)
+
+
+def test_what_halcmd_shows_is_read() -> None:
+    assert PINS["x-motor.in"] == Pin("float", "IN", "x-cmd", "0")
+    assert PINS["x-motor.out"] == Pin("float", "OUT", "", "1.25")
+    assert PINS["index"] == Pin("bit", "I/O", "", "FALSE")
+    assert SIGNALS["x-cmd"] == Signal("float", False, "0")
+    assert SIGNALS["guard"] == Signal("bit", True, "TRUE")
+    assert SIGNALS["by-hand"] == Signal("bit", False, "FALSE")
+    assert len(SIGNALS) == 3
+    assert (pins_of("\nnothing here\n"), signals_of({}, "\nfloat 1\n")) == ({}, {})
+
+
+@pytest.mark.parametrize(
+    ("asked", "why"),
+    [
+        (wanted("guard.out"), ""),
+        (wanted("by-hand"), ""),
+        (wanted("by-hand", drives=True), ""),
+        (wanted("lamp.in", drives=True), ""),
+        (wanted("x-motor.in", "float", drives=True), ""),  # on a signal that nothing drives
+        (wanted("ear.in"), ""),  # an input that hears what something else drives
+        (wanted("index", drives=True), ""),
+        (wanted("gaurd.out"), "HAL has no such pin or signal"),
+        (wanted("x-motor.out"), "is float, expected bit"),
+        (wanted("x-cmd"), "is float, expected bit"),
+        (wanted("guard.out", drives=True), "is an output, expected an input, which this control drives"),
+        (wanted("lamp.in"), "is an input, expected an output, which it reads"),
+        (wanted("ear.in", drives=True), "something else drives it by the signal guard; take that net out"),
+        (wanted("guard", drives=True), "something else drives this signal; take that net out"),
+    ],
+)
+def test_a_pin_that_is_not_as_the_machine_file_says_is_told(asked: Wanted, why: str) -> None:
+    told = trouble(asked, PINS, SIGNALS)
+    assert told.startswith(why)
+    assert bool(told) is bool(why)
+
+
+def test_whether_a_pin_or_a_signal_is_on() -> None:
+    assert is_on("guard", PINS, SIGNALS)
+    assert is_on("guard.out", PINS, SIGNALS)
+    assert not is_on("by-hand", PINS, SIGNALS)
+    assert not is_on("lamp.in", PINS, SIGNALS)
+
+
+def test_the_machine_is_hung_on_our_signals_and_keeps_its_own() -> None:
+    """A loose pin comes to ours; what hangs already takes ours to it; what nobody drives keeps its value."""
+    asked = [
+        wanted("lamp.in", drives=True, ours="lamp"),
+        wanted("guard.out", ours="door"),
+        wanted("by-hand", ours="start"),
+    ]
+    ours = {**PINS, "old.in": Pin("bit", "IN", "door")}  # of ours, and to go where the machine's signal is
+    lines = nets(asked, {"door": ["bridge.in.door"], "lamp": ["bridge.out.lamp"]}, ours, SIGNALS)
+    assert lines == [
+        "unlinkp old.in",
+        "net guard old.in",
+        "net lamp lamp.in",
+        "net guard bridge.in.door",
+        "net lamp bridge.out.lamp",
+        "sets by-hand FALSE",
+    ]
+
+
+def test_one_of_ours_on_two_of_theirs_is_refused() -> None:
+    asked = [wanted("guard", ours="door"), wanted("by-hand", ours="door")]
+    with pytest.raises(RuntimeError, match=r"io\.some: by-hand and guard are driven alike; make them one"):
+        nets(asked, {}, PINS, SIGNALS)
+
+
+@pytest.mark.parametrize(
+    ("script", "told"),
+    [
+        ("echo 'HAL: ERROR: pin not found' >&2; exit 1", "HAL: ERROR: pin not found"),
+        ("echo 'no'; exit 2", "no"),
+        ("exit 3", "halcmd has failed"),
+    ],
+)
+def test_what_halcmd_refuses_is_told_in_its_words(
+    script: str, told: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    command = tmp_path / "halcmd"
+    command.write_text(f"#!/bin/sh\n{script}\n")
+    command.chmod(0o755)
+    monkeypatch.setenv("PATH", f"{tmp_path}:/bin:/usr/bin")
+    with pytest.raises(RuntimeError, match=told):
+        halcmd("show", "pin")
+    command.write_text('#!/bin/sh\necho "asked $*"\n')
+    assert halcmd("-s", "show", "pin") == "asked -s show pin\n"
