@@ -74,10 +74,13 @@ def _drawn(document: Document, near: float, left_out: Counter[str], name: str) -
         layer.dxf.name for layer in document.layers if _centre(layer.dxf.name, layer.dxf.linetype)
     }
     for entity in _taken_apart(document.modelspace(), name, 0):
+        read = _READERS.get(entity.dxftype())
+        if read is None and not entity.dxf.is_supported("layer"):  # a kind that no drawing program knows
+            left_out[entity.dxftype()] += 1
+            continue
         layer = entity.dxf.get("layer", "0")
         if layer in hidden or entity.dxf.get("invisible", 0):
             continue
-        read = _READERS.get(entity.dxftype())
         if read is None:
             left_out[entity.dxftype()] += 1
             continue

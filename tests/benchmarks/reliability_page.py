@@ -166,7 +166,9 @@ def _mutants(result: Result, folder: Path) -> Iterator[str]:
         f"come by its line; wanted are {TOLD:.0f} % of those that change what the program does. Told "
         "since is what new tests tell, or such as the quick part leaves out for their time.\n"
     )
-    yield _table(["room", "mutants", "told", "told since", "the same program", "told of the others"], rows)
+    yield _table(
+        ["room", "mutants", "told", "at first", "told since", "the same", "told of the others"], rows
+    )
     if living:
         yield "Those that live:\n\n" + "\n".join(living) + "\n"
 

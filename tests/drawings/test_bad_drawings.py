@@ -209,3 +209,13 @@ def test_a_disk_that_fails_is_not_called_damage(
     with pytest.raises(DrawingError) as told:
         read_drawing(path)
     assert str(told.value) == f"{name} {said}"
+
+
+def test_an_entity_of_an_unknown_kind_is_left_out_and_told(tmp_path: Path) -> None:
+    """Programs write kinds of their own; what has not even a layer is no line of a contour."""
+    path = tmp_path / "own.dxf"
+    lines = "0 SECTION 2 ENTITIES 0 OWNKIND 8 PART 0 LINE 8 PART 10 0 20 0 11 0 21 5 0 ENDSEC 0 EOF"
+    path.write_text("\n".join(lines.split()) + "\n")
+    drawing = read_drawing(path)
+    assert len(drawing.drawn) == 1
+    assert drawing.left_out == {"OWNKIND": 1}
