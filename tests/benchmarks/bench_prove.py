@@ -36,6 +36,14 @@ def program(moves: int) -> str:
     return f"{HEAD}{cuts(moves)}G00X1\nZ1\nM30\n"
 
 
+def feeds(moves: int) -> str:
+    """The same with an F on each of them, never that of the line before."""
+    lines = cuts(moves).splitlines()
+    return (
+        f"{HEAD}" + "".join(f"{line}F.00{3 + k % 5}\n" for k, line in enumerate(lines)) + "G00X1\nZ1\nM30\n"
+    )
+
+
 def loop(passes: int) -> str:
     """900 of them, gone through so often."""
     return f"{HEAD}X.5Z0\nLS{passes}\n{cuts(900)}LF\nG00X1\nZ1\nM30\n"

@@ -1,0 +1,66 @@
+"""How fast TurnDesk should be, by the rows of docs/speed.md, and why it is not where it is not.
+
+A reason is what a profile showed (docs/decisions/0096-what-a-start-and-a-long-proof-cost.md), not an excuse:
+who gets rid of it takes it out here. Goals are seconds of processor time, MiB, or ms where the row says ms.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import NamedTuple
+
+
+class Goal(NamedTuple):
+    """``most``: as the figure of its row; ``memory``: MiB at most, 0: no goal; ``why`` it is not met."""
+
+    most: float
+    why: str
+    memory: float = 0.0
+
+
+_IMPORTS = (
+    "107 dataclasses, which Python compiles, are .06 s of it, numpy .05, a bare interpreter .025, "
+    "other modules .08"
+)
+
+GOALS: Mapping[str, Goal] = {
+    "prove 200 blocks": Goal(0.15, f"{_IMPORTS}; the proof itself is .035"),
+    "headless, to the first setpoint": Goal(0.2, f"{_IMPORTS}; executor and drivers come on top"),
+    "window usable": Goal(
+        0.5,
+        "Qt is .13 s of it, 390 dataclasses .15 to .2, numpy .05, our other modules and the window the rest",
+    ),
+    "prove 1,000,000 blocks": Goal(
+        1.2,
+        "look-ahead and times over arrays are 1.9 s of it (rounded words eased .7, limits and phases the "
+        "rest), checks .3, reading .4; the text, its lines and their columns are most of the memory",
+        memory=200.0,
+    ),
+    "expand 1,000,000 blocks": Goal(
+        3.0, "the same look-ahead, for the times, and 1.7 s to write the lines of the table one by one"
+    ),
+    "expand --json 1,000,000 blocks": Goal(
+        3.0,
+        "the same look-ahead, for the times, and 3 s to write the objects one by one, "
+        "most of it digits of floats",
+    ),
+    "prove 200 blocks, read anew": Goal(
+        2.0,
+        "hundreds of calls of numpy on short arrays; look-ahead is a third, reading and blocks another",
+    ),
+    "prove 20,000 blocks, read anew": Goal(50.0, "look-ahead over arrays is three quarters of it"),
+}
+
+
+def goal_of(name: str, pattern: str) -> str:
+    """The goal of a row as the table shows it; a dash where there is none."""
+    goal = GOALS.get(name)
+    return "–" if goal is None else pattern.format(goal.most)
+
+
+def not_met(figures: Mapping[str, Sequence[float]]) -> Iterator[str]:
+    """A sentence for each row whose figure, or whose memory beside it, is over its goal."""
+    for name, (figure, *memory) in figures.items():
+        goal = GOALS.get(name)
+        if goal is not None and (figure > goal.most or (goal.memory and memory and memory[0] > goal.memory)):
+            yield f"{name}: {goal.why}."
