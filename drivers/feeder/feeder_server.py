@@ -307,8 +307,11 @@ class Feeder:
 
     def _trip(self, away: float, *, spindle: bool = True) -> None:
         """Outputs safe, as modules have made them already that missed our heartbeat, and the spindle stopped
-        unless a tool is still in the cut. What was on is what the control has to be told.
+        unless a tool is still in the cut, or it stands and is held at its angle. What was on is what the
+        control has to be told.
         """
+        orientation = self._ports.orientation
+        spindle = spindle and not (orientation is not None and orientation.oriented())
         before = dict(self._ports.io.outputs())
         self._carefully(self._ports.io.safe)
         if spindle:

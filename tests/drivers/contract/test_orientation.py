@@ -120,6 +120,25 @@ def test_a_wire_that_is_lost_on_the_way_is_one_alarm_of_the_wire(control: Contro
     assert control.world.rpm() == 0.0
 
 
+@pytest.mark.parametrize("held", [True, False], ids=["held", "on its way"])
+def test_a_control_that_was_silent_for_a_moment_goes_on(control: Control, held: bool) -> None:
+    """What is held stays so, with the tool in the cut; a way that has been cut short is begun again."""
+    start(control)
+    if held:
+        control.until_true(lambda _: control.world.place()[1] < -12.0)
+    for _ in range(300 if held else 60):  # a queue is played to its end before anything is switched off
+        control.rig.alone(0.01)
+    if held:
+        assert at(control.rig) == pytest.approx(90.0, abs=0.1)
+    control.until(State.HOLD, State.IDLE)
+    if control.state is State.HOLD:
+        control.run(0.5)
+        control.press()
+        control.until(State.IDLE)
+    assert control.shot.alarms == ()
+    assert control.world.place()[1] == pytest.approx(-30.0, abs=0.01)
+
+
 def test_answers_that_come_late_cost_nothing_but_time(control: Control) -> None:
     if "late answers" not in control.rig.harmless:
         pytest.skip("the simulated machine is in this process: there is no wire")
