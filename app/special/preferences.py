@@ -42,7 +42,7 @@ class ScreenPreferences(SpecialFunction):
         """One row for each setting: what is chosen now."""
         now = self.desk.settings.now
         rows = tuple(Row((words, _in_words(name, getattr(now, name)))) for name, words in WORDS.items())
-        control = "MM" if snapshot.modal.metric else "INCH"
+        metric = snapshot.modal.metric
         return Sheet(
             "SCREEN",
             ("", ""),
@@ -50,7 +50,7 @@ class ScreenPreferences(SpecialFunction):
             rows,
             self.marked,
             notes=(
-                f"The control is in {control} now.",
+                "The control counts in millimetres now." if metric else "The control counts in inches now.",
                 "Units change the figures that are shown; what is typed is always in the control's unit.",
             ),
         )

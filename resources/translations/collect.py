@@ -99,6 +99,8 @@ ALSO = (
     "a drill",
     "a reamer",
     "a tap",
+    "POINT +",
+    "POINT -",
     "M03 FWD",
     "M04 REV",
     "M05 OFF",

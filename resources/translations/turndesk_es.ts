@@ -2021,7 +2021,7 @@
     <message>
       <location filename="" />
       <source>M%1 starts the spindle with the collet open.</source>
-      <translation>M%1 arranca el husillo con la boquilla abierta.</translation>
+      <translation>M%1 arranca el husillo con la pinza abierta.</translation>
     </message>
     <message>
       <location filename="" />
@@ -2031,7 +2031,7 @@
     <message>
       <location filename="" />
       <source>M13 opens the collet while the spindle turns.</source>
-      <translation>M13 abre la boquilla con el husillo girando.</translation>
+      <translation>M13 abre la pinza con el husillo girando.</translation>
     </message>
     <message>
       <location filename="" />
@@ -2362,6 +2362,16 @@
       <location filename="" />
       <source>PLANE not permitted with M128: %1</source>
       <translation>PLANE no permitido con M128: %1</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>POINT +</source>
+      <translation>PUNTO +</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>POINT -</source>
+      <translation>PUNTO -</translation>
     </message>
     <message>
       <location filename="" />
@@ -5061,12 +5071,12 @@
     <message>
       <location filename="app/desk/desk.py" />
       <source>PRESS BOTH PALM BUTTONS</source>
-      <translation>OPRIMA LOS DOS BOTONES DE PALMA</translation>
+      <translation>OPRIMA LOS DOS PULSADORES</translation>
     </message>
     <message>
       <location filename="app/desk/desk.py" />
       <source>PRESS BOTH PALM BUTTONS (F11 + F12)</source>
-      <translation>OPRIMA LOS DOS BOTONES DE PALMA (F11 + F12)</translation>
+      <translation>OPRIMA LOS DOS PULSADORES (F11 + F12)</translation>
     </message>
     <message>
       <location filename="app/desk/desk.py" />
@@ -5326,7 +5336,7 @@
     <message>
       <location filename="app/desk/modal_rows.py" />
       <source>COLLET</source>
-      <translation>BOQUILLA</translation>
+      <translation>PINZA</translation>
     </message>
     <message>
       <location filename="app/desk/modal_rows.py" />
@@ -5716,12 +5726,12 @@
     <message>
       <location filename="app/desk/prompt_line.py" />
       <source>ONE PALM BUTTON ALONE DOES NOT START: PRESS BOTH WITHIN HALF A SECOND</source>
-      <translation>UN SOLO BOTÓN DE PALMA NO ARRANCA: OPRIMA LOS DOS EN MEDIO SEGUNDO</translation>
+      <translation>UN SOLO PULSADOR NO ARRANCA: OPRIMA LOS DOS EN MEDIO SEGUNDO</translation>
     </message>
     <message>
       <location filename="app/desk/prompt_line.py" />
       <source>ONE PALM BUTTON WAS HELD LONGER THAN HALF A SECOND: LET BOTH GO, THEN PRESS BOTH</source>
-      <translation>UN BOTÓN DE PALMA SE SOSTUVO MÁS DE MEDIO SEGUNDO: SUELTE LOS DOS Y OPRIMA LOS DOS</translation>
+      <translation>UN PULSADOR SE SOSTUVO MÁS DE MEDIO SEGUNDO: SUELTE LOS DOS Y OPRIMA LOS DOS</translation>
     </message>
     <message>
       <location filename="app/desk/prompt_line.py" />
@@ -5846,12 +5856,12 @@
     <message>
       <location filename="app/desk/readouts.py" />
       <source>COLLET CLOSED</source>
-      <translation>BOQUILLA CERRADA</translation>
+      <translation>PINZA CERRADA</translation>
     </message>
     <message>
       <location filename="app/desk/readouts.py" />
       <source>COLLET OPEN</source>
-      <translation>BOQUILLA ABIERTA</translation>
+      <translation>PINZA ABIERTA</translation>
     </message>
     <message>
       <location filename="app/desk/readouts.py" />
@@ -11136,7 +11146,7 @@
     <message>
       <location filename="app/scope/analyses.py" />
       <source>THREAD</source>
-      <translation>ROSCADO</translation>
+      <translation>ROSCA</translation>
     </message>
     <message>
       <location filename="app/scope/analyses.py" />
@@ -12226,7 +12236,7 @@
     <message>
       <location filename="app/screen/station_dock.py" />
       <source>CYCLE START: BOTH PALMS</source>
-      <translation>INICIO DE CICLO: DOS PALMAS</translation>
+      <translation>INICIO DE CICLO: DOS PULSADORES</translation>
     </message>
     <message>
       <location filename="app/screen/station_dock.py" />
@@ -12496,12 +12506,12 @@
     <message>
       <location filename="app/searchto/searchto_plan.py" />
       <source>THE COLLET IS CLOSED AND MUST BE OPEN AT THIS LINE: M13 IN MDI</source>
-      <translation>LA BOQUILLA ESTÁ CERRADA Y DEBE ESTAR ABIERTA EN ESTA LÍNEA: M13 EN MDI</translation>
+      <translation>LA PINZA ESTÁ CERRADA Y DEBE ESTAR ABIERTA EN ESTA LÍNEA: M13 EN MDI</translation>
     </message>
     <message>
       <location filename="app/searchto/searchto_plan.py" />
       <source>THE COLLET IS OPEN AND MUST BE CLOSED AT THIS LINE: M12 IN MDI</source>
-      <translation>LA BOQUILLA ESTÁ ABIERTA Y DEBE ESTAR CERRADA EN ESTA LÍNEA: M12 EN MDI</translation>
+      <translation>LA PINZA ESTÁ ABIERTA Y DEBE ESTAR CERRADA EN ESTA LÍNEA: M12 EN MDI</translation>
     </message>
     <message>
       <location filename="app/searchto/searchto_plan.py" />
@@ -14006,7 +14016,7 @@
     <message>
       <location filename="app/special/preferences.py" />
       <source>PALM BUTTONS ON THE SCREEN</source>
-      <translation>BOTONES DE PALMA EN PANTALLA</translation>
+      <translation>PULSADORES EN PANTALLA</translation>
     </message>
     <message>
       <location filename="app/special/preferences.py" />
@@ -14035,8 +14045,13 @@
     </message>
     <message>
       <location filename="app/special/preferences.py" />
-      <source>The control is in %1 now.</source>
-      <translation>El control está ahora en %1.</translation>
+      <source>The control counts in inches now.</source>
+      <translation>El control cuenta ahora en pulgadas.</translation>
+    </message>
+    <message>
+      <location filename="app/special/preferences.py" />
+      <source>The control counts in millimetres now.</source>
+      <translation>El control cuenta ahora en milímetros.</translation>
     </message>
     <message>
       <location filename="app/special/preferences.py" />
@@ -15701,7 +15716,7 @@
     <message>
       <location filename="core/alarms/spindle_alarms.py" />
       <source>WAIT UNTIL THE SPINDLE STANDS; check air, collet and bar, Reset</source>
-      <translation>ESPERE A QUE EL HUSILLO PARE; revise aire, boquilla y barra, Reset</translation>
+      <translation>ESPERE A QUE EL HUSILLO PARE; revise aire, pinza y barra, Reset</translation>
     </message>
     <message>
       <location filename="core/alarms/spindle_alarms.py" />
@@ -15751,17 +15766,17 @@
     <message>
       <location filename="core/alarms/spindle_alarms.py" />
       <source>close the collet with M12, Reset, start again</source>
-      <translation>cierre la boquilla con M12, Reset, arranque otra vez</translation>
+      <translation>cierre la pinza con M12, Reset, arranque otra vez</translation>
     </message>
     <message>
       <location filename="core/alarms/spindle_alarms.py" />
       <source>collet does not answer</source>
-      <translation>la boquilla no responde</translation>
+      <translation>la pinza no responde</translation>
     </message>
     <message>
       <location filename="core/alarms/spindle_alarms.py" />
       <source>collet has opened</source>
-      <translation>la boquilla se abrió</translation>
+      <translation>la pinza se abrió</translation>
     </message>
     <message>
       <location filename="core/alarms/spindle_alarms.py" />
@@ -15961,7 +15976,7 @@
     <message>
       <location filename="core/alarms/spindle_alarms.py" />
       <source>spindle start with the collet open</source>
-      <translation>arranque del husillo con la boquilla abierta</translation>
+      <translation>arranque del husillo con la pinza abierta</translation>
     </message>
     <message>
       <location filename="core/alarms/spindle_alarms.py" />
@@ -16006,7 +16021,7 @@
     <message>
       <location filename="core/alarms/spindle_alarms.py" />
       <source>the collet's switch does not answer</source>
-      <translation>el interruptor de la boquilla no responde</translation>
+      <translation>el interruptor de la pinza no responde</translation>
     </message>
     <message>
       <location filename="core/alarms/spindle_alarms.py" />
@@ -16091,7 +16106,7 @@
     <message>
       <location filename="core/alarms/spindle_alarms.py" />
       <source>the spindle still turns where the program opens the collet</source>
-      <translation>el husillo todavía gira donde el programa abre la boquilla</translation>
+      <translation>el husillo todavía gira donde el programa abre la pinza</translation>
     </message>
     <message>
       <location filename="core/alarms/spindle_alarms.py" />
@@ -16126,7 +16141,7 @@
     <message>
       <location filename="core/alarms/spindle_alarms.py" />
       <source>unclamping refused</source>
-      <translation>apertura de boquilla rechazada</translation>
+      <translation>apertura de pinza rechazada</translation>
     </message>
     <message>
       <location filename="core/alarms/station_alarms.py" />
@@ -16676,7 +16691,7 @@
     <message>
       <location filename="core/executor/command_handler.py" />
       <source>press both palm buttons</source>
-      <translation>oprima los dos botones de palma</translation>
+      <translation>oprima los dos pulsadores</translation>
     </message>
     <message>
       <location filename="core/executor/command_handler.py" />
@@ -16701,7 +16716,7 @@
     <message>
       <location filename="core/executor/command_handler.py" />
       <source>the collet is not opened by hand while the spindle turns</source>
-      <translation>la boquilla no se abre a mano mientras gira el husillo</translation>
+      <translation>la pinza no se abre a mano mientras gira el husillo</translation>
     </message>
     <message>
       <location filename="core/executor/command_handler.py" />
@@ -17511,7 +17526,7 @@
     <message>
       <location filename="core/executor/start_conditions.py" />
       <source>the collet is %1 and must be %2 at line %3: use MDI</source>
-      <translation>la boquilla está %1 y debe estar %2 en la línea %3: use MDI</translation>
+      <translation>la pinza está %1 y debe estar %2 en la línea %3: use MDI</translation>
     </message>
     <message>
       <location filename="core/executor/start_conditions.py" />
@@ -17561,7 +17576,7 @@
     <message>
       <location filename="core/executor/start_conditions.py" />
       <source>the spindle is not started with the collet open: close it first</source>
-      <translation>el husillo no arranca con la boquilla abierta: ciérrela primero</translation>
+      <translation>el husillo no arranca con la pinza abierta: ciérrela primero</translation>
     </message>
     <message>
       <location filename="core/executor/start_conditions.py" />
@@ -19906,7 +19921,7 @@
     <message>
       <location filename="core/interpreter/machine_requirements.py" />
       <source>output collet</source>
-      <translation>la salida de la boquilla</translation>
+      <translation>la salida de la pinza</translation>
     </message>
     <message>
       <location filename="core/interpreter/machine_requirements.py" />
@@ -22976,7 +22991,7 @@
     <message>
       <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
       <source>%1 starts the spindle with the collet open.</source>
-      <translation>%1 arranca el husillo con la boquilla abierta.</translation>
+      <translation>%1 arranca el husillo con la pinza abierta.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
@@ -27641,7 +27656,7 @@
     <message>
       <location filename="core/proving/cutting_checks.py" />
       <source>Close the collet with M12 before it.</source>
-      <translation>Cierre antes la boquilla con M12.</translation>
+      <translation>Cierre antes la pinza con M12.</translation>
     </message>
     <message>
       <location filename="core/proving/cutting_checks.py" />
@@ -27666,7 +27681,7 @@
     <message>
       <location filename="core/proving/cutting_checks.py" />
       <source>The program ends with the collet open, and the next cycle cuts on line %1 before any M12.</source>
-      <translation>El programa termina con la boquilla abierta, y el ciclo siguiente corta en la línea %1 antes de un M12.</translation>
+      <translation>El programa termina con la pinza abierta, y el ciclo siguiente corta en la línea %1 antes de un M12.</translation>
     </message>
     <message>
       <location filename="core/proving/cutting_checks.py" />
@@ -27696,7 +27711,7 @@
     <message>
       <location filename="core/proving/cutting_checks.py" />
       <source>This move cuts with the collet open: the part is held by nothing.</source>
-      <translation>Este movimiento corta con la boquilla abierta: nada sujeta la pieza.</translation>
+      <translation>Este movimiento corta con la pinza abierta: nada sujeta la pieza.</translation>
     </message>
     <message>
       <location filename="core/proving/cutting_checks.py" />
@@ -27706,7 +27721,7 @@
     <message>
       <location filename="core/proving/cutting_checks.py" />
       <source>This move feeds with the collet open, and not away from the spindle as a bar is pulled.</source>
-      <translation>Este movimiento avanza con la boquilla abierta, y no alejándose del husillo como al jalar la barra.</translation>
+      <translation>Este movimiento avanza con la pinza abierta, y no alejándose del husillo como al jalar la barra.</translation>
     </message>
     <message>
       <location filename="core/proving/cutting_checks.py" />
