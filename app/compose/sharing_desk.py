@@ -58,7 +58,7 @@ def open_sharing(desk: Desk, journal: Journal) -> Callable[[], None]:
     assert table is not None
     heard = Heard(desk, journal)
     thread = SharingThread(model.sharing, table.look, heard.hear)
-    model.look_now = thread.look_now
+    model.look_now, model.silent_for = thread.look_now, thread.silent_for
     thread.start()
     return thread.close
 

@@ -32,6 +32,7 @@ _STATES = {
 }
 _ORDER = tuple(_STATES)
 _WIDE = 110  # letters of a note
+_PATIENCE = 30.0  # s: a place that takes longer is told; git has an end of its own behind 60
 
 
 @dataclass(slots=True)
@@ -87,11 +88,15 @@ class NewestElsewhere:
 
 @dataclass(slots=True)
 class SharingModel:
-    """``sharing`` None: the machine file names no place. ``look_now`` wakes the thread that looks."""
+    """``sharing`` None: the machine file names no place. ``look_now`` wakes the thread that looks.
+
+    ``silent_for``: the seconds that it has waited for the place.
+    """
 
     desk: Desk
     sharing: Sharing | None = None
     look_now: Callable[[], None] = lambda: None
+    silent_for: Callable[[], float] = lambda: 0.0
     marked: int = 0
     worker: Latest = field(default_factory=lambda: Latest("sharing-page"))
     elsewhere: VersionsElsewhere = field(init=False)
@@ -153,7 +158,7 @@ class SharingModel:
     def sheet(self) -> Sheet:
         """Programs, how each stands, whose is the newest elsewhere, where it is."""
         rows = self._of[2] if self.programs else ()
-        notes = wrap(tr(self.shared.trouble), _WIDE)
+        notes = wrap(self._silence() or tr(self.shared.trouble), _WIDE)
         notes += [f"{name}: {why}" for name, why in list(self.shared.refused.items())[:2]]
         if self.sharing is None:
             notes = [NO_PLACE]
@@ -171,6 +176,16 @@ class SharingModel:
             notes=tuple(notes),
             raw=frozenset({0, 2, 3, 4}),
         )
+
+    def _silence(self) -> str:
+        """That the place does not answer: a look waits for it, and so would all that is asked for now."""
+        seconds = self.silent_for()
+        if self.sharing is None or seconds < _PATIENCE:
+            return ""
+        words = tr(
+            "{name} HAS NOT ANSWERED FOR {seconds} S: PROGRAMS ARE SAVED HERE, AND SHARED WHEN IT DOES"
+        )
+        return words.format(name=self.sharing.place.name, seconds=f"{seconds:.0f}")
 
     def _row(self, key: str, family: Family) -> Row:
         state = self.shared.states[key]
@@ -207,7 +222,7 @@ class SharingModel:
             self.desk.say(MARK_ONE if here is None else "NO OTHER DESK HAS A NEWER VERSION")
         elif self.desk.refused(Act.PROGRAMS):
             return
-        elif why := self._in_use(version.key):
+        elif why := self._silence() or self._in_use(version.key):
             self.desk.say(why)
         elif here[1].here:
             words = tr(
@@ -247,8 +262,8 @@ class SharingModel:
             self._work(lambda: sharing.keep(key), said, f"program {name} kept as it is here")
 
     def _work(self, work: Callable[[], object], words: str, change: str) -> None:
-        if self.worker.busy:
-            self.desk.say(BUSY)
+        if self.worker.busy or self._silence():
+            self.desk.say(self._silence() or BUSY)
             return
 
         who = self.desk.access.who  # who has asked, though another signs in meanwhile
@@ -285,6 +300,8 @@ class SharingModel:
         """Now, and not with the next look."""
         if self.sharing is None:
             self.desk.say(NO_PLACE)
+        elif self._silence():
+            self.desk.say(self._silence())
         else:
             self.desk.done("LOOKING")
             self.look_now()

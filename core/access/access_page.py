@@ -14,6 +14,8 @@ _HEAD = """\
 Written from `core/access/access_table.py` by `python -m core.access.access_page docs/access.md`. Levels are
 off until somebody of SERVICE level is entered (`F10` ACCESS LEVELS, or `turndesk access add`); the guide says
 how. A level may all that those before it may. Behind no level, ever: {never}.
+What lies in the program folder the desk publishes by itself, behind no level: whoever put it there had to be
+allowed to, and what is published replaces nothing on another desk.
 """
 
 

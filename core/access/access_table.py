@@ -90,8 +90,8 @@ RULES: dict[Act, Rule] = {
     ),
     Act.PROGRAMS: Rule(
         Level.SETUP,
-        "saving, copying, renaming, deleting, importing and receiving a program; publishing it, taking that "
-        "of another desk or keeping one's own against it",
+        "saving, copying, renaming, deleting, importing and receiving a program; publishing it by a command, "
+        "taking that of another desk or keeping one's own against it",
         "F3, F6, F10, X",
         "serial receive, share publish, share take, share keep, profile --out",
     ),

@@ -13130,6 +13130,11 @@
     </message>
     <message>
       <location filename="app/sharing/sharing_model.py" />
+      <source>{name} HAS NOT ANSWERED FOR {seconds} S: PROGRAMS ARE SAVED HERE, AND SHARED WHEN IT DOES</source>
+      <translation>{name} NO RESPONDE DESDE HACE {seconds} S: LOS PROGRAMAS SE GUARDAN AQUÍ Y SE COMPARTEN CUANDO RESPONDA</translation>
+    </message>
+    <message>
+      <location filename="app/sharing/sharing_model.py" />
       <source>{name} IS AS {desk} HAS IT NOW</source>
       <translation>{name} ESTÁ AHORA COMO EN {desk}</translation>
     </message>

@@ -171,3 +171,19 @@ def test_without_a_place_the_page_says_what_names_one(day: Day) -> None:
     assert day.prompt == "MARK A PROGRAM FIRST"
     day.key(Key.Key_F5)
     assert day.prompt == NO_PLACE
+
+
+def test_a_place_that_never_answers_is_told_and_takes_nothing(day: Day, sharing: Sharing) -> None:
+    """A dead network drive: the look waits for ever. The page says so behind 30 s, and queues nothing."""
+    model(day).silent_for = lambda: 29.0
+    assert not any("HAS NOT ANSWERED" in note for note in model(day).sheet().notes)
+    opened(day)
+    day.sees(lambda: model(day).version is not None and not model(day).worker.busy)
+    model(day).silent_for = lambda: 95.0
+    said = f"{sharing.place.name} HAS NOT ANSWERED FOR 95 S"
+    assert "HAS NOT ANSWERED FOR 95 S" in " ".join(model(day).sheet().notes)
+    for key in (Key.Key_F5, Key.Key_F2):
+        day.desk.clear()
+        day.key(key)
+        assert day.desk.notice.startswith(said)
+    assert not model(day).worker.busy
