@@ -147,7 +147,8 @@ class MachineControl:
         return "that was meant just now: let both palms go, read the prompt, press them again"
 
     def _unannounced(self) -> str:
-        unclamped = start_conditions.unclamped(self._context) if self._context.spindle.waits else ""
+        waits = self._context.spindle.waits
+        unclamped = start_conditions.unclamped_by_program(self._context) if waits else ""
         return unclamped or self.announcement.refusal(self._context.now)
 
     def _spindle_starts(self) -> Iterator[Starting]:

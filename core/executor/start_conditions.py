@@ -52,6 +52,18 @@ def unclamped(context: MachineContext) -> str:
     return "the spindle is not started with the collet open: close it first"
 
 
+def unclamped_by_program(context: MachineContext) -> str:
+    """As ``unclamped`` behind a stop of a cycle, whose outputs no hand switches: what the program has opened
+    is closed only once that is over.
+    """
+    why = unclamped(context)
+    if why and not context.outputs.outputs().get("collet", True):
+        return (
+            "the program has opened the collet, so the spindle does not start: Reset, close it, start again"
+        )
+    return why
+
+
 def hindrance(context: MachineContext, state: State) -> str:
     """What keeps any cycle from being started at this machine now; empty when nothing."""
     if state in _BUSY:

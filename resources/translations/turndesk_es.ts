@@ -17560,6 +17560,11 @@
     </message>
     <message>
       <location filename="core/executor/start_conditions.py" />
+      <source>the program has opened the collet, so the spindle does not start: Reset, close it, start again</source>
+      <translation>el programa abrió la boquilla, por eso el husillo no arranca: Reset, ciérrela y arranque de nuevo</translation>
+    </message>
+    <message>
+      <location filename="core/executor/start_conditions.py" />
       <source>the program is not proved yet</source>
       <translation>el programa aún no está comprobado</translation>
     </message>

@@ -28,9 +28,7 @@ EVERY, SAMPLE = 25, 3  # parts between two readings; readings behind which a cor
 STUCK = 300.0  # s of the machine in which somebody who does what he can must get a part
 LONGEST = 6.0  # s of a part, and somewhat more
 LOOKS = 15.0  # s after which the operator mends what he finds
-COLLET_OPEN = (
-    "with the collet open"  # the spindle was stopped while the feeder pushed: it is not started there
-)
+COLLET_OPEN = "opened the collet"  # the spindle was stopped while the feeder pushed: it does not start there
 FEATURE = FeatureRow(0, NAME, "PIN", "diameter", 0.4 * INCH, -0.001 * INCH, 0.001 * INCH, "tool", 1, 1, 0, 1)
 CHANCES = {  # of a thousand parts so many meet it
     "hold": 20, "single block": 8, "feed pot": 25, "spindle pot": 10, "no count": 5, "give up": 5,

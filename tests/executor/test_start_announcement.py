@@ -7,7 +7,7 @@ import dataclasses
 import pytest
 
 from app.compose.machine_files import load_machine
-from core.executor.commands import CycleStart, FeedHold, GiveProof, Prepare, Reset, SpindleLimit
+from core.executor.commands import CycleStart, FeedHold, ForceOutput, GiveProof, Prepare, Reset, SpindleLimit
 from core.executor.job import Proof
 from core.executor.snapshot import Starts, State
 from core.executor.start_conditions import TIME_TO_READ
@@ -193,6 +193,27 @@ def test_the_collet_must_be_closed_before_a_spindle_that_waits_starts() -> None:
     rig.post(CycleStart())
     assert rig.shot.start_refused == "the spindle is not started with the collet open: close it first"
     never_turns(rig)
+
+
+def test_a_collet_that_the_program_has_opened_is_closed_behind_a_reset() -> None:
+    rig = Rig()
+    rig.start("G90G94F300\nM03S600\nM13\nG04F5\nM12\nM30\n")
+    rig.until_true(lambda shot: shot.waiting_for == "DWELL")
+    switched_off(rig)
+    rig.until(State.HOLD)
+    rig.sim.machine.set_spindle_auto(True)
+    rig.run(1.0)
+    rig.post(CycleStart())
+    assert rig.shot.start_refused == (
+        "the program has opened the collet, so the spindle does not start: Reset, close it, start again"
+    )
+    never_turns(rig)
+    rig.post(Reset())
+    rig.until(State.IDLE)
+    rig.post(ForceOutput("collet", True))
+    rig.run(1.0)
+    rig.post(CycleStart())
+    assert rig.shot.start_refused.startswith("line 4 of PART was interrupted")  # the collet is no reason
 
 
 # --- between programs: M03 in MDI, then the switch, as the manual has it
