@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from app.compose.journal import Journal
 from app.desk.desk import Desk
 from app.offsets.mill_lives import MillLives
-from app.quality.parts_book import NONE_KEPT, PartsBook, tools_of
+from app.quality.parts_book import PartsBook, tools_of
 from app.quality.parts_watch import PartsWatch
 from app.quality.quality_functions import QualityFunctions
 from app.quality.tool_life_watch import ToolLifeWatch
@@ -19,7 +19,7 @@ from core.store.store_rows import Kind
 def give_quality(desk: Desk, machine: Machine, journal: Journal | None) -> None:
     """Give the desk what it measures, counts and remembers of parts and inserts."""
     tools = tools_of(machine.kind)
-    book = journal.parts_book(tools) if journal is not None else PartsBook(locked=NONE_KEPT, tools=tools)
+    book = journal.parts_book(tools) if journal is not None else PartsBook(tools=tools)
     book.access = desk.access
     watch = PartsWatch(desk, book, ToolLifeWatch(book))
     desk.attach(watch)

@@ -122,8 +122,7 @@ class Journal(Persistence):
     def parts_book(self, tools: Kind = Kind.TOOL) -> PartsBook:
         """Measured parts and tool lives of the store; ``tools``: the table of this machine."""
         store = self._store
-        locked = "" if store else f"MEASURED PARTS CANNOT BE KEPT: {self.trouble}"
-        book = PartsBook(store, locked, tools)
+        book = PartsBook(store, "" if store else self.trouble, tools)
         self._know(book, store)
         return book
 

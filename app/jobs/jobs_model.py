@@ -59,7 +59,8 @@ class JobsModel:
     @property
     def locked(self) -> str:
         """Why nothing is kept here; empty where jobs are."""
-        return self.watch.parts.book.locked
+        book = self.watch.parts.book
+        return "" if book.store is not None else book.away or tr("NOT KEPT HERE: THERE IS NO STORE")
 
     def look(self) -> None:
         """Once a frame: the marked job is proved as the next one is."""

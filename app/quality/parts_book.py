@@ -119,11 +119,11 @@ def tools_of(machine_kind: str) -> Kind:
 class PartsBook:
     """``look`` is called once a frame; reading is a worker's, writing the store's. ``now`` is what is known.
 
-    Without ``store`` nothing is kept, and ``locked`` says why.
+    Without ``store`` nothing is kept; ``away`` is why, ``locked`` says it where measured parts are shown.
     """
 
     store: Store | None = None
-    locked: str = ""
+    away: str = ""
     tools: Kind = Kind.TOOL  # the table of this machine's tools
     now: PartsData = field(default_factory=PartsData)
     access: Access = field(default_factory=Access)  # who changes, and whether he may
@@ -137,11 +137,17 @@ class PartsBook:
     _kept: list[Callable[[], None]] = field(default_factory=list)  # on the disk, and not read again yet
     _reopened: tuple[Store | None, str] | None = None
 
+    @property
+    def locked(self) -> str:
+        """Why no measured part is kept, in a sentence; empty where they are."""
+        if self.store is not None:
+            return ""
+        return f"MEASURED PARTS CANNOT BE KEPT: {self.away}" if self.away else NONE_KEPT
+
     def look(self, program: str) -> None:
         """Take up what the worker has read and what is on the disk; read anew what has changed."""
         if self._reopened is not None:
-            self.store, trouble = self._reopened
-            self.locked = "" if self.store is not None else f"MEASURED PARTS CANNOT BE KEPT: {trouble}"
+            self.store, self.away = self._reopened
             self._reopened, self._behind, self._stale = None, None, True
         self.worker.poll()
         self._look_at_writing()
@@ -220,7 +226,7 @@ class PartsBook:
 
         ``change`` is what the log says of it, where people say who they are.
         """
-        why = (self.locked or NONE_KEPT) if self.store is None else self.access.refusal(act)
+        why = (self.away or NONE_KEPT) if self.store is None else self.access.refusal(act)
         if self.store is None or why:
             failed(why)
             return

@@ -6815,6 +6815,11 @@
     </message>
     <message>
       <location filename="app/jobs/jobs_model.py" />
+      <source>NOT KEPT HERE: THERE IS NO STORE</source>
+      <translation>AQUÍ NO SE GUARDA NADA: NO HAY ALMACÉN</translation>
+    </message>
+    <message>
+      <location filename="app/jobs/jobs_model.py" />
       <source>NOTE</source>
       <translation>NOTA</translation>
     </message>
@@ -10472,11 +10477,6 @@
       <location filename="app/quality/shift_function.py" />
       <source>NO EARLIER SHIFT IS LOOKED AT HERE</source>
       <translation>AQUÍ NO SE MIRA NINGÚN TURNO ANTERIOR</translation>
-    </message>
-    <message>
-      <location filename="app/quality/shift_function.py" />
-      <source>NOT KEPT HERE: THERE IS NO STORE</source>
-      <translation>AQUÍ NO SE GUARDA NADA: NO HAY ALMACÉN</translation>
     </message>
     <message>
       <location filename="app/quality/shift_function.py" />
