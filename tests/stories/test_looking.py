@@ -31,12 +31,17 @@ def test_who_looks_at_a_program_in_the_list_has_the_job_that_he_had(story: Story
     operator.until(lambda: operator.status["program"] == "part.nc", "status.json")
 
 
-def test_with_nothing_marked_the_list_edits_nothing(story: Story) -> None:
+def test_with_nothing_marked_a_new_file_is_asked_for_and_no_job_made(story: Story) -> None:
     operator = story.begins(PART, tools=TOOLS)
     operator.drives_on()
     operator.keys("F1", "F6")
     operator.opens("PROGRAMS")
     operator.writes("zzzz")
-    operator.key("F3")
+    operator.key("F10")
     operator.sees("NO PROGRAM IS MARKED")
     assert operator.page == "PROGRAMS"
+    operator.key("F3")
+    operator.opens("EDITOR")
+    operator.sees("PRESS F1 TO CREATE A NEW FILE, ESC TO ABORT")
+    operator.key("Escape")
+    assert not list(story.home.rglob("zzzz*"))
