@@ -165,6 +165,8 @@ def _lock_spindle(context: MachineContext, *, orient: bool) -> Wait:
 def _orient_spindle(context: MachineContext, angle: float, sense: int) -> Wait:
     """The drive brings it to its angle once it stands; nothing goes on before it is held there."""
     spindle, model = context.spindle, context.machine.spindle
+    if spindle.orientation.at != angle and start_conditions.unclamped(context):
+        raise AlarmError("collet-open", f"SPOS or M19 would turn it to {angle:g} degrees")
     if spindle.asked or not spindle.stopped:
         spindle.stop()
 

@@ -155,6 +155,22 @@ def test_the_spindle_switch_keeps_it_from_turning_to_an_angle() -> None:
     assert held(rig)
 
 
+def test_no_bar_is_turned_to_an_angle_in_an_open_chuck() -> None:
+    lathe = shipped_machine("sinumerik-modulo")
+    setup = setup_for(lathe, tools={}, secondary={})
+    source = Source("T.MPF", "G4 F2\nSPOS=90\nG4 F1\nM30\n")
+    rig = Rig(machine=lathe, made=list(interpretation(source, setup).blocks()))
+    rig.start("anything")
+    rig.until_true(lambda shot: shot.waiting_for == "DWELL")
+    rig.sim.machine.collet_sensor_stuck()
+    rig.sim.machine.set_input("collet_closed", False)
+    rig.until(State.FAULT, limit=4.0)
+    assert [alarm.code for alarm in rig.shot.alarms] == ["collet-open"]
+    rig.run(5.0)
+    assert rig.shot.oriented is None
+    assert rig.sim.machine.spindle_rpm() == 0.0
+
+
 def test_a_driver_that_cannot_is_refused_before_the_start() -> None:
     needs = first_needs(needs_of(blocks_of()))
     assert ORIENT in {need.what for need in needs}
