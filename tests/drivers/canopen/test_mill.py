@@ -37,7 +37,9 @@ def mill() -> Machine:
         "low_water_ms = 80", "low_water_ms = 200"
     )
     text = text.replace("lease_ms = 60", "lease_ms = 150").replace("clearance = 40.0", "clearance = 60.0")
-    text = text.replace("[spindle]", '[spindle]\ndriver = "cia402"', 1)
+    text = text.replace("[spindle]", '[spindle]\ndriver = "cia402"', 1).replace(
+        "oriented = true", "oriented = false"
+    )
     numbers = iter(range(64))
 
     def terminal(match: re.Match[str]) -> str:
