@@ -26,6 +26,13 @@ def test_a_count_that_does_not_agree_is_told(tmp_path: Path) -> None:
     assert "cycles: store: 7 of 9." in page(tmp_path)
 
 
+def test_how_far_the_places_at_the_bar_stop_lie_apart_is_told(tmp_path: Path) -> None:
+    figures = json.loads((RESULTS / "night_shift.json").read_text())
+    places = {"(12.7, -73.5, 0.0)": 90, "(12.7, -73.25, 0.0)": 8, "(12.7, -73.75, 0.0)": 2}
+    (tmp_path / "night_shift.json").write_text(json.dumps({**figures, "at the bar stop": places}))
+    assert "lay within 2.5e-01 mm, 10 of 100 ticks not at the usual place" in page(tmp_path)
+
+
 def test_a_half_written_result_is_no_page(tmp_path: Path) -> None:
     (tmp_path / "branches.json").write_text("{")
     with pytest.raises(json.JSONDecodeError):

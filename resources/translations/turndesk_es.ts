@@ -17435,6 +17435,11 @@
     </message>
     <message>
       <location filename="core/executor/standstill.py" />
+      <source>SPOS or M19 would turn it to %1 degrees</source>
+      <translation>SPOS o M19 lo giraría a %1 grados</translation>
+    </message>
+    <message>
+      <location filename="core/executor/standstill.py" />
       <source>cycle repeat off by M31</source>
       <translation>repetir ciclo apagado por M31</translation>
     </message>
@@ -17561,7 +17566,7 @@
     <message>
       <location filename="core/executor/start_conditions.py" />
       <source>the program has opened the collet, so the spindle does not start: Reset, close it, start again</source>
-      <translation>el programa abrió la boquilla, por eso el husillo no arranca: Reset, ciérrela y arranque de nuevo</translation>
+      <translation>el programa abrió la pinza, por eso el husillo no arranca: Reset, ciérrela y arranque de nuevo</translation>
     </message>
     <message>
       <location filename="core/executor/start_conditions.py" />

@@ -9,6 +9,7 @@ from __future__ import annotations
 import json
 import sys
 import tomllib
+from ast import literal_eval
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -85,12 +86,25 @@ def _night(result: Result, _folder: Path) -> Iterator[str]:
         f"{counts['inserts']}; underruns {result['underruns']}.\n"
     )
     yield (
-        f"Drift: the setpoints at the bar stop were {drift['places of the bar stop']} place; with "
+        f"Drift: {_places(result['at the bar stop'])}; with "
         f"{drift['offsets that were turned with']} offsets X of the pin spread by "
         f"{drift['turned radii with one offset, spread mm']:g} mm and was off what offset and program say by "
         f"{drift['turned radius against offset and program, mm']:g} mm.\n"
     )
     yield f"What was done and what broke: {_list(result['done'])}. Alarms: {_list(result['alarms'])}.\n"
+
+
+def _places(ticks: dict[str, int]) -> str:
+    """How far the setpoints at the bar stop lay apart, and in how many ticks they lay elsewhere."""
+    usual = literal_eval(max(ticks, key=lambda place: ticks[place]))
+    if len(ticks) == 1:
+        return "the setpoints at the bar stop were one place"
+    apart = max(abs(a - b) for place in ticks for a, b in zip(literal_eval(place), usual, strict=True))
+    elsewhere = sum(ticks.values()) - max(ticks.values())
+    return (
+        f"the setpoints at the bar stop lay within {apart:.1e} mm, "
+        f"{elsewhere} of {sum(ticks.values())} ticks not at the usual place"
+    )
 
 
 def _list(counted: dict[str, int]) -> str:
