@@ -13,6 +13,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import NamedTuple
 
 import numpy as np
 from PySide6.QtCore import Qt
@@ -195,18 +196,28 @@ def main(argv: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(prog="python -m tests.screen.pictures", description=__doc__)
     parser.add_argument("out", metavar="OUT", type=Path, help="folder for the PNG files")
     parser.add_argument("--guide", action="store_true", help="the small dark ones of the guide only")
+    parser.add_argument("--language", default="en", choices=("en", "es"), help="of the screen; default en")
     args = parser.parse_args(argv)
     os.environ["QT_QPA_PLATFORM"] = "offscreen"
     args.out.mkdir(parents=True, exist_ok=True)
     with TemporaryDirectory() as folder:
         os.environ["TURNDESK_HOME"] = folder
-        for path in _pictures(args.out, SIZES[:1] if args.guide else SIZES, THEMES[: 1 if args.guide else 2]):
+        sizes, themes = SIZES[:1] if args.guide else SIZES, THEMES[: 1 if args.guide else 2]
+        for path in _pictures(args.out, Looks(sizes, themes, args.language)):
             shown = path.replace(path.with_name(f"{path.name.split('-dark')[0]}.png")) if args.guide else path
             sys.stdout.write(f"{shown}\n")
     return 0
 
 
-def _pictures(out: Path, sizes: tuple[tuple[int, int], ...], themes: tuple[str, ...]) -> Iterator[Path]:
+class Looks(NamedTuple):
+    """In which sizes, themes and language of the screen each scene is pictured."""
+
+    sizes: tuple[tuple[int, int], ...]
+    themes: tuple[str, ...]
+    language: str
+
+
+def _pictures(out: Path, looks: Looks) -> Iterator[Path]:
     """First what a standing machine shows, then what a running one does."""
     _app = QApplication.instance() or QApplication(sys.argv[:1])
     journal = Journal.at_home()
@@ -215,26 +226,26 @@ def _pictures(out: Path, sizes: tuple[tuple[int, int], ...], themes: tuple[str, 
     with TemporaryDirectory(prefix="shop-") as folder:
         put_drawing(Path(os.environ["TURNDESK_HOME"]) / "programs")
         share_with_another(stage.desk, journal, Path(folder))
-        yield from taken(stage.desk, out, False, sizes, themes, heard=stage.hears)
+        yield from taken(stage.desk, out, False, looks, heard=stage.hears)
     stage.press_start()
     stage.tick(lambda: stage.desk.snapshot().line >= AT_LINE)
     stage.tick(lambda: _z(stage.desk) <= AT_Z)
-    yield from taken(stage.desk, out, True, sizes, themes)
+    yield from taken(stage.desk, out, True, looks)
     stage.close()
     journal.close()
-    yield from _of_the_mill(out, sizes, themes)
+    yield from _of_the_mill(out, looks)
 
 
-def _of_the_mill(out: Path, sizes: tuple[tuple[int, int], ...], themes: tuple[str, ...]) -> Iterator[Path]:
+def _of_the_mill(out: Path, looks: Looks) -> Iterator[Path]:
     """A tilted program, standing and caught in a cut of its second slope."""
     stage = Stage(machine=MILL)
     stage.make_ready(TILTED)
-    yield from taken(stage.desk, out, False, sizes, themes, mill=True)
+    yield from taken(stage.desk, out, False, looks, mill=True)
     stage.desk.starts_here = True  # the editor was in front, and has handed its program over again
     stage.desk.session.settled(LOADING)
     stage.press_start()
     stage.tick(lambda: stage.desk.snapshot().block >= TILTED_BLOCK)
-    yield from taken(stage.desk, out, True, sizes, themes, mill=True)
+    yield from taken(stage.desk, out, True, looks, mill=True)
     stage.close()
 
 
@@ -256,7 +267,7 @@ class Scene:
     name: str
     keys: str = ""
     running: bool = False
-    language: str = "en"
+    language: str = ""  # that of all others, unless another is told
     mill: bool = False  # the tilted sample on the mill with an A-C table
     line: int = 0  # where the editor's cursor is put
 
@@ -306,8 +317,7 @@ def taken(
     desk: Desk,
     out: Path,
     running: bool,
-    sizes: tuple[tuple[int, int], ...],
-    themes: tuple[str, ...],
+    looks: Looks,
     *,
     mill: bool = False,
     heard: Callable[[], None] = lambda: None,
@@ -317,14 +327,14 @@ def taken(
     ``heard`` lets the executor obey what the keys have posted.
     """
     load_fonts()
-    for theme in themes:
+    for theme in looks.themes:
         dress(PALETTES[theme])
-        for width, height in sizes:
+        for width, height in looks.sizes:
             for scene in SCENES:
                 if (scene.running, scene.mill) != (running, mill):
                     continue
                 desk.settings.choose("theme", theme)
-                desk.settings.choose("language", scene.language)
+                desk.settings.choose("language", scene.language or looks.language)
                 window = MainWindow(Look(PALETTES[theme]))
                 window.resize(width, height)
                 window.open_desk(desk)
