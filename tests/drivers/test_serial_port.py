@@ -15,18 +15,6 @@ from tests.drivers.ptys import open_pty
 MARKED, MEANT = b"A\xff\xffB\xff\x00CD\xff\x00\x00", b"A\xffBCD\x00"
 
 
-def settings(port: str, **words: object) -> LineSettings:
-    plain: dict[str, object] = {
-        "port": port,
-        "baud": 9600,
-        "bits": 8,
-        "parity": "N",
-        "stop": 1,
-        "flow": "none",
-    }
-    return LineSettings(**(plain | words))  # type: ignore[arg-type]
-
-
 @pytest.mark.parametrize("size", [1, 2, 3, 4, 5, len(MARKED)])
 def test_marks_are_taken_out_and_counted_wherever_the_bytes_are_cut(size: int) -> None:
     marks = Unmarker()
@@ -42,17 +30,17 @@ def test_a_mark_whose_end_has_not_come_waits_for_it() -> None:
 
 def test_a_port_that_is_not_there_or_is_none_says_which_and_why(tmp_path: Path) -> None:
     with pytest.raises(WireError, match="/dev/ttyNone cannot be opened: there is no such port"):
-        SerialWire(settings("/dev/ttyNone"))
+        SerialWire(LineSettings("/dev/ttyNone"))
     file = tmp_path / "file"
     file.write_bytes(b"")
     with pytest.raises(WireError, match="file cannot be opened: "):
-        SerialWire(settings(str(file)))
+        SerialWire(LineSettings(str(file)))
 
 
 def test_what_comes_behind_the_end_of_a_cable_is_one_sentence_each() -> None:
     far, near = open_pty()
     name = os.ttyname(near)
-    wire = SerialWire(settings(name))
+    wire = SerialWire(LineSettings(name))
     os.close(near)
     os.write(far, b"G90\n")
     assert wire.receive(1.0) == b"G90\n"
@@ -67,7 +55,7 @@ def test_what_comes_behind_the_end_of_a_cable_is_one_sentence_each() -> None:
 def test_a_line_that_the_other_side_does_not_read_takes_no_more_and_is_let_go() -> None:
     """What the kernel holds is known, can be dropped, and does not keep the port."""
     far, near = open_pty()
-    wire = SerialWire(settings(os.ttyname(near)))
+    wire = SerialWire(LineSettings(os.ttyname(near)))
     taken = sum(iter(lambda: wire.offer(b"X" * 4096), 0))
     assert taken > 0
     assert wire.offer(b"X") == 0
@@ -82,7 +70,7 @@ def test_a_line_that_the_other_side_does_not_read_takes_no_more_and_is_let_go() 
 def test_nothing_is_damaged_where_nobody_watches() -> None:
     far, near = open_pty()
     for watch in (False, True):
-        wire = SerialWire(settings(os.ttyname(near)), watch=watch)
+        wire = SerialWire(LineSettings(os.ttyname(near)), watch=watch)
         os.write(far, b"\xff\x01")
         assert wire.receive(1.0) == b"\xff\x01"
         assert wire.damaged == 0

@@ -45,6 +45,15 @@ def above(qtbot: QtBot) -> QWidget:
     return made
 
 
+def sheet_panel(above: QWidget, sheet: Sheet, touch: Callable[[int], None]) -> SheetPanel:
+    """The table as it is drawn at 1024x600."""
+    panel = SheetPanel(Look(DARK, SMALL), touch, above)
+    panel.resize(500, 300)
+    panel.show_sheet(sheet)
+    panel.grab()
+    return panel
+
+
 def leaf_keys(panel: Panel) -> list[QRectF]:
     """The two keys, up before down: the places whose press takes how many rows further."""
     panel.grab()
@@ -88,9 +97,7 @@ def chosen_rows(panel: Panel, look_at: Callable[[], int], keys: list[QRectF]) ->
 
 def test_a_finger_comes_to_every_row_of_a_table(above: QWidget) -> None:
     touched: list[int] = []
-    panel = SheetPanel(Look(DARK, SMALL), touched.append, above)
-    panel.resize(500, 300)
-    panel.show_sheet(sheet_of(MANY))
+    panel = sheet_panel(above, sheet_of(MANY), touched.append)
     assert panel.rows < MANY
     assert chosen_rows(panel, lambda: touched[-1], leaf_keys(panel)) == set(range(MANY))
 
@@ -128,10 +135,7 @@ def test_a_finger_comes_to_every_program_that_is_asked_for(above: QWidget, tmp_p
 
 @pytest.mark.parametrize("marked", [0, 3])
 def test_the_wheel_leaves_the_mark_behind(above: QWidget, marked: int) -> None:
-    panel = SheetPanel(Look(DARK, SMALL), lambda _row: None, above)
-    panel.resize(500, 300)
-    panel.show_sheet(sheet_of(MANY, marked))
-    panel.grab()
+    panel = sheet_panel(above, sheet_of(MANY, marked), lambda _row: None)
     turn_wheel(panel, 100)
     assert panel.top == MANY - panel.rows
     turn_wheel(panel, -100)
@@ -139,10 +143,7 @@ def test_the_wheel_leaves_the_mark_behind(above: QWidget, marked: int) -> None:
 
 
 def test_a_key_that_moves_the_mark_brings_it_into_sight_again(above: QWidget) -> None:
-    panel = SheetPanel(Look(DARK, SMALL), lambda _row: None, above)
-    panel.resize(500, 300)
-    panel.show_sheet(sheet_of(MANY, 2))
-    panel.grab()
+    panel = sheet_panel(above, sheet_of(MANY, 2), lambda _row: None)
     turn_wheel(panel, 100)
     panel.show_sheet(sheet_of(MANY, 3))
     panel.grab()

@@ -128,13 +128,12 @@ def test_the_kernel_is_asked_by_the_numbers_of_its_header(
     """EVIOCSCLOCKID, EVIOCGRAB, EVIOCGKEY of 96 bytes, EVIOCGABS of axis 16, as linux/input.h makes them."""
     asked: list[int] = []
 
-    def ioctl(_device: int, request: int, value: object) -> None:
+    def ioctl(_device: int, request: int, value: bytearray) -> None:
         asked.append(request)
         if request == 0x80604518:
-            assert isinstance(value, bytearray)
             value[0x131 // 8] |= 1 << 0x131 % 8
         if request == 0x80184550:
-            memoryview(value).cast("B")[:] = struct.pack("@iiiiii", 7, -1, 255, 0, 0, 0)  # type: ignore[arg-type]
+            struct.pack_into("@iiiiii", value, 0, 7, -1, 255, 0, 0, 0)
 
     monkeypatch.setattr("drivers.pendant.input_devices._ioctl", ioctl)
     os.mkfifo(tmp_path / "event3")
