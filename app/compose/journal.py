@@ -62,14 +62,28 @@ class Journal(Persistence):
         self._tell_late: Callable[[], None] = _nobody
         self._late = False  # whether the store came after the start
         try:
-            self._store = Store.open(folder)
-            self._read_what_was_left(self._store)
+            self._store = self._open()
         except StoreError as error:
             self._trouble = str(error)
             self._held = deque(maxlen=HELD)
             if error.passing:
                 self._opener = threading.Thread(target=self._try_again, name="store-opener", daemon=True)
                 self._opener.start()
+
+    def _open(self) -> Store:
+        """The store, and once what the last control has left in it.
+
+        Raises StoreError, and holds nothing then: the lock of a store that was opened and could not be read
+        would refuse every later try.
+        """
+        store = Store.open(self._folder)
+        try:
+            if self._unread:
+                self._read_what_was_left(store)
+        except StoreError:
+            store.close()
+            raise
+        return store
 
     def _read_what_was_left(self, store: Store) -> None:
         """Damage, runs that were cut off, the interrupted job. Raises StoreError."""
@@ -283,16 +297,14 @@ class Journal(Persistence):
 
     def _open_again(self) -> None:
         """What happened meanwhile is written; what is interrupted is this machine's, not that of a backup."""
+        late = self._unread
         try:
-            store = Store.open(self._folder)
+            store = self._open()
         except StoreError as error:
             self._trouble = str(error)
             for book in self._books:
                 book.reopen(None, self._trouble)
             return
-        late = self._unread
-        if late:
-            self._read_late(store)
         with self._lock:
             held, self._held, self._store = self._held or (), None, store
             for event in held:
@@ -313,12 +325,6 @@ class Journal(Persistence):
         self._tell_late = tell
         if self._late:
             tell()
-
-    def _read_late(self, store: Store) -> None:
-        try:
-            self._read_what_was_left(store)
-        except StoreError as error:
-            self.damage = (str(error),)
 
     @property
     def waiting(self) -> bool:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import NoReturn
 
 import pytest
 
@@ -11,7 +12,6 @@ from app.compose.journal import UNDER_WAY, Journal
 from app.desk.persistence import Persistence
 from core.executor.interrupted_job import plain
 from core.executor.snapshot import Event
-from core.store.database import Opened
 from core.store.store import Store
 from core.store.store_errors import Cause, StoreError
 from core.store.store_rows import Kind
@@ -119,8 +119,8 @@ def away(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Journal]:
     journal.close()
 
 
-def raising(error: StoreError) -> Callable[[Path], Opened]:
-    def refuse(_folder: Path) -> Opened:
+def raising(error: StoreError) -> Callable[[object], NoReturn]:
+    def refuse(_asked: object) -> NoReturn:
         raise error
 
     return refuse
@@ -179,3 +179,47 @@ def test_what_this_control_has_begun_counts_more(away: Journal, tmp_path: Path) 
     again = Journal(tmp_path / "home")
     assert again.left == broken_off(line=3)
     again.close()
+
+
+# --- a store that opened at the start and could not be read ------------------------------------------------
+
+
+def test_a_store_that_could_not_be_read_at_the_start_is_read_by_the_second_try(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The first try had opened it: its lock must be free again, and what happened meanwhile is written."""
+    with Store.open(tmp_path / "home") as store:
+        store.set_setting(UNDER_WAY, plain(broken_off(line=8))).result(60)
+    locked = Cause.LOCKED.error(tmp_path / "home" / "turndesk.db", "")
+    monkeypatch.setattr("app.compose.journal.AGAIN", 1e6)  # the test tries again
+    with monkeypatch.context() as disk:
+        disk.setattr(Store, "damaged", raising(locked))
+        journal = Journal(tmp_path / "home")
+        assert "is locked by another program" in journal.trouble
+        assert journal.waiting
+        with pytest.raises(StoreError, match="is locked by another program"):
+            journal.opened()
+        journal.hear(Event(0.0, "load", "/programs/pin.nc"))
+        journal.hear(Event(0.0, "part", "part 1"))
+        journal._open_again()
+        assert journal.waiting  # read as little as the first time
+        assert journal.held == "1 part, 2 events"
+    journal._open_again()
+    assert (journal.trouble, journal.waiting, journal.held) == ("", False, "")
+    assert journal.left == broken_off(line=8)
+    journal.save_version("pin.nc", b"M30", "so that all is written")
+    assert journal.parts("pin.nc") == 1
+    journal.close()
+
+
+def test_a_store_too_damaged_to_be_read_is_left_to_a_restore(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    damaged = Cause.DAMAGED.error(tmp_path / "home" / "turndesk.db", "a page is torn")
+    with monkeypatch.context() as disk:
+        disk.setattr(Store, "damaged", raising(damaged))
+        journal = Journal(tmp_path / "home")
+    assert journal.trouble.endswith("Restore a backup: turndesk store restore FILE")
+    assert not journal.waiting  # no try will read it
+    Store.open(tmp_path / "home").close()  # the command that restores finds it free
+    journal.close()
