@@ -131,7 +131,8 @@ SPINDLE: Entries = {
         223,
         "spindle switch off",
         ("the spindle switch stands at OFF",),
-        "switch it to AUTO, let the spindle come to speed, then Cycle Start",
+        "switch it to AUTO; Cycle Start starts the spindle, as it says, and goes on;"
+        " with the collet open: Reset, close it, start again",
     ),
     "spindle-has-stopped": hold(
         225,
@@ -152,7 +153,7 @@ SPINDLE: Entries = {
         224,
         "spindle override at 0",
         ("the spindle pot stands at 0",),
-        "turn the spindle pot up, let it come to speed, then Cycle Start",
+        "turn the spindle pot up; Cycle Start starts the spindle, as it says, and goes on",
     ),
 }
 

@@ -16010,8 +16010,8 @@
     </message>
     <message>
       <location filename="core/alarms/spindle_alarms.py" />
-      <source>switch it to AUTO, let the spindle come to speed, then Cycle Start</source>
-      <translation>póngalo en AUTO, deje que el husillo tome velocidad y luego inicio de ciclo</translation>
+      <source>switch it to AUTO; Cycle Start starts the spindle, as it says, and goes on; with the collet open: Reset, close it, start again</source>
+      <translation>póngalo en AUTO; inicio de ciclo arranca el husillo, como se anuncia, y continúa; con la boquilla abierta: Reset, ciérrela y arranque de nuevo</translation>
     </message>
     <message>
       <location filename="core/alarms/spindle_alarms.py" />
@@ -16140,8 +16140,8 @@
     </message>
     <message>
       <location filename="core/alarms/spindle_alarms.py" />
-      <source>turn the spindle pot up, let it come to speed, then Cycle Start</source>
-      <translation>suba la perilla del husillo, deje que tome velocidad y luego inicio de ciclo</translation>
+      <source>turn the spindle pot up; Cycle Start starts the spindle, as it says, and goes on</source>
+      <translation>suba la perilla del husillo; inicio de ciclo arranca el husillo, como se anuncia, y continúa</translation>
     </message>
     <message>
       <location filename="core/alarms/spindle_alarms.py" />

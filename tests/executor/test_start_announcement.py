@@ -203,6 +203,10 @@ def test_a_collet_that_the_program_has_opened_is_closed_behind_a_reset() -> None
     rig.until(State.HOLD)
     rig.sim.machine.set_spindle_auto(True)
     rig.run(1.0)
+    stop = rig.shot.stop
+    assert stop is not None
+    assert stop.number == 223
+    assert "with the collet open: Reset" in stop.remedy
     rig.post(CycleStart())
     assert rig.shot.start_refused == (
         "the program has opened the collet, so the spindle does not start: Reset, close it, start again"
