@@ -1,10 +1,13 @@
-"""What docs/speed.md says below its tables: each goal that is not met, with its reason, and no other."""
+"""What docs/speed.md says: each goal that is not met with its reason and no other, and what was kept."""
 
 from __future__ import annotations
+
+from pathlib import Path
 
 import pytest
 
 from tests.benchmarks.speed_goals import GOALS, goal_of, not_met
+from tests.benchmarks.speed_page import kept, with_kept
 
 LONG = "prove 1,000,000 blocks"
 
@@ -26,3 +29,12 @@ def test_a_row_without_a_goal_is_never_told_and_shows_none() -> None:
 def test_every_goal_has_its_reason(name: str) -> None:
     assert GOALS[name].most > 0.0
     assert len(GOALS[name].why) > 20
+
+
+def test_the_page_has_the_figures_that_were_kept() -> None:
+    written = (Path(__file__).parents[1] / "docs" / "speed.md").read_text(encoding="utf-8")
+    assert written == with_kept(written), "python -m tests.benchmarks.speed_page --kept docs/speed.md"
+
+
+def test_what_was_never_measured_is_said(tmp_path: Path) -> None:
+    assert kept(tmp_path).count("Not measured yet.") == 3

@@ -8,6 +8,8 @@ them on UDP multicast instead, which costs several times that.
 
 A *witness* on each core, above the feeder's priority, does nothing but wait for every second millisecond: how
 late it is, the computer is by itself. ``own`` are SYNCs at times when no witness was more than .2 ms late.
+A run that a fault has ended is followed by another until there are ``--seconds`` of each kind, in ten runs at
+most; the rows are kept for docs/speed.md.
 """
 
 from __future__ import annotations
@@ -25,7 +27,8 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 
 import can
@@ -45,10 +48,12 @@ from drivers.feeder.feeder_links import SocketLink
 from drivers.feeder.feeder_loop import PRIORITY, keep_memory, real_time, serve
 from drivers.feeder.feeder_messages import NOTHING, Inbox, Message, packed
 from drivers.setpoint_queue import straight
+from tests.benchmarks.footprint import keep_result
 
 GROUP = "239.74.163.2"
 SPEED, WAY, ACCEL = 100.0, 40.0, 3000.0  # mm/s, mm, mm/s²
 PIECE = 0.002  # s
+RUNS = 10
 STOOD = 0.0002  # s by which a witness is late when the computer stands
 _FRAME, _SFF, _RTR = 16, 0x7FF, 0x40000000
 
@@ -268,8 +273,8 @@ def witnesses(folder: Path) -> Iterator[list[Path]]:
             child.wait(30.0)
 
 
-def measured(folder: Path, sync_ms: int, seconds: float, busy: int, *, fifo: bool, udp: bool) -> str:
-    """One row of the table."""
+def measured(folder: Path, sync_ms: int, seconds: float, busy: int, *, fifo: bool, udp: bool) -> list[str]:
+    """One row of the table, of a run that lasts so long or ends with a fault."""
     file, out = machine_file(folder, sync_ms), folder / "late.json"
     out.unlink(missing_ok=True)
     pair = None if udp else socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
@@ -299,18 +304,16 @@ def measured(folder: Path, sync_ms: int, seconds: float, busy: int, *, fifo: boo
     for each in (child, peers):
         each.kill()
         each.wait()
-    row = f"| {sync_ms} | {busy} | {how} |"
-    if not out.exists():
-        return f"{row} – | – | – | – | – | – | – | {before:.0f} | {fault} |"
-    return f"{row} {figures(json.loads(out.read_text()), seen)} | {before:.0f} | {fault or 'none'} |"
+    told = figures(json.loads(out.read_text()), seen) if out.exists() else ["–"] * 7
+    return [str(sync_ms), str(busy), how, *told, f"{before:.0f}", fault or "none"]
 
 
-def figures(told: dict[str, list[tuple[float, float]]], seen: list[Path]) -> str:
+def figures(told: dict[str, list[tuple[float, float]]], seen: list[Path]) -> list[str]:
     """The middle of a row: lateness of SYNC, of those that are ours alone, of the witnesses; ms."""
     late = np.array(told["late"])
     waits = np.concatenate([np.array(json.loads(file.read_text())).reshape(-1, 2) for file in seen])
     if not len(late) or not len(waits):
-        return "– | – | – | – | 0 | – | –"
+        return ["–", "–", "–", "–", "0", "–", "–"]
     stood = waits[waits[:, 1] > STOOD]
     ours = np.ones(len(late), bool)
     for due, away in stood:  # a SYNC due between the witness's time and a while after it went on
@@ -319,13 +322,24 @@ def figures(told: dict[str, list[tuple[float, float]]], seen: list[Path]) -> str
     whole, own, alone = (f"{np.percentile(each, 99):.2f} / {each.max():.1f}" for each in of)
     gaps = len(told["gaps"])
     share = f"{100 * float(str(told['share'])):.0f}"
-    return f"{np.median(of[0]):.2f} | {whole} | {own} | {alone} | {len(late)} | {gaps} | {share}"
+    return [f"{np.median(of[0]):.2f}", whole, own, alone, str(len(late)), str(gaps), share]
 
 
-_HEAD = (
-    "| sync_ms | busy | SCHED_FIFO | p50 | p99 / most | own p99 / most | witnesses p99 / most | SYNCs |"
-    " gaps | % of a core | load | fault |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n"
-)
+HEAD = (
+    "sync_ms", "busy", "SCHED_FIFO", "p50", "p99 / most", "own p99 / most", "witnesses p99 / most", "SYNCs",
+    "gaps", "% of a core", "load", "fault",
+)  # fmt: skip
+
+
+def repeated(run: Callable[[float], list[str]], seconds: float) -> Iterator[list[str]]:
+    """Rows of runs until they lasted so long together."""
+    for _ in range(RUNS):
+        begun = time.monotonic()
+        row = run(seconds)
+        yield row
+        seconds -= time.monotonic() - begun
+        if row[-1] == "none" or seconds <= 0.0:
+            return
 
 
 def main() -> None:
@@ -337,15 +351,15 @@ def main() -> None:
     parser.add_argument("--fifo", nargs="+", choices=("yes", "no"), default=["yes", "no"])
     parser.add_argument("--udp", action="store_true")
     wanted = parser.parse_args()
-    sys.stdout.write(_HEAD)
+    rows = []
+    say(f"| {' | '.join(HEAD)} |\n{'|---' * len(HEAD)}|")
     with tempfile.TemporaryDirectory() as folder:
-        for sync_ms in wanted.sync:
-            for busy in wanted.busy:
-                for fifo in wanted.fifo:
-                    row = measured(
-                        Path(folder), sync_ms, wanted.seconds, busy, fifo=fifo == "yes", udp=wanted.udp
-                    )
-                    say(row)
+        for sync_ms, busy, fifo in itertools.product(wanted.sync, wanted.busy, wanted.fifo):
+            run = partial(measured, Path(folder), sync_ms, busy=busy, fifo=fifo == "yes", udp=wanted.udp)
+            for row in repeated(run, wanted.seconds):
+                say(f"| {' | '.join(row)} |")
+                rows.append(row)
+    say(str(keep_result("feeder", {"seconds": wanted.seconds, "rows": rows})))
 
 
 if __name__ == "__main__":

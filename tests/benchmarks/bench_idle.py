@@ -3,7 +3,8 @@
 ``python -m tests.benchmarks.bench_idle [--seconds 60] [NAME …]``: a window of 1920×1080 under an X server of
 its own; NAME is one of ``off``, ``ready``, ``keys``, ``scope``, ``minimised``, ``feeder``, ``canopen``. Told
 are per mille of a core by ``/proc/PID/stat`` (user and system, threads by ``schedstat``), and by thread how
-often a second it was woken; the drives that a bench plays in a process of their own are not counted.
+often a second it was woken; the drives that a bench plays in a process of their own are not counted. The
+shares are kept for docs/speed.md.
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import resources
+from tests.benchmarks.footprint import keep_result
 from tests.stories.x11 import Server, server
 
 SIZE = (1920, 1080)
@@ -103,6 +105,7 @@ class Bench:
 
     def __init__(self, stage: Server, home: Path, *words: str) -> None:
         self.stage, self._home = stage, home
+        self.shares: dict[str, float] = {}
         self.popen = subprocess.Popen(
             [sys.executable, "-m", __spec__.name, "--desk", *words],
             env=stage.environment | {"TURNDESK_HOME": str(home)},
@@ -143,6 +146,7 @@ class Bench:
         whole = sum(time_of(pid) - before[pid][0] for pid in pids) / took
         state = json.loads((self._home / "status.json").read_text())["execution"]
         say(f"{f'{name} ({state})':34s}{1000 * whole:7.1f}\n")
+        self.shares[name] = round(1000.0 * whole, 1)
         for pid in pids:
             _threads(before[pid][1], threads_of(pid), took, "feeder: " if pid != pids[0] else "")
 
@@ -182,8 +186,10 @@ def say(text: str) -> None:
 # --- what is measured -------------------------------------------------------------------------------------
 
 
-def simulated(stage: Server, folder: Path, names: set[str], seconds: float, machine: str = "") -> None:
-    """On the lathe that is shipped, or on this machine file."""
+def simulated(
+    stage: Server, folder: Path, names: set[str], seconds: float, machine: str = ""
+) -> dict[str, float]:
+    """On the lathe that is shipped, or on this machine file: per mille of a core by what the desk does."""
     bench = Bench(stage, folder, *(("--machine", machine) if machine else ()))
     if "off" in names:
         bench.measure("servo off", seconds)
@@ -202,6 +208,7 @@ def simulated(stage: Server, folder: Path, names: set[str], seconds: float, mach
         bench.minimise()
         bench.measure("minimised", seconds)
     bench.close()
+    return bench.shares
 
 
 def latency(bench: Bench) -> None:
@@ -215,7 +222,7 @@ def latency(bench: Bench) -> None:
     say(f"{'key down to setpoint queued, ms':34s}{statistics.median(took):7.1f}{max(took):9.1f} at most\n")
 
 
-def in_feeder(stage: Server, folder: Path, shipped: str, seconds: float, name: str) -> None:
+def in_feeder(stage: Server, folder: Path, shipped: str, seconds: float, name: str) -> dict[str, float]:
     """A shipped machine whose drivers are a process of their own; its far end is played beside it."""
     machine = folder / shipped
     text = resources.machine_file(shipped)
@@ -226,10 +233,11 @@ def in_feeder(stage: Server, folder: Path, shipped: str, seconds: float, name: s
         peer = subprocess.Popen(words, stdin=subprocess.PIPE)
         time.sleep(PEER)
     say(f"{shipped} through the feeder\n")
-    simulated(stage, folder, {"off", name}, seconds, str(machine))
+    shares = simulated(stage, folder, {"off", name}, seconds, str(machine))
     if peer is not None:
         peer.terminate()
         peer.wait(30)
+    return shares
 
 
 def main() -> None:
@@ -239,15 +247,18 @@ def main() -> None:
     parser.add_argument("--seconds", type=float, default=60.0)
     wanted = parser.parse_args()
     names = set(wanted.names)
+    shares: dict[str, dict[str, float]] = {}
     say(f"{'per mille of a core, wake-ups/s':34s}{os.getloadavg()[0]:7.1f} load\n")
     with tempfile.TemporaryDirectory() as folder, server(Path(folder) / "x", SIZE) as stage:
         for name in ("sim", "feeder", "canopen"):
             (Path(folder) / name).mkdir()
         if names - {"feeder", "canopen"}:
-            simulated(stage, Path(folder) / "sim", names, wanted.seconds)
+            shares["simulated lathe"] = simulated(stage, Path(folder) / "sim", names, wanted.seconds)
         for name, shipped in (("feeder", "gt75.toml"), ("canopen", "gt75-bench.toml")):
             if name in names:
-                in_feeder(stage, Path(folder) / name, shipped, wanted.seconds, name)
+                within = in_feeder(stage, Path(folder) / name, shipped, wanted.seconds, name)
+                shares[f"{shipped} through the feeder"] = within
+    say(f"{keep_result('idle', {'seconds': wanted.seconds, 'rows': shares})}\n")
 
 
 if __name__ == "__main__":

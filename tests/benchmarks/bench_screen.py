@@ -2,7 +2,7 @@
 
 The simulated lathe runs by the real clock on its own thread, as in the shop; the window is drawn without a
 display. Run with
-``python -m tests.benchmarks.bench_screen [BLOCKS]``.
+``python -m tests.benchmarks.bench_screen [BLOCKS]``; the figures are kept for docs/speed.md.
 """
 
 from __future__ import annotations
@@ -31,6 +31,7 @@ from app.screen.main_window import MainWindow
 from app.screen.theme import DARK
 from core.executor.snapshot import State
 from tests.benchmarks.bench_hold import chords
+from tests.benchmarks.footprint import keep_result
 
 OFFSETS = "[tool.1]\nx = -1.0\nz = -1.5\n"  # so that four inches towards the chuck are within the travel
 PRESSES = 10
@@ -80,6 +81,7 @@ class Frames:
         self._window = window
         self.times: list[float] = []
         self.cpu: list[float] = []
+        self.kept: dict[str, dict[str, float]] = {}
         window.over = self._block
         QAbstractEventDispatcher.instance().aboutToBlock.connect(self._block)
 
@@ -97,6 +99,13 @@ class Frames:
     def row(self, name: str) -> str:
         """The figures since the last row."""
         over = sum(value > TOO_LONG for value in self.times)
+        self.kept[name] = {"frames": len(self.times), "over 33 ms": over} | {
+            word: round(1000.0 * max(values, default=0.0), 1)
+            for word, values in (
+                ("longest by the clock, ms", self.times),
+                ("of processor time, ms", self.cpu),
+            )
+        }
         shown = f"{name:28s}{_figures(self.times)}   {_figures(self.cpu)}   {over} of {len(self.times)}\n"
         self.clear()
         return shown
@@ -153,14 +162,14 @@ class Bench:
         self.frames.clear()
         self.desk.choose("many")
         session = self.desk.session
-        took = self.until(lambda: session.now.phase in {Phase.READY, Phase.REFUSED}, LOADING)
+        self.until(lambda: session.now.phase in {Phase.READY, Phase.REFUSED}, LOADING)
         if session.now.errors:
             raise ValueError(session.now.errors[0].message)
-        self.say(self.frames.row(f"loading, {took:.1f} s"))
+        self.say(self.frames.row("loading"))
         path = self.window.frame.automatic.path if self.window.frame else None
         assert path is not None
-        took = self.until(lambda: bool(path.panes) and all(pane.complete for pane in path.panes))
-        self.say(self.frames.row(f"whole path drawn, {took:.2f} s"))
+        self.until(lambda: bool(path.panes) and all(pane.complete for pane in path.panes))
+        self.say(self.frames.row("whole path drawn"))
         for key in ("Zoom in", "Zoom in", "Pan right", "Zoom out", "F5"):
             self.window.press(key)
             self.rest(0.3)
@@ -218,6 +227,9 @@ def main() -> None:
             median, most = statistics.median(values) * 1000, max(values) * 1000
             bench.say(f"{name:28s}{median:8.1f} ms{'':11s}{most:8.1f} ms\n")
         bench.say(f"from {statistics.median(speeds):.0f} mm/s, {math.ceil(max(speeds))} at most\n")
+        stands = [round(1000.0 * each, 1) for each in (statistics.median(stood), max(stood))]
+        figures = {"blocks": blocks, "rows": bench.frames.kept, "a hold stands after, ms": stands}
+        bench.say(f"{keep_result('frames', figures)}\n")
         bench.window.press("H")
         bench.rest(0.5)
         bench.window.put_away()

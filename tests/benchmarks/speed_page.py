@@ -1,11 +1,14 @@
 """Measures how fast TurnDesk is, writes its page: ``python -m tests.benchmarks.speed_page docs/speed.md``.
 
 All figures are processor time, taken by turns with what they are compared with. Peers run beside where they
-are installed: LinuxCNC's ``rs274``, which only interprets, and shapely. Takes some minutes.
+are installed: LinuxCNC's ``rs274``, which only interprets, and shapely. Takes some minutes. What the screen
+and the feeder do was measured by benchmarks of their own, which keep their figures in
+``tests/benchmarks/results``; ``--kept FILE`` writes those parts of a page anew and leaves the others.
 """
 
 from __future__ import annotations
 
+import json
 import math
 import platform
 import shutil
@@ -15,6 +18,7 @@ import tempfile
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 from app.compose.machine_files import load_machine
 from app.compose.machine_setup import setup_for
@@ -23,8 +27,9 @@ from core.language.source import Source
 from core.motion.axis_limits import MotionLimits
 from core.motion.motion_plan import plan
 from core.proving.prove_program import prove
-from tests.benchmarks import bench_removal, bench_start
+from tests.benchmarks import bench_feeder, bench_removal, bench_start
 from tests.benchmarks.bench_prove import feeds, program
+from tests.benchmarks.footprint import RESULTS
 from tests.benchmarks.installed import installed
 from tests.benchmarks.processor_time import BARE, compared
 from tests.benchmarks.speed_goals import GOALS, goal_of, not_met
@@ -33,7 +38,9 @@ from tests.motion.paths import build_path
 
 FEW = 3  # rounds of what takes seconds
 RADIUS, CHORD, FEED = 50.0, 0.02, 100.0
+FIRST_KEPT = "Frames of the window with a long program"
 Row = Sequence[str]
+Result = Mapping[str, Any]
 
 
 def page() -> str:
@@ -41,7 +48,29 @@ def page() -> str:
     with tempfile.TemporaryDirectory() as folder:
         home = Path(folder)
         parts = [_head(), _starts(home), _bulk(home), _warm(), _removal(), _chords()]
+    return "\n".join([*parts, kept()])
+
+
+def kept(folder: Path = RESULTS) -> str:
+    """The parts that other benchmarks have measured; one that never ran is named."""
+    parts = []
+    for name, title, write in (
+        ("frames", FIRST_KEPT, _frames),
+        ("idle", "At rest", _idle),
+        ("feeder", "SYNC of the feeder beside other work", _feeder),
+    ):
+        file = folder / f"{name}.json"
+        if not file.exists():
+            parts.append(f"## {title}\n\nNot measured yet.\n")
+            continue
+        result = json.loads(file.read_text())
+        parts.append(f"{write(title, result)}\n*{result['date']}, {result['machine']}.*\n")
     return "\n".join(parts)
+
+
+def with_kept(text: str) -> str:
+    """A page with those parts written anew."""
+    return text.partition(f"## {FIRST_KEPT}\n")[0] + kept()
 
 
 def _head() -> str:
@@ -207,8 +236,43 @@ def _chords() -> str:
     return _table(title, head, rows)
 
 
+def _frames(title: str, result: Result) -> str:
+    """How long the window took for a frame, and a hold until the slides stood."""
+    median, most = result["a hold stands after, ms"]
+    head = ("", "frames", "over 33 ms", "longest by the clock, ms", "of processor time, ms")
+    rows = [(name, *(str(row[column]) for column in head[1:])) for name, row in result["rows"].items()]
+    stands = f"a hold stands after {median} ms, {most} at most"
+    below = f"{result['blocks']:,} blocks; {stands}. No frame over 33 ms is wanted."
+    return _table(title, head, rows, below)
+
+
+def _idle(title: str, result: Result) -> str:
+    """Processor time of a desk at which nothing happens."""
+    rows = [
+        (machine, name, f"{share / 10.0:.1f}")
+        for machine, shares in result["rows"].items()
+        for name, share in shares.items()
+    ]
+    below = "At most 2 % are wanted of a desk whose machine does nothing."
+    return _table(title, ("machine", "desk", "% of a core"), rows, below)
+
+
+def _feeder(title: str, result: Result) -> str:
+    """How late SYNC was, run by run."""
+    below = (
+        "Late in ms. A witness on each core, above the feeder's priority, only waits: how late it is, the "
+        "computer is by itself; `own` are SYNCs at times when no witness was. p99 of .1 ms and no gap are "
+        "wanted."
+    )
+    return _table(title, bench_feeder.HEAD, result["rows"], below)
+
+
 def main() -> None:
     """Write the page to the file that is named, or print it."""
+    if sys.argv[1:2] == ["--kept"]:
+        file = Path(sys.argv[2])
+        file.write_text(with_kept(file.read_text(encoding="utf-8")), encoding="utf-8")
+        return
     text = page()
     if len(sys.argv) > 1:
         Path(sys.argv[1]).write_text(text, encoding="utf-8")
