@@ -139,7 +139,10 @@ def console() -> int:
     threading.excepthook = report_thread
     # numpy starts a pool of threads for algebra that nobody here does: a fifth of a short command.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-    return main()
+    try:
+        return main()
+    finally:
+        gc.freeze()  # Python would look for garbage in all that goes now anyway: a sixth of a short command
 
 
 if __name__ == "__main__":

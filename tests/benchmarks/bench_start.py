@@ -42,12 +42,11 @@ screen.run_screen(program=program, build=build)
 """
 
 HEADLESS = """
-import sys
+import os, sys
 from pathlib import Path
 from app.compose.machine_setup import read_machine, setup_for
 from app.compose.stored_offsets import chosen_offsets
 from app.compose.simulated_backend import simulated
-from app.desk.run_without_screen import HeadlessRun
 from core.executor.commands import CycleStart, EnableDrives, LoadJob
 from core.executor.executor import Executor
 from core.executor.job import Proof, make_job
@@ -67,6 +66,7 @@ executor.post(CycleStart())
 while ports.axes.horizon() <= clock.now():
     executor.tick()
     clock.advance(0.01)
+os._exit(0)
 """
 
 

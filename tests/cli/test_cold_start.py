@@ -22,7 +22,7 @@ OF_THE_REST = (
 )
 OF_PYTHON = (
     *("concurrent", "difflib", "hashlib", "importlib.resources", "logging", "random", "socket", "sqlite3"),
-    *("tempfile", "traceback", "urllib.request", "xml"),
+    *("numpy.ma", "tempfile", "traceback", "urllib.request", "xml"),
 )
 PROVE = """
 import sys

@@ -27,7 +27,7 @@ def unchanged(state: State, lines: Columns) -> Bools:
         coded = lines.g == g
         if g != NO_CODE and not in_force(state, g, None):
             answer &= ~coded | fed
-        for f in np.unique(lines.f[coded & fed]).tolist():
+        for f in set(lines.f[coded & fed].tolist()):  # np.unique would load masked arrays first
             if not in_force(state, g, f):
                 answer &= ~coded | (lines.f != f)
     return answer
