@@ -35,7 +35,6 @@ class Unit(StrEnum):
     RPM_PER_SECOND = "rpm/s"
     TURNS_PER_MINUTE = "rpm of C"
     TURNS_PER_MINUTE_SECOND = "rpm/s of C"
-    HERTZ = "Hz"
     DEGREES_PER_MINUTE = "deg/min"
     DEGREES_PER_SECOND_SQUARED = "deg/s²"
 

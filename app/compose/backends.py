@@ -11,8 +11,10 @@ from app.compose.pendant_wire import wired, with_pendant
 from core.machine.machine_model import Machine
 from core.ports import Clock, DriverError
 from drivers.clocks import RealClock
-from drivers.feeder.feeder_client import FeederHands, Line, feeder_ports
+from drivers.feeder.feeder_hands import FeederHands
+from drivers.feeder.feeder_line import Line
 from drivers.feeder.feeder_links import LoopLink
+from drivers.feeder.feeder_ports import feeder_ports
 from drivers.feeder.feeder_server import Feeder
 
 FEEDER = os.name == "posix"  # elsewhere a simulated machine lives in the control's own process

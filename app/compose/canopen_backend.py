@@ -19,16 +19,10 @@ from drivers.canopen.canopen_config import (
     PotConfig,
     SpindleConfig,
 )
-from drivers.canopen.canopen_table import (
-    PLAIN_MODULE,
-    CanNode,
-    CanopenTable,
-    CanTerminal,
-    EncoderTable,
-    Objects,
-    can_terminal,
-)
+from drivers.canopen.canopen_nodes import PLAIN_MODULE, CanNode, CanTerminal, Objects, can_terminal
+from drivers.canopen.canopen_table import CanopenTable
 from drivers.canopen.drive_profiles import CIA402, PROFILES
+from drivers.canopen.encoder_table import EncoderTable
 from drivers.feeder.feeder_server import Driven
 from drivers.operator_station import PanelStation
 

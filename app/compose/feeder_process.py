@@ -13,9 +13,10 @@ from app.compose.backend_entry import backend_of, has_inverter
 from app.compose.inverter_backend import with_inverter
 from core.machine.machine_model import Machine
 from core.ports import Clock, DriverError
-from drivers.canopen.canopen_table import CYCLIC, EVENED_OUT, CanopenTable
+from drivers.canopen.canopen_nodes import CYCLIC, EVENED_OUT
+from drivers.canopen.canopen_table import CanopenTable
 from drivers.clocks import RealClock
-from drivers.feeder.feeder_client import Line, Link, cleared
+from drivers.feeder.feeder_line import Line, Link, cleared
 from drivers.feeder.feeder_links import SocketLink
 from drivers.feeder.feeder_loop import TRIAL, keep_memory, late_at_trial, real_time, serve
 from drivers.feeder.feeder_messages import NOTHING, Inbox, Message, fault_of, packed, with_code

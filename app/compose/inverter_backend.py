@@ -10,7 +10,7 @@ from app.compose.serial_ports import open_wire
 from core.machine.machine_model import Machine
 from core.ports import AxisSink, Clock, DriverError, FloatArray, MachinePorts, SampleSource, Unknown
 from drivers.clocks import StepClock
-from drivers.inverter.inverter_attendant import Keeper
+from drivers.inverter.inverter_attendant import AttendantThread
 from drivers.inverter.inverter_spindle import Encoder, InverterSpindle, attendant
 from drivers.inverter.inverter_table import InverterTable
 
@@ -33,13 +33,13 @@ def with_inverter(
     encoder beside the backend's spindle.
     """
     try:
-        keeper, joined = _attended(machine, ports, clock, measures)
+        thread, joined = _attended(machine, ports, clock, measures)
     except DriverError:
         close()
         raise
 
     def let_go() -> None:
-        keeper.close()
+        thread.close()
         close()
 
     return joined, let_go
@@ -47,7 +47,7 @@ def with_inverter(
 
 def _attended(
     machine: Machine, ports: MachinePorts, clock: Clock, measures: Encoder | None
-) -> tuple[Keeper, MachinePorts]:
+) -> tuple[AttendantThread, MachinePorts]:
     if isinstance(clock, StepClock):
         raise DriverError(
             "an inverter on a line needs real time; it cannot follow a clock that is moved by hand"
@@ -56,13 +56,13 @@ def _attended(
     assert table is not None  # a rule of the machine file
     line, config = table.line, table.config
     attended = attendant(config, lambda: open_wire(line), clock)
-    keeper = Keeper(attended)
+    thread = AttendantThread(attended)
     try:
         attended.connect()
     except DriverError as error:
         attended.close()
         raise DriverError(f"inverter {config.family} on {line.port}: {error}") from error
-    keeper.start()
+    thread.start()
     own = ports.spindle if machine.backend != "sim" and ports.spindle.angle() is not None else None
     encoder = measures or own
     spindle = InverterSpindle(
@@ -70,8 +70,8 @@ def _attended(
         attended,
         clock,
         encoder=encoder,
-        alive=lambda: keeper.alive,
-        revive=keeper.revive,
+        alive=lambda: thread.alive,
+        revive=thread.revive,
         estop=lambda: ports.station.snapshot().estop,
         lost=ports.spindle.fault if machine.backend == "canopen" else str,
     )
@@ -90,7 +90,7 @@ def _attended(
         halt=partial(halt_with, ports, spindle),
         unknown=partial(unknown_with, ports, spindle),
     )
-    return keeper, joined
+    return thread, joined
 
 
 def unknown_with(ports: MachinePorts, spindle: InverterSpindle) -> frozenset[Unknown]:

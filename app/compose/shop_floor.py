@@ -15,7 +15,7 @@ from core.ports import DriverError
 from drivers.clocks import RealClock
 from drivers.mtconnect.agent_links import listening
 from drivers.mtconnect.devices_xml import devices_xml
-from drivers.mtconnect.mtconnect_adapter import Adapter, Keeper, utc_now
+from drivers.mtconnect.mtconnect_adapter import Adapter, AdapterThread, utc_now
 from drivers.mtconnect.mtconnect_items import Category, Component, Layout, machine_items
 from drivers.mtconnect.mtconnect_table import MtconnectTable
 from drivers.mtconnect.shdr_lines import Active, Report, stamp
@@ -31,13 +31,13 @@ def open_shop_floor(
     model = machine.hardware.table(MtconnectTable)
     if model is None or not model.enabled:
         return _nothing
-    keeper = Keeper(adapter_of(machine, model, snapshot))
+    thread = AdapterThread(adapter_of(machine, model, snapshot))
     try:
-        keeper.start()
+        thread.start()
     except DriverError as error:
         tell(str(error))
         return _nothing
-    return keeper.close
+    return thread.close
 
 
 def told_to_agents(machine: Machine) -> bool:

@@ -30,7 +30,7 @@ _LEAST_READINGS = 8  # readings
 class SpindleAngle:
     """A cubic through the encoder's readings of the last moments; revolutions, signed, and seconds.
 
-    A reading every 10 ms in 4096 steps a turn tells the angle 45 ms ahead within .15 degree, and with a speed
+    A reading every 10 ms in 4096 steps a turn tells the angle 45 ms ahead within .25 degree, and with a speed
     that swings by 2 % in two seconds within .2 degree (docs/decisions/0009-threads.md).
     """
 

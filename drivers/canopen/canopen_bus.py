@@ -16,7 +16,7 @@ from canopen.sdo.constants import RESPONSE_ABORTED
 from canopen.sdo.exceptions import SdoAbortedError, SdoCommunicationError
 
 from core.ports import Clock, DriverError, Fault
-from drivers.canopen.canopen_table import BusConfig
+from drivers.canopen.canopen_nodes import BusConfig
 
 _log = logging.getLogger(__name__)
 for _library in ("can", "canopen"):  # what goes wrong there is raised, and told by us in one sentence

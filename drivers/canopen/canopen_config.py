@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from drivers.canopen.canopen_table import BusConfig, CanNode, CanTerminal
+from drivers.canopen.canopen_nodes import BusConfig, CanNode, CanTerminal
 from drivers.canopen.drive_profiles import CIA402, DriveProfile
 from drivers.setpoint_queue import AxisFigures
 

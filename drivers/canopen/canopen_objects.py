@@ -15,7 +15,7 @@ from canopen.objectdictionary import ODArray, ODRecord, ODVariable
 from canopen.objectdictionary import datatypes as kind
 
 from core.ports import DriverError
-from drivers.canopen.canopen_table import CanNode
+from drivers.canopen.canopen_nodes import CanNode
 from drivers.canopen.drive_profiles import CIA402, DriveProfile, profile_of
 
 U8, U16, U32, U64 = kind.UNSIGNED8, kind.UNSIGNED16, kind.UNSIGNED32, kind.UNSIGNED64

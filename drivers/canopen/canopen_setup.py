@@ -13,8 +13,8 @@ from core.ports import DriverError, Segments
 from drivers.canopen import canopen_objects as od
 from drivers.canopen.canopen_bus import Bus, Node
 from drivers.canopen.canopen_config import AxisConfig
+from drivers.canopen.canopen_nodes import BusConfig, Objects
 from drivers.canopen.canopen_objects import MODE_BITS
-from drivers.canopen.canopen_table import BusConfig, Objects
 from drivers.canopen.drive_profiles import WITHOUT, Entry
 
 _Answer = TypeVar("_Answer")

@@ -10,9 +10,9 @@ from core.ports import Clock, DriverError
 from drivers.canopen import canopen_objects as od
 from drivers.canopen.canopen_bus import Bus
 from drivers.canopen.canopen_config import AxisConfig, CanopenConfig
+from drivers.canopen.canopen_nodes import CanNode
 from drivers.canopen.canopen_objects import MODE_BITS
 from drivers.canopen.canopen_setup import Setup
-from drivers.canopen.canopen_table import CanNode
 from drivers.canopen.cia402_drives import MOTIONS, axis_work
 from drivers.canopen.drive_profiles import DriveProfile
 

@@ -10,8 +10,8 @@ from core.ports import DriverError, Fault, StationState
 from drivers.canopen import canopen_objects as od
 from drivers.canopen.canopen_bus import Bus
 from drivers.canopen.canopen_config import CanopenConfig
+from drivers.canopen.canopen_nodes import CanNode, CanTerminal
 from drivers.canopen.canopen_setup import Setup, watching
-from drivers.canopen.canopen_table import CanNode, CanTerminal
 from drivers.canopen.cia402_drives import Drive402
 from drivers.station_inputs import station_of
 

@@ -13,6 +13,7 @@ from core.ports import DriverError, Fault, FaultCode
 from drivers.canopen import canopen_objects as od
 from drivers.canopen.canopen_bus import Bus
 from drivers.canopen.canopen_config import AxisConfig
+from drivers.canopen.canopen_nodes import BusConfig, CanNode, Objects
 from drivers.canopen.canopen_objects import (
     CSP,
     HM,
@@ -26,7 +27,6 @@ from drivers.canopen.canopen_objects import (
     towards_enabled,
 )
 from drivers.canopen.canopen_setup import Setup, axis_objects
-from drivers.canopen.canopen_table import BusConfig, CanNode, Objects
 from drivers.canopen.drive_profiles import Entry
 from drivers.canopen.pvt_records import RecordQueue
 

@@ -11,8 +11,8 @@ import math
 from collections.abc import Sequence
 
 from core.ports import Fault, at_rest
+from drivers.canopen.canopen_nodes import EVENED_OUT
 from drivers.canopen.canopen_objects import BIT_12, IP, NEW
-from drivers.canopen.canopen_table import EVENED_OUT
 from drivers.canopen.cia402_drives import DrivenAxis
 from drivers.canopen.position_modes import Follower
 from drivers.setpoint_queue import SetpointQueue

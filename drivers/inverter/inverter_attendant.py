@@ -1,6 +1,6 @@
 """Whoever owns the line: tells the inverter what is wanted, looks at it, and says when it does not obey.
 
-``round`` is one exchange; a thread repeats it (``keeper``), a test calls it. A stop goes before everything:
+``round`` is one exchange; a thread repeats it (``AttendantThread``), a test calls it. A stop goes before everything:
 at most the answer that is under way is waited for.
 """
 
@@ -227,7 +227,7 @@ class Attendant:
 _END = 3.0  # s: the longest exchange and its retries
 
 
-class Keeper:
+class AttendantThread:
     """Rounds without a pause: the line itself keeps the pace of its requests."""
 
     def __init__(self, attendant: Attendant) -> None:

@@ -13,7 +13,7 @@ from core.ports import Clock
 from drivers.canopen import canopen_objects as od
 from drivers.canopen.canopen_bus import opened
 from drivers.canopen.canopen_config import CanopenConfig
-from drivers.canopen.canopen_table import CanNode
+from drivers.canopen.canopen_nodes import CanNode
 from drivers.canopen.drive_profiles import DriveProfile
 from drivers.lookalikes.canopen_axis_drive import AxisDrive
 from drivers.lookalikes.canopen_modules import EncoderDevice, TerminalBoard

@@ -181,7 +181,7 @@ class Adapter:
 _BREATH = 0.005  # s between two turns: an agent that floods takes no more than that of this computer
 
 
-class Keeper:
+class AdapterThread:
     """Turns the adapter until it is closed. Should it fail, agents are hung up on and so know it."""
 
     def __init__(self, adapter: Adapter) -> None:

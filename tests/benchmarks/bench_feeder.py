@@ -43,10 +43,11 @@ from app.compose.played_machine import play_peers
 from core.ports import DriverError, FloatArray, MachinePorts, Segments
 from drivers.canopen.cyclic_mode import CyclicFollower, SyncSchedule
 from drivers.clocks import RealClock
-from drivers.feeder.feeder_client import Line, feeder_ports
+from drivers.feeder.feeder_line import Line
 from drivers.feeder.feeder_links import SocketLink
 from drivers.feeder.feeder_loop import PRIORITY, keep_memory, real_time, serve
 from drivers.feeder.feeder_messages import NOTHING, Inbox, Message, packed
+from drivers.feeder.feeder_ports import feeder_ports
 from drivers.setpoint_queue import straight
 from tests.benchmarks.footprint import keep_result
 

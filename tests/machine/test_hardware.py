@@ -10,7 +10,8 @@ import resources
 from app.compose.machine_files import load_machine, parse_machine
 from core.machine.serial_table import DncModel
 from core.table_schema import Finding, MachineFileError
-from drivers.canopen.canopen_table import CanopenTable, CanTerminal, can_terminal
+from drivers.canopen.canopen_nodes import CanTerminal, can_terminal
+from drivers.canopen.canopen_table import CanopenTable
 from drivers.grblhal.grblhal_table import GrblhalTable
 from drivers.inverter.inverter_table import InverterTable
 from drivers.lookalikes.plant_config import PlannedFault

@@ -8,7 +8,6 @@ from typing import NamedTuple
 
 from core.geometry.lines_and_arcs import Point
 from core.interpreter.actions import Action, Dwell, SpindleLock, SpindleOrient, SpindleRun, SpindleStop
-from core.interpreter.contour_passes import Move
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.sinumerik.linear_moves import AxisTravel, block_of
 from core.interpreter.sinumerik.sinumerik_feeds import check_feed
@@ -240,14 +239,6 @@ class Cycle:
             made.cx, made.cz = step.centre
             made.clockwise = step.clockwise
         return made
-
-
-def steps_of(moves: Sequence[Move], feed: float) -> list[Step]:
-    """Moves of passes, at one feed."""
-    return [
-        Step(move.x, move.z, None if move.rapid is not None else feed, move.centre, move.clockwise)
-        for move in moves
-    ]
 
 
 def dwell(seconds: float) -> list[Step]:

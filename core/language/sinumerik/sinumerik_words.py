@@ -101,7 +101,6 @@ CORNERS = frozenset({"CHF", "CHR", "RND"})
 LETTERS = frozenset({"G", "M", "X", "Y", "Z", "C", "I", "J", "K", "F", "S", "T", "D"})
 """Words that may stand without =."""
 
-POLAR = frozenset({"RP", "AP"})
 PLACES = frozenset({"X", "Y", "Z", "C", "RP", "AP", "ANG"})
 """Words that move, or turn, something."""
 

@@ -10,8 +10,8 @@ import pytest
 from core.ports import DriverError
 from drivers.canopen.canopen_bus import Bus
 from drivers.canopen.canopen_config import CanopenConfig, OutputConfig, PotConfig
-from drivers.canopen.canopen_table import BusConfig, CanNode
-from drivers.canopen.canopen_table import CanTerminal as Terminal
+from drivers.canopen.canopen_nodes import BusConfig, CanNode
+from drivers.canopen.canopen_nodes import CanTerminal as Terminal
 from drivers.canopen.canopen_terminals import CanopenIO
 from drivers.clocks import StepClock
 from tests.drivers.canopen.foreign import NODE, ForeignModule

@@ -13,7 +13,8 @@ from app.compose.canopen_backend import canopen_machine
 from core.machine.machine_model import Machine
 from core.ports import ALL_UNKNOWN, DriverError, MachinePorts, Unknown
 from drivers.canopen.canopen_machine import CanopenMachine
-from drivers.feeder.feeder_client import Line, Link, cleared, feeder_ports
+from drivers.feeder.feeder_line import Line, Link, cleared
+from drivers.feeder.feeder_ports import feeder_ports
 from drivers.feeder.feeder_server import Feeder
 from drivers.lookalikes.plant_hands import PlantHands
 from drivers.reopening import Opening

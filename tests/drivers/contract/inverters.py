@@ -12,7 +12,7 @@ import resources
 from app.compose.inverter_backend import ClearingAxes, halt_with, unknown_with
 from app.compose.machine_files import parse_machine
 from core.ports import Unknown
-from drivers.inverter.inverter_attendant import Keeper
+from drivers.inverter.inverter_attendant import AttendantThread
 from drivers.inverter.inverter_spindle import InverterSpindle, attendant
 from tests.drivers.contract.lockstep import LockstepClock
 from tests.drivers.contract.rig import Fault
@@ -90,7 +90,7 @@ class OnALine(Simulated):
         self.inverter = Inverter(self.clock)
         self.wire = BenchWire(far_end(self.family, self.inverter)[1], self.clock)
         self.attendant = attendant(config(self.family), self.wire.opened, self.clock)
-        self.keeper = Keeper(self.attendant)
+        self.keeper = AttendantThread(self.attendant)
         self.attendant.connect()
         ports = self.ports
         spindle = InverterSpindle(

@@ -12,9 +12,10 @@ from app.compose.simulated_backend import simulated
 from core.machine.machine_model import InputModel, Machine
 from core.ports import ALL_UNKNOWN, DriverError, MachinePorts
 from drivers.clocks import StepClock
-from drivers.feeder.feeder_client import Line, Link, cleared, feeder_ports
+from drivers.feeder.feeder_line import Line, Link, cleared
 from drivers.feeder.feeder_links import LoopLink
 from drivers.feeder.feeder_messages import Message
+from drivers.feeder.feeder_ports import feeder_ports
 from drivers.feeder.feeder_server import Feeder
 from drivers.lookalikes.plant_hands import PlantHands
 from drivers.reopening import Opening

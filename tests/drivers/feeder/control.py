@@ -12,7 +12,7 @@ from app.compose.feeder_process import FeederProcess
 from app.compose.machine_files import load_machine
 from core.ports import Segments
 from drivers.clocks import RealClock
-from drivers.feeder.feeder_client import feeder_ports
+from drivers.feeder.feeder_ports import feeder_ports
 
 SPEED, CRUISE, UP = 20.0, 1.4, 0.02  # mm/s, s, s: 28.4 mm of X and as much of Z
 TICK = 0.02

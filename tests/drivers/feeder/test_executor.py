@@ -7,7 +7,8 @@ import pytest
 from core.executor.commands import CycleStart, FeedHold
 from core.executor.snapshot import State
 from core.interpreter.job_setup import ToolOffset
-from drivers.feeder.feeder_client import Line, feeder_ports
+from drivers.feeder.feeder_line import Line
+from drivers.feeder.feeder_ports import feeder_ports
 from drivers.feeder.feeder_server import Feeder
 from drivers.simulated.simulated_machine import Simulation
 from tests.drivers.contract.simulated import BrokenLink, SimDriven

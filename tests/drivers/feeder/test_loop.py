@@ -16,10 +16,11 @@ from app.compose.machine_files import parse_machine
 from core.ports import DriverError, MachinePorts
 from drivers.clocks import RealClock, StepClock
 from drivers.feeder import feeder_loop
-from drivers.feeder.feeder_client import Line, feeder_ports
+from drivers.feeder.feeder_line import Line
 from drivers.feeder.feeder_links import SocketLink
 from drivers.feeder.feeder_loop import Ear, serve
 from drivers.feeder.feeder_messages import NOTHING, Message, packed
+from drivers.feeder.feeder_ports import feeder_ports
 from drivers.feeder.feeder_server import Driven, Feeder
 from drivers.simulated.simulated_machine import Simulation, build_simulation
 from tests.drivers.contract.simulated import SimDriven

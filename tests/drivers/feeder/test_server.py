@@ -10,9 +10,11 @@ import pytest
 
 from core.ports import DriverError, MachinePorts
 from drivers.clocks import StepClock
-from drivers.feeder.feeder_client import FeederHands, Line, feeder_ports
+from drivers.feeder.feeder_hands import FeederHands
+from drivers.feeder.feeder_line import Line
 from drivers.feeder.feeder_links import LoopLink
 from drivers.feeder.feeder_messages import LARGEST, NOTHING, Inbox, Message, packed
+from drivers.feeder.feeder_ports import feeder_ports
 from drivers.feeder.feeder_server import PERIOD, RESTS, Driven, Feeder
 from drivers.simulated.simulated_machine import Simulation, build_simulation
 from drivers.wakeup import Bell

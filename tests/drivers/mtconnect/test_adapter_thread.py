@@ -9,7 +9,7 @@ import pytest
 
 from core.ports import DriverError
 from drivers.clocks import RealClock
-from drivers.mtconnect.mtconnect_adapter import Adapter, Keeper
+from drivers.mtconnect.mtconnect_adapter import Adapter, AdapterThread
 from drivers.mtconnect.mtconnect_table import MtconnectTable
 from drivers.mtconnect.shdr_lines import Report
 from tests.drivers.mtconnect.bench import lathe
@@ -48,33 +48,33 @@ def all_of(wire: socket.socket) -> str:
 def test_it_tells_until_it_is_closed_and_leaves_nothing() -> None:
     machine = Machine()
     one = adapter(machine)
-    keeper = Keeper(one)
-    keeper.start()
+    thread = AdapterThread(one)
+    thread.start()
     address = one.address
     with socket.create_connection(address, 5.0) as wire:
         assert b"execution|READY" in wire.recv(65536)
         machine.state = "STOPPED"  # the last word, whether a look comes before the end or not
-        keeper.close()
+        thread.close()
         assert "execution|STOPPED" in all_of(wire)
-    assert not keeper.alive
+    assert not thread.alive
     assert threads() == []
     with pytest.raises(ConnectionError):
         socket.create_connection(address, 5.0)
 
 
 def test_closing_twice_is_closing_once() -> None:
-    keeper = Keeper(adapter(Machine()))
-    keeper.start()
-    keeper.close()
-    keeper.close()
+    thread = AdapterThread(adapter(Machine()))
+    thread.start()
+    thread.close()
+    thread.close()
 
 
 def test_a_port_that_is_taken_leaves_no_thread() -> None:
     with socket.create_server((HERE, 0)) as other:
-        keeper = Keeper(adapter(Machine(), other.getsockname()[1]))
+        thread = AdapterThread(adapter(Machine(), other.getsockname()[1]))
         with pytest.raises(DriverError, match="cannot be opened"):
-            keeper.start()
-        keeper.close()
+            thread.start()
+        thread.close()
     assert threads() == []
 
 
@@ -83,12 +83,12 @@ def test_should_it_fail_agents_are_hung_up_on(caplog: pytest.LogCaptureFixture) 
     """Then they say UNAVAILABLE by themselves instead of showing what was true once."""
     machine = Machine()
     one = adapter(machine)
-    keeper = Keeper(one)
-    keeper.start()
+    thread = AdapterThread(one)
+    thread.start()
     with socket.create_connection(one.address, 5.0) as wire:
         wire.recv(65536)
         machine.broken.set()
         all_of(wire)
-    keeper.close()
-    assert not keeper.alive
+    thread.close()
+    assert not thread.alive
     assert "RuntimeError: a mistake of our own" in caplog.text

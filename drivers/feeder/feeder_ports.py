@@ -2,21 +2,14 @@
 
 from __future__ import annotations
 
-import logging
-import queue
-from collections import deque
-from collections.abc import Callable, Mapping, Sequence
-from typing import Protocol
+from collections.abc import Mapping
 
 import numpy as np
 
 from core.ports import (
-    ALL_UNKNOWN,
     AxisSample,
     Cam,
-    Clock,
     DriverError,
-    Fault,
     FloatArray,
     Geared,
     Latch,
@@ -25,13 +18,10 @@ from core.ports import (
     StationState,
     Stop,
     Trip,
-    TrippedError,
-    Unknown,
-    code_of,
 )
+from drivers.feeder.feeder_line import Line
 from drivers.feeder.feeder_messages import (
     NOTHING,
-    VERSION,
     Message,
     cam_message,
     fault_of,
@@ -39,186 +29,9 @@ from drivers.feeder.feeder_messages import (
     items,
     number,
     rows,
-    text,
     texts,
 )
-from drivers.reopening import Opening
 from drivers.wakeup import Bell
-
-_log = logging.getLogger(__name__)
-_FRESH = 0.002  # s for which one look serves all ports
-_RESTS = 0.02  # s for which it does while the control sleeps: one tick, and what is new rings
-_BATCHES = 200  # of samples that wait for whoever records them
-
-
-class Link(Protocol):
-    """Carries a request to the feeder and its answer back; ``files`` are what can be waited for."""
-
-    @property
-    def files(self) -> Sequence[int]: ...
-
-    def ask(self, message: Message) -> Message:
-        """Raises DriverError when there is no answer."""
-        ...
-
-    def hang_up(self) -> None:
-        """From any thread: nothing is said or heard any more."""
-        ...
-
-    def close(self) -> None: ...
-
-
-def cleared(link: Link) -> Link:
-    """The Reset that has asked for another feeder is meant for its drives too. Raises DriverError."""
-    answer = link.ask(Message({"do": "do", "what": "clear_fault"}, NOTHING))
-    if why := fault_of(answer.head, "error", "driver"):
-        raise DriverError(why)
-    return link
-
-
-class Line:
-    """Requests in words, and the last look at everything.
-
-    ``again`` begins to start another feeder in the place of one that is gone: there is no other way back.
-    ``bell`` is rung by the feeder too, while the control sleeps.
-    """
-
-    def __init__(
-        self,
-        link: Link,
-        clock: Clock,
-        again: Callable[[], Opening[Link]] | None = None,
-        bell: Bell | None = None,
-    ) -> None:
-        self._link = link
-        self._again = again
-        self._opening: Opening[Link] | None = None
-        self.clock = clock
-        self.bell = bell
-        self._asleep = self._sleeps = False  # as the feeder has been told, and as the next look says
-        self.fault: Fault | str = ""  # why the feeder cannot be asked any more
-        self._state: Mapping[str, object] = {}
-        self._at = -1.0
-        self._posted: queue.SimpleQueue[Message] = queue.SimpleQueue()
-        self.sampled: deque[FloatArray] = deque(maxlen=_BATCHES)  # since they were last taken
-
-    def ask(self, message: Message) -> Message:
-        """The answer. Raises DriverError with what the drivers refuse, or that the feeder is gone."""
-        if self.fault:
-            raise DriverError(self.fault)
-        if self._opening is not None:
-            raise DriverError("the feeder is being started again", "feeder-gone")
-        self._asleep = False
-        try:
-            answer = self._link.ask(message)
-        except DriverError as error:
-            self.fault = error.fault
-            raise
-        if "tripped" in answer.head:
-            raise TrippedError(text(answer.head, "tripped"))
-        if why := fault_of(answer.head, "error", "driver"):
-            raise DriverError(why)
-        return answer
-
-    def order(self, what: str, **values: object) -> None:
-        """Something that changes the machine; the next look is a new one."""
-        self._at = -1.0
-        self.ask(Message({"do": "do", "what": what, **values}, NOTHING))
-
-    def post(self, message: Message) -> None:
-        """From any thread: goes out before the next look, unanswered."""
-        self._posted.put(message)
-        if self.bell is not None:
-            self.bell.ring()
-
-    def sleep(self) -> None:
-        """Until anything but a look is asked for the feeder rings for what is new. Raises DriverError."""
-        if not self._asleep:
-            self.ask(Message({"do": "rest"}, NOTHING))
-        self._asleep = self._sleeps = True
-
-    def awake(self) -> None:
-        """Looks come as ever, and the next one is a new one."""
-        self._sleeps, self._at = False, -1.0
-
-    @property
-    def files(self) -> Sequence[int]:
-        """Of the link: nothing comes there that is not asked for, but its end."""
-        return self._link.files
-
-    def look(self, *, anew: bool = False) -> Mapping[str, object]:
-        """Everything that can be seen, of this tick; the last known when the feeder is gone."""
-        if self._opening is not None:
-            self._reopen(self._opening)
-        now = self.clock.now()
-        fresh = _RESTS if self._asleep else _FRESH
-        if not self.lost and (anew or not 0.0 <= now - self._at < fresh):
-            try:
-                while not self._posted.empty():
-                    self.ask(self._posted.get())
-                sleeps, self._sleeps = self._sleeps, False
-                answer = self.ask(Message({"do": "look", "rests": sleeps}, NOTHING))
-                self._asleep = sleeps
-                self._state = answer.head
-                if len(answer.numbers):
-                    self.sampled.append(answer.numbers)
-            except DriverError as error:
-                self.fault = self.fault or error.fault
-            self._at = now
-            for note in texts(self._state.get("notes")):
-                _log.warning("feeder: %s", note)
-        return self._state
-
-    @property
-    def lost(self) -> bool:
-        """Whether there is no feeder to ask."""
-        return self.fault != "" or self._opening is not None
-
-    def restart(self) -> None:
-        """Begin to start another feeder; why that fails is the next fault. Raises DriverError where there is
-        none to start.
-        """
-        if self._again is None:
-            raise DriverError(f"{self.fault}; start the control again", code_of(self.fault, "feeder-gone"))
-        self.fault, self._opening = "", self._again()
-
-    def greet(self) -> Mapping[str, object]:
-        """What the feeder says of itself. Raises DriverError for one of another version."""
-        hello = self.ask(Message({"do": "hello"}, NOTHING)).head
-        if hello.get("version") != VERSION:
-            raise DriverError(
-                f"the feeder speaks version {hello.get('version')}, this control {VERSION}: end the control,"
-                " and start it again once its installation is whole"
-            )
-        return hello
-
-    def _reopen(self, opening: Opening[Link]) -> None:
-        try:
-            link = opening.take()
-            if link is None:
-                return
-            self._link, self._opening, self._at = link, None, -1.0
-            self._state = {}
-            self.greet()
-        except DriverError as error:
-            self._opening, self.fault = None, error.fault
-
-    def unknown(self) -> frozenset[Unknown]:
-        """What the drivers do not hear of; of a feeder that is gone nothing is known."""
-        if self.lost:
-            return ALL_UNKNOWN
-        return frozenset(map(Unknown, texts(self.look().get("unknown"))))
-
-    def hang_up(self) -> None:
-        """From any thread: the feeder sees that its control is gone, and stops the machine for good."""
-        self._link.hang_up()
-
-    def close(self) -> None:
-        """End it."""
-        self._link.close()
-
-
-# --- ``core.ports`` through the feeder: each call a message.
 
 
 class _OnLine:
@@ -491,38 +304,3 @@ def feeder_ports(line: Line) -> MachinePorts:
 
 def _flags(value: object) -> dict[str, bool]:
     return {name: on is True for name, on in value.items()} if isinstance(value, dict) else {}
-
-
-# --- The hands at a station that lives in the feeder: the simulated one, or the one on the screen.
-
-
-def _hand(name: str) -> Callable[..., None]:
-    """The method of this name at that station: it goes out with the executor's next look, nobody waits."""
-
-    def use(self: FeederHands, *values: object) -> None:
-        self.post(name, *values)
-
-    return use
-
-
-class FeederHands(_OnLine):
-    """Any thread may act; what an act means stands at ``app.desk.station_hands.StationPanel``."""
-
-    press_left, release_left = _hand("press_left"), _hand("release_left")
-    press_right, release_right = _hand("press_right"), _hand("release_right")
-    press_hold, release_hold = _hand("press_hold"), _hand("release_hold")
-    press_estop, release_estop = _hand("press_estop"), _hand("release_estop")
-    set_spindle_auto, set_spindle_pot = _hand("set_spindle_auto"), _hand("set_spindle_pot")
-    set_feed_pot, turn_handwheel = _hand("set_feed_pot"), _hand("turn_handwheel")
-
-    def set_input(self, name: str, on: bool) -> None:
-        """Make an input of a simulated machine true or false, at once. Raises DriverError."""
-        self._line.ask(_act("set_input", name, on))
-
-    def post(self, name: str, *values: object) -> None:
-        """Use the method of this name at the station."""
-        self._line.post(_act(name, *values))
-
-
-def _act(name: str, *values: object) -> Message:
-    return Message({"do": "hand", "name": name, "values": list(values)}, NOTHING)

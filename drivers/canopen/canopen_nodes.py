@@ -1,0 +1,218 @@
+"""The bus and its nodes as the machine file has them: profiles, families, objects, addresses of terminals."""
+
+from __future__ import annotations
+
+import itertools
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import TypeGuard
+
+from core.table_schema import (
+    Field,
+    FileReading,
+    Finding,
+    Kind,
+    expected_table,
+    read_named,
+    unknown_keys,
+    written,
+)
+from drivers.canopen.drive_profiles import PROFILES
+
+PLAIN_MODULE = "401"  # means the first I/O module
+DRIVE, MODULE, ENCODER_PROFILE = 402, 401, 406  # profiles of CiA
+NODES, SDO, SPINDLE = "canopen.nodes", "canopen.sdo", "spindle"
+_ADDRESS = re.compile(r"([A-Za-z0-9_]+)\.([0-9A-Fa-f]{4})\.(\d{1,3})(?:\.(\d{1,2}))?")
+_OBJECT = re.compile(r"([0-9A-Fa-f]{4}):(\d{1,3})")
+INPUT, BITS = 0x6000, 8  # the object of a module's inputs; bits of a byte
+_WINDOW, _OFF = 0x6065, 0xFFFFFFFF
+_LOW, _HIGH = -(2**31), 2**32 - 1  # of an object
+_SELDOM = 0.01  # s
+_ANSWERS, _ANSWER_TIME = 3, 0.02  # SYNCs, s
+
+CYCLIC = ("csp", "ip")  # modes with a setpoint each SYNC
+EVENED_OUT = 0.25  # of a period that a SYNC may be late
+_NODE = (
+    Field("id", Kind.WHOLE, low=1, high=127),
+    Field("profile", Kind.WHOLE, low=401, high=406, default=402),
+    Field("drive", Kind.CHOICE, choices=tuple(PROFILES), default=""),
+    Field("eds", Kind.TEXT, default=""),
+    Field("counts_per_rev", Kind.WHOLE, low=0, high=100_000_000, default=0),
+)
+Objects = tuple[tuple[int, int, int], ...]  # index, sub-index, value: written at every start and read back
+
+
+@dataclass(frozen=True, slots=True)
+class BusConfig:
+    """The wire. Times in seconds."""
+
+    interface: str  # python-can's name: socketcan, virtual, udp_multicast …
+    channel: str
+    bitrate: int = 1_000_000
+    host_id: int = 127
+    sync: float = 0.01
+    heartbeat: float = 0.1
+
+    @property
+    def seldom(self) -> int:
+        """SYNCs from one answer to the next of what need not be known at each: about 10 ms."""
+        return max(1, round(_SELDOM / self.sync))
+
+    @property
+    def patience(self) -> int:
+        """Answers to SYNC that a slide may leave out before it counts as silent: 3, or 20 ms."""
+        return max(_ANSWERS, round(_ANSWER_TIME / self.sync))
+
+    @property
+    def own_process(self) -> bool:
+        """Whether another process can own it; python-can's virtual bus lives in one."""
+        return self.interface != "virtual"
+
+
+@dataclass(frozen=True, slots=True)
+class CanNode:
+    """One node of the bus: ``name`` is an axis, ``spindle`` or the name of an I/O module."""
+
+    name: str
+    id: int
+    profile: int  # 402, 401 or 406
+    drive: str = ""  # family as it is sold, of drive_profiles; empty: as its EDS file says, or CiA 402 alone
+    eds: str = ""  # file of the object dictionary, beside the machine file; empty: the standard objects
+    counts_per_rev: int = 0  # the drive counts velocities in rpm of this many counts; 0: in counts/s
+    sdo: Objects = ()  # those for all nodes of its profile, then its own
+
+
+@dataclass(frozen=True, slots=True)
+class CanTerminal:
+    """One bit (``bit`` from 0) or one whole number (``bit`` -1) of an object of a module or an axis."""
+
+    node: str
+    index: int
+    sub: int
+    bit: int = -1
+    active_low: bool = False
+
+
+# --- addresses -------------------------------------------------------------------------------------------
+
+
+def can_terminal(text: str) -> CanTerminal | None:
+    """``401.6200.1.0`` as node, object, sub-index and bit; None where it is no address."""
+    found = _ADDRESS.fullmatch(text)
+    if found is None:
+        return None
+    node, index, sub, bit = found.groups()
+    return CanTerminal(node, int(index, 16), int(sub), int(bit) if bit else -1)
+
+
+def sdo_address(text: str) -> tuple[int, int] | None:
+    """``6007:0`` as index and sub-index, or None."""
+    found = _OBJECT.fullmatch(text)
+    if found is None or int(found[2]) > 255:
+        return None
+    return int(found[1], 16), int(found[2])
+
+
+def terminal(file: FileReading, text: str) -> CanTerminal | None:
+    """401 is the first module, and hexadecimal has two cases."""
+    found = can_terminal(text)
+    if found is None or found.node != PLAIN_MODULE:
+        return found
+    return replace(found, node=next(iter(module_names(file)), PLAIN_MODULE))
+
+
+def input_addresses() -> Iterator[str]:
+    """Of the first module, bit by bit."""
+    return (f"{PLAIN_MODULE}.{INPUT:04X}.{n // BITS + 1}.{n % BITS}" for n in itertools.count())
+
+
+# --- reading ---------------------------------------------------------------------------------------------
+
+
+def read_nodes(file: FileReading) -> Iterator[Finding]:
+    """Reads [canopen.nodes]; what is wrong there and in [canopen.sdo]."""
+    nodes, objects = file.raw(NODES), file.raw(SDO)
+    yield from read_named({} if nodes is None else nodes, _NODE, NODES, file.values)
+    if objects is None:
+        return
+    if not isinstance(objects, dict):
+        yield expected_table(SDO, objects)
+        return
+    yield from unknown_keys(objects, ["all", *file.names(NODES)], SDO)
+    for node, entries in objects.items():
+        path = f"{SDO}.{node}"
+        if not isinstance(entries, dict):
+            yield expected_table(path, entries)
+            continue
+        for key, value in entries.items():
+            if why := _wrong_object(key, value):
+                yield Finding(f'{path}."{key}"', written(value), why)
+
+
+def _wrong_object(key: str, value: object) -> str:
+    """What was expected instead; empty where the entry is good."""
+    address = sdo_address(key)
+    if address is None:
+        return 'expected the address of an object as the key: "6007:0", index in hexadecimal'
+    if not _whole(value) or not _LOW <= value <= _HIGH:
+        return "expected a whole number of 32 bits"
+    if address[0] == _WINDOW and value % 2**32 == _OFF:
+        return "expected a window: this value switches the drive's following error monitoring off"
+    return ""
+
+
+def _whole(value: object) -> TypeGuard[int]:
+    return isinstance(value, int) and not isinstance(value, bool)
+
+
+def objects_of(file: FileReading, node: str) -> Objects:
+    """The good entries of one node's objects, or of ``all``."""
+    entries = file.raw(f"{SDO}.{node}")
+    found = entries.items() if isinstance(entries, dict) else ()
+    return tuple(
+        (*address, value)
+        for key, value in found
+        if (address := sdo_address(key)) and _whole(value) and not _wrong_object(key, value)
+    )
+
+
+def object_path(node: str, index: int, sub: int) -> str:
+    """The path of an object of a node, as the machine file writes it."""
+    return f'{SDO}.{node}."{index:04X}:{sub}"'
+
+
+def node_of(file: FileReading, name: str) -> CanNode:
+    """A node with all that is written to it; the file is good."""
+    shared = objects_of(file, "all") if profile_of(file, name) == DRIVE else ()
+    return file.values.model(
+        CanNode,
+        f"{NODES}.{name}",
+        name=name,
+        drive=family_of(file, name),
+        sdo=(*shared, *objects_of(file, name)),
+    )
+
+
+def family_of(file: FileReading, name: str) -> str:
+    """Of the node, or that of all drives."""
+    if profile_of(file, name) != DRIVE:
+        return ""
+    paths = (f"{NODES}.{name}.drive", "canopen.drive")
+    return next((found for path in paths if (found := said(file, path))), "")
+
+
+def said(file: FileReading, path: str) -> str:
+    """The text of a key; empty where there is none, or a bad one."""
+    return file.values.text(path) if file.values.has(path) else ""
+
+
+def profile_of(file: FileReading, node: str) -> int:
+    """Profile of CiA; 0 where the file does not say one."""
+    path = f"{NODES}.{node}.profile"
+    return file.values.whole(path) if file.values.has(path) else 0
+
+
+def module_names(file: FileReading) -> list[str]:
+    """Names of the I/O modules, in the order of the file."""
+    return [name for name in file.names(NODES) if profile_of(file, name) == MODULE]

@@ -1,0 +1,251 @@
+"""What a bus that moves a machine must keep to: times, numbers, drives, their families, terminals."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+from core.table_schema import FileReading, Finding, Values, written
+from drivers.canopen.bus_load import cyclic_load
+from drivers.canopen.canopen_nodes import (
+    BITS,
+    CYCLIC,
+    DRIVE,
+    INPUT,
+    MODULE,
+    NODES,
+    PLAIN_MODULE,
+    SDO,
+    SPINDLE,
+    BusConfig,
+    can_terminal,
+    family_of,
+    module_names,
+    object_path,
+    objects_of,
+    profile_of,
+    said,
+)
+from drivers.canopen.drive_profiles import IN_RPM, PROFILES, QUEUED
+
+_ANALOG, _OUTPUT, _DRIVE_INPUT = 0x6401, 0x6200, 0x60FD
+_LIMITS, _WATCH = 0x607D, 0x1016
+_BYTES, _WORDS = 8, 4  # of a module: what one PDO of each kind carries
+_MOST = 2**31 - 1  # a count of 32 bits with a sign
+_CYCLES, _CYCLIC_LEAST = 4, 0.02  # SYNCs, and s, that setpoints of a cyclic mode are on their way
+_RESTART = 0.04  # s that a drive needs between the end of one PVT motion and the start of the next
+_RECORDS = 3  # a FIFO with fewer than two records is empty to the drive
+
+
+def bus_rules(file: FileReading) -> Iterator[Finding]:
+    """What is wrong with [canopen], and with axes and terminals that it is to serve."""
+    yield from _outside(file)
+    if "canopen" not in file.tables:
+        return
+    yield from _times(file.values)
+    yield from _numbers(file)
+    yield from _heartbeat(file)
+    if file.values.says("machine.backend", "canopen"):
+        yield from _drives(file)
+        yield from _families(file)
+        yield from _cyclic(file)
+        yield from _wired(file)
+
+
+def _times(values: Values) -> Iterator[Finding]:
+    if values.has("canopen.heartbeat_ms", "canopen.sync_ms"):
+        beat, sync = values.number("canopen.heartbeat_ms"), values.number("canopen.sync_ms")
+        if beat < 2 * sync:
+            yield Finding("canopen.heartbeat_ms", f"{1000 * beat:g}", "expected two times sync_ms or more")
+    if values.says("canopen.mode", "pvt") and values.has("canopen.record_ms", "machine.commit_ms"):
+        yield from _queue(values.number("canopen.record_ms"), values.number("machine.commit_ms"), values)
+
+
+def _queue(record: float, commit: float, values: Values) -> Iterator[Finding]:
+    if abs(1000 * record - round(1000 * record)) > 1e-6:
+        yield Finding(
+            "canopen.record_ms", f"{1000 * record:g}", "expected whole milliseconds: PVT counts in them"
+        )
+    least = _RECORDS * record + _RESTART
+    if values.says("machine.backend", "canopen") and commit < least - 1e-9:
+        expected = f"expected {1000 * least:g} or more: {_RECORDS} records in the drives and a restart"
+        yield Finding("machine.commit_ms", f"{1000 * commit:g}", expected)
+
+
+def _families(file: FileReading) -> Iterator[Finding]:
+    """Queues and counts a turn that the families of the drives need."""
+    values, moved = file.values, file.axes
+    queued = " or ".join(written(name) for name in QUEUED)
+    for name in file.names(NODES):
+        family, path = family_of(file, name), f"{NODES}.{name}"
+        unknown = {f"{path}.drive", "canopen.drive"} & values.wrong
+        if name not in moved or profile_of(file, name) != DRIVE or unknown:
+            continue
+        known = family or said(file, f"{path}.eds")
+        if values.says("canopen.mode", "pvt") and (not known or (family and family not in QUEUED)):
+            why = f'expected {queued}: mode "pvt" needs a queue in the drive; others take "csp", "ip" or "pp"'
+            yield Finding(f"{path}.drive", written(family) if family else "", why)
+        counts = f"{path}.counts_per_rev"
+        if family in IN_RPM and values.has(counts) and values.number(counts) == 0:
+            title = PROFILES[family].title
+            why = f"missing; {title} counts speeds in rpm: 4 × the pulses a turn of its encoder"
+            yield Finding(counts, "", why)
+
+
+def _cyclic(file: FileReading) -> Iterator[Finding]:
+    """Setpoints at each SYNC: whole milliseconds, ahead in time, and with room on the bus."""
+    values = file.values
+    if said(file, "canopen.mode") not in CYCLIC or not values.has("canopen.sync_ms", "canopen.bitrate"):
+        return
+    sync, bitrate = values.number("canopen.sync_ms"), values.whole("canopen.bitrate")
+    if abs(1000 * sync - round(1000 * sync)) > 1e-6:
+        yield Finding(
+            "canopen.sync_ms", f"{1000 * sync:g}", "expected whole milliseconds: 60C2 counts in them"
+        )
+    if values.has("machine.commit_ms"):
+        commit, least = values.number("machine.commit_ms"), max(_CYCLES * sync, _CYCLIC_LEAST)
+        if commit < least - 1e-9:
+            expected = f"expected {1000 * least:g} or more: what is on its way to the drives"
+            yield Finding("machine.commit_ms", f"{1000 * commit:g}", expected)
+    nodes = file.names(NODES)
+    slides = sum(name in file.axes for name in nodes)
+    seldom = BusConfig("", "", sync=sync).seldom
+    load = cyclic_load(slides, len(nodes) - slides, bitrate, sync, seldom)
+    if not load.fits:
+        fits = next((ms for ms in range(1, 101) if _fits(slides, len(nodes) - slides, bitrate, ms)), 0)
+        expected = f"{slides} drives take {load.share:.0%} of {bitrate:g} bit/s, more than has room"
+        best = f"; expected {fits} or more" if fits else ""
+        yield Finding("canopen.sync_ms", f"{1000 * sync:g}", expected + best)
+
+
+def _fits(slides: int, others: int, bitrate: int, ms: int) -> bool:
+    seldom = BusConfig("", "", sync=0.001 * ms).seldom
+    return cyclic_load(slides, others, bitrate, 0.001 * ms, seldom).fits
+
+
+def _numbers(file: FileReading) -> Iterator[Finding]:
+    """Numbers, names and profiles of the nodes."""
+    values, moved = file.values, (*file.axes, SPINDLE)
+    taken: dict[int, str] = {}
+    if values.has("canopen.host_id"):
+        taken[values.whole("canopen.host_id")] = "canopen.host_id"
+    for name in file.names(NODES):
+        path = f"{NODES}.{name}"
+        if not values.has(f"{path}.id", f"{path}.profile"):
+            continue
+        number, profile = values.whole(f"{path}.id"), values.whole(f"{path}.profile")
+        first = taken.setdefault(number, path)
+        if first != path:
+            yield Finding(f"{path}.id", str(number), f"expected a number of its own; {first} has it")
+        if profile == DRIVE and name not in moved:
+            why = f"a drive is named after what it moves: {', '.join(moved)}; I/O has profile = 401"
+            yield Finding(path, "", why)
+        if profile != DRIVE and name in moved:
+            yield Finding(f"{path}.profile", str(profile), "expected 402, a drive")
+
+
+def _heartbeat(file: FileReading) -> Iterator[Finding]:
+    """0x1016 must watch this computer, and not less patiently than it speaks."""
+    values = file.values
+    if not values.has("canopen.host_id", "canopen.heartbeat_ms"):
+        return
+    host, beat = values.whole("canopen.host_id"), values.number("canopen.heartbeat_ms")
+    for node in file.names(SDO):
+        for index, sub, value in objects_of(file, node):
+            if index != _WATCH or sub == 0:
+                continue
+            watched, patience = value >> 16 & 0x7F, (value & 0xFFFF) / 1000.0
+            if watched != host or patience < 2 * beat:
+                best = host << 16 | round(3000 * beat)
+                expected = (
+                    f"watches node {watched} for {1000 * patience:g} ms; expected {best}: the host, 3 beats"
+                )
+                yield Finding(object_path(node, index, sub), str(value), expected)
+
+
+_C_WITHOUT = (
+    ', or counts_per_rev of the spindle\'s drive, which is C as well with canopen mode = "pvt"'
+    " and without axis.C.own_drive"
+)
+
+
+def _drives(file: FileReading) -> Iterator[Finding]:
+    """A drive for every axis, and how each looks for home."""
+    values, nodes = file.values, file.names(NODES)
+    for axis in file.axes:
+        if axis == "C" and not (values.has("axis.C.enabled") and values.flag("axis.C.enabled")):
+            continue
+        method = f"axis.{axis}.home.method"
+        if axis not in nodes and not (axis == "C" and _turned_by_spindle(file)):
+            own = _C_WITHOUT if axis == "C" and values.says("spindle.driver", "cia402") else ""
+            yield Finding(f"{NODES}.{axis}", "", f"missing; axis {axis} needs a drive{own}")
+        if values.has(method) and values.number(method) == 0:
+            yield Finding(method, "", "missing; expected the drive's method, 1 or 2 for a limit switch")
+    if values.says("spindle.driver", "cia402") and SPINDLE not in nodes:
+        yield Finding(f"{NODES}.spindle", "", 'missing; spindle.driver = "cia402" needs a drive')
+
+
+def _turned_by_spindle(file: FileReading) -> bool:
+    """Whether C of a lathe can be the spindle's own drive: one that counts, and queues positions."""
+    values, counts = file.values, f"{NODES}.{SPINDLE}.counts_per_rev"
+    own = values.has("axis.C.own_drive") and values.flag("axis.C.own_drive")
+    drives = values.says("spindle.driver", "cia402") and values.says("canopen.mode", "pvt")
+    return drives and not own and values.has(counts) and values.number(counts) > 0
+
+
+def _outside(file: FileReading) -> Iterator[Finding]:
+    """Axes that could be sent where their drives do not go, by what the file tells these."""
+    values = file.values
+    for axis in file.axes:
+        path, counted = f"axis.{axis}.travel", f"axis.{axis}.count"
+        if axis not in file.names(NODES) or not values.has(path, counted):
+            continue
+        count, ends = values.number(counted), values.pair(path)
+        if math.inf in map(abs, ends):
+            continue  # a rotary axis without an end
+        if max(map(abs, ends)) / count > _MOST:
+            yield Finding(path, "", f"is more than a drive can count: {_MOST} counts of {count:g}")
+        for node in ("all", axis):
+            for index, sub, value in objects_of(file, node):
+                if index != _LIMITS or sub not in {1, 2}:
+                    continue
+                signed = value - 2**32 if value > _MOST else value
+                needed = round(ends[sub - 1] / count)
+                if signed > needed if sub == 1 else signed < needed:
+                    why = f"cuts {path}, which needs {needed} counts"
+                    yield Finding(object_path(node, index, sub), str(value), why)
+
+
+# --- terminals: bits and words that the modules can have ---------------------------------------------------
+
+
+def _wired(file: FileReading) -> Iterator[Finding]:
+    """A finding for every signal and pot whose terminal is no address on the bus."""
+    if any(path.endswith(".profile") for path in file.values.wrong):
+        return  # which of the nodes are modules is not known
+    for path, terminal in file.terminals.items():
+        if why := _wrong_terminal(file, terminal, output=path.startswith("io.out."), analog=False):
+            yield Finding(f"{path}.at", written(terminal), why)
+    for path, terminal in file.pots().items():
+        if why := _wrong_terminal(file, terminal, output=False, analog=True):
+            yield Finding(f"{path}.at", written(terminal), why)
+
+
+def _wrong_terminal(file: FileReading, text: str, *, output: bool, analog: bool) -> str:
+    terminal = can_terminal(text)
+    sample = "401.6401.1" if analog else "401.6200.1.0" if output else "401.6000.1.0"
+    if terminal is None or (terminal.bit < 0) != analog:
+        return f'expected node, object, sub-index{"" if analog else " and bit"}: "{sample}"'
+    modules = module_names(file)
+    plain = terminal.node == PLAIN_MODULE
+    profile = (MODULE if modules else 0) if plain else profile_of(file, terminal.node)
+    if not profile:
+        return f"expected an I/O module of [canopen.nodes]: {', '.join(modules) or 'none is there'}"
+    if profile == DRIVE:
+        right = terminal.index == _DRIVE_INPUT and not output and not analog and terminal.bit < 32
+        return "" if right else "a drive has inputs only: 60FD.0 and bits 0…31"
+    wanted = _ANALOG if analog else _OUTPUT if output else INPUT
+    most = _WORDS if analog else _BYTES
+    if terminal.index != wanted or not 1 <= terminal.sub <= most:
+        return f"expected object {wanted:04X}, sub-index 1…{most}"
+    return "" if terminal.bit < BITS else "expected a bit, 0…7"
