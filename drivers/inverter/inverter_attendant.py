@@ -1,7 +1,7 @@
 """Whoever owns the line: tells the inverter what is wanted, looks at it, and says when it does not obey.
 
-``round`` is one exchange; a thread repeats it (``AttendantThread``), a test calls it. A stop goes before everything:
-at most the answer that is under way is waited for.
+``Attendant.exchange`` is one round; a thread repeats it (``AttendantThread``), a test calls it. A stop goes
+before everything: at most the answer that is under way is waited for.
 """
 
 from __future__ import annotations
