@@ -16,7 +16,7 @@ from app.screen import page_table
 from app.screen.window_layout import FINGER
 from core.executor.snapshot import State
 from core.store import tool_lives
-from core.store.store_rows import Kind
+from core.store.store_rows import Kind, utc_now
 from core.store.tool_lives import LifeRow
 from tests.screen.day import SHIFT, Day, Key, begun
 from tests.screen.yes import yes
@@ -148,6 +148,10 @@ def test_what_is_missing_on_the_plate_is_named(day: Day) -> None:
 
 def test_another_tip_than_when_it_ran_last_is_told(day: Day) -> None:
     day.store.run_started("peg.nc").result(5)
+    started = day.store.runs()[0].started
+    day.qtbot.waitUntil(
+        lambda: utc_now() > started
+    )  # of one millisecond are what was set and what ran with it
     day.desk.book.change(Kind.TOOL, 1, {"nose_radius": 0.8, "quadrant": 2}, "another insert")
     added(day, "peg.nc", "3")
     day.sees(lambda: len(model(day).setup().rows) > 1)
