@@ -8,28 +8,16 @@ from __future__ import annotations
 
 import gc
 import os
-from itertools import groupby
-from operator import attrgetter, itemgetter
-from pathlib import Path
 
 import pytest
 from hypothesis import settings
+from xdist.remote import Producer
 
 from tests import late_computer
 from tests.named import SAFETY, not_run
 from tests.steady_examples import same_examples_whatever_is_loaded
+from tests.waiting_apart import KINDER, WaitingApart, in_order, waits_first
 
-HERE = Path(__file__).parent
-STORIES = "stories"
-WAIT = (
-    STORIES,
-    "killed",
-    "shopfloor",
-    "drivers/feeder",
-    "drivers/grblhal",
-    "drivers/hal",
-    "drivers/transfer",
-)
 settings.register_profile("steady", derandomize=True, deadline=None)
 settings.register_profile("search", deadline=None)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "steady"))
@@ -64,8 +52,8 @@ class SafetyRan:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Tells what mostly waits, for a machine or another process, among the tests that reckon."""
-    items[:] = _spread(items)
+    """What waits, for a machine or another process, in an order in which it does not wait for itself."""
+    items[:] = in_order(items)
 
 
 def pytest_collection_finish() -> None:
@@ -77,27 +65,10 @@ def pytest_collection_finish() -> None:
     gc.freeze()
 
 
-def _spread(items: list[pytest.Item]) -> list[pytest.Item]:
-    """The same items, stories and files of tests that wait at even distances among the others.
-
-    Each kind is in its order. None is among the last, where the other workers would wait for whoever has it.
-    """
-    waits = {path: _kind(path) for path in {item.path for item in items}}
-    reckoning = [[item] for item in items if not waits[item.path]]
-    stories = [[item] for item in items if waits[item.path] == STORIES]
-    others = [item for item in items if waits[item.path] not in {"", STORIES}]
-    files = [list(group) for _path, group in groupby(others, key=attrgetter("path"))]
-    places = [
-        (last * (k + 0.5) / len(groups), group)
-        for groups, last in ((reckoning, 1.0), (stories, 0.95), (files, 0.95))
-        for k, group in enumerate(groups)
-    ]
-    return [item for _place, group in sorted(places, key=itemgetter(0)) for item in group]
-
-
-def _kind(path: Path) -> str:
-    """The folder of ``WAIT`` in which it lies, or empty."""
-    return next((name for name in WAIT if HERE / name in path.parents), "")
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Producer) -> WaitingApart | None:
+    """Unless another way was asked for."""
+    return WaitingApart(config, log) if config.getoption("dist") == "load" else None
 
 
 @pytest.hookimpl(tryfirst=True)
@@ -117,3 +88,6 @@ def pytest_configure(config: pytest.Config) -> None:
     )
     if whole and not hasattr(config, "workerinput"):
         config.pluginmanager.register(SafetyRan(), "safety-ran")
+    worker = os.environ.get("PYTEST_XDIST_WORKER")
+    if worker is not None and not waits_first(worker):
+        os.nice(KINDER)

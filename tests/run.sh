@@ -34,5 +34,5 @@ if [ "${1:-}" = "--quick" ]; then
 fi
 pytest --collect-only --quiet --quiet >/dev/null || true  # compiled once, before every worker does it for itself
 wait "$TYPES"
-# One more than there are cores: a story mostly waits for what it looks at.
-pytest -n 3 "$@"
+# Two for two cores, and two that begin with what mostly waits: tests/waiting_apart.py.
+pytest -n 4 "$@"
