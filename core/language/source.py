@@ -110,7 +110,7 @@ def _decoded(name: str, data: bytes) -> str:
             "file-binary", f"{name} holds zero bytes: it is no program text.", "Choose a text file."
         )
     text = _characters(data.removeprefix(codecs.BOM_UTF8)).rstrip(_DOS_END_OF_FILE)
-    if not text.strip():
+    if not text or text.isspace():
         raise _refused("file-empty", f"{name} is empty.", "Choose a file that holds a program.")
     _check_line_lengths(name, text)
     return text
@@ -131,10 +131,9 @@ def _lines(text: str) -> list[str]:
 
 
 def _check_line_lengths(name: str, text: str) -> None:
-    lines = _lines(text)
-    if max(map(len, lines)) <= _LONGEST_LINE:
+    if not _may_hold_long_line(text):
         return
-    for number, line in enumerate(lines, start=1):
+    for number, line in enumerate(_lines(text), start=1):
         if len(line) > _LONGEST_LINE:
             raise _refused(
                 "line-too-long",
@@ -142,6 +141,17 @@ def _check_line_lengths(name: str, text: str) -> None:
                 "Choose a program file with line ends.",
                 number,
             )
+
+
+def _may_hold_long_line(text: str) -> bool:
+    """Whether a line may be too long: from line end to line end, in steps as far as one may reach."""
+    at = 0
+    while len(text) - at > _LONGEST_LINE:
+        end = text.rfind("\n", at, at + _LONGEST_LINE + 1)
+        if end < 0:
+            return True
+        at = end + 1
+    return False
 
 
 def _refused(code: str, message: str, hint: str, line: int = 0) -> SourceError:

@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, fields
-from itertools import chain
+from itertools import chain, repeat
 from operator import attrgetter
 from typing import Any, Protocol, TypeGuard
 
@@ -73,6 +73,8 @@ _read = attrgetter(*_COLUMNS, "per_rev", "clockwise", "modal.offset_c", "modal.c
 class BlockTable:
     """m blocks as columns: ``start`` and ``end`` (m, axes) and ``centre`` (m, 2) in machine coordinates.
 
+    Positions lie in memory axis by axis, and so does what is made of them: columns are quicker than rows.
+
     ``axis`` (m,) is the machine X of the spindle axis, from which radii count; ``locked`` (m,) tells where
     the spindle is held as the axis C, whose turns then are those that a feed per revolution counts.
     ``surface lo hi`` (m,) hold the surface speed in force (mm/s, NaN without) and the clamp of its rpm.
@@ -111,7 +113,7 @@ def read_blocks(blocks: Sequence[MotionBlock], rpm_max: float) -> BlockTable:
     _demand_finite(table)
     kinds = _kinds(blocks)
     shift = table[:, 7:9]
-    start, end = table[:, 1:4].copy(), table[:, 4:7].copy()
+    start, end = table[:, 1:4].copy(order="F"), table[:, 4:7].copy(order="F")
     start[:, :2] += shift
     end[:, :2] += shift
     start[:, 2] += table[:, 15]
@@ -159,7 +161,7 @@ def _travels(blocks: Sequence[MotionBlock]) -> tuple[FloatArray, FloatArray, Flo
     travels = [block.travel for block in blocks if block.travel is not None]
     if len(travels) != len(blocks):
         raise MotionError(f"Block {blocks[0].n} tells of all axes, another behind it does not.")
-    start, end = (np.array([getattr(t, name) for t in travels]) for name in ("start", "end"))
+    start, end = (np.array([getattr(t, name) for t in travels], order="F") for name in ("start", "end"))
     return start, end, np.array([t.length for t in travels])
 
 
@@ -259,23 +261,31 @@ def _is_row(each: MotionBlock | Row) -> TypeGuard[Row]:
 
 def table_of(batch: Sequence[Part], rpm_max: float) -> BlockTable:
     """The table of all blocks of a batch; see ``read_blocks``."""
-    parts = [read_blocks(p, rpm_max) if isinstance(p, list) else _row_table(p, rpm_max) for p in batch]
-    if len(parts) == 1:
-        return parts[0]
-    return BlockTable(*[_joined([getattr(part, name) for part in parts]) for name in _FIELDS])
+    unlike = [block for part in batch for block in (part if isinstance(part, list) else [part.pattern])]
+    table = read_blocks(unlike, rpm_max)
+    if len(unlike) == sum(map(len, batch)):
+        return table
+    counts = [n for part in batch for n in ([1] * len(part) if isinstance(part, list) else [len(part)])]
+    table = BlockTable(*[_repeated(getattr(table, name), counts) for name in _FIELDS])
+    first = 0
+    for part in batch:
+        if not isinstance(part, list):
+            _put_in(table, slice(first, first + len(part)), part)
+        first += len(part)
+    return table
 
 
-def _joined(columns: list[Any]) -> Any:
-    """Columns one below the other: arrays, or the ways, which are a tuple."""
-    return sum(columns, ()) if isinstance(columns[0], tuple) else np.concatenate(columns)
+def _repeated(column: Any, counts: Sequence[int]) -> Any:
+    """A column (k,) or (k, axes), or the ways, with each entry so often."""
+    if isinstance(column, tuple):
+        return tuple(chain.from_iterable(map(repeat, column, counts)))
+    # An array of rows lies axis by axis: repeated along its columns it still does.
+    return np.repeat(column.T, counts, axis=-1).T
 
 
-def _row_table(row: Row, rpm_max: float) -> BlockTable:
-    like, m = row.pattern, len(row)
-    one = read_blocks([like], rpm_max)
-    many: dict[str, Any] = {name: getattr(one, name) for name in _FIELDS}
-    many = {k: c * m if isinstance(c, tuple) else np.repeat(c, m, axis=0) for k, c in many.items()}
-    many["n"] = row.n.astype(np.float64)
-    for name, x, z in (("start", row.x0, row.z0), ("end", row.x, row.z)):
-        many[name][:, 0], many[name][:, 1] = x + like.offset_x, z + like.offset_z
-    return BlockTable(**many)
+def _put_in(table: BlockTable, at: slice, row: Row) -> None:
+    """Numbers and positions of the blocks of a row, which stand at these places."""
+    like = row.pattern
+    table.n[at] = row.n
+    for ends, x, z in ((table.start, row.x0, row.z0), (table.end, row.x, row.z)):
+        ends[at, 0], ends[at, 1] = x + like.offset_x, z + like.offset_z

@@ -28,20 +28,26 @@ def unrounded(pieces: Pieces, limits: MotionLimits) -> Pieces:
     inner = _free(pieces, limits)
     if not inner.any():
         return pieces
-    joints = np.vstack([pieces.start, pieces.point(pieces.length)[-1:]])
+    joints = _joints(pieces)
     free = np.concatenate([[False], inner, [False]])
     shorter = np.minimum(pieces.length[:-1], pieces.length[1:])
     allowed = np.zeros(len(free))
     allowed[1:-1] = np.where(inner, np.minimum(limits.grain, _SHARE * shorter), 0.0)
     s = np.concatenate([[0.0], np.cumsum(pieces.length)])
-    joints[:, :2] = _eased(joints[:, :2].T.copy(), s, free, allowed).T
+    joints[:, :2] = _eased(joints[:, :2].T, s, free, allowed).T
     return moved(pieces, joints, free)
+
+
+def _joints(pieces: Pieces) -> FloatArray:
+    """Where the pieces (n,) begin, and where the last of them ends: (n+1, axes)."""
+    return np.concatenate([pieces.start, pieces[-1:].point(pieces.length[-1:])])
 
 
 def moved(pieces: Pieces, joints: FloatArray, free: BoolArray) -> Pieces:
     """Lines between ``joints`` (n+1, axes) where an end of theirs is ``free`` (n+1,)."""
     touched = np.flatnonzero(free[:-1] | free[1:])
-    start, direction, length = pieces.start.copy(), pieces.direction.copy(), pieces.length.copy()
+    start, direction = pieces.start.copy(order="K"), pieces.direction.copy(order="K")
+    length = pieces.length.copy()
     way = joints[touched + 1, :2] - joints[touched, :2]
     length[touched] = np.hypot(way[:, 0], way[:, 1])
     start[touched, :2] = joints[touched, :2]
@@ -57,11 +63,11 @@ def regrown(known: Pieces, written: Pieces, new: Pieces, redo: int, limits: Moti
     """
     both = joined([written, new])
     eased = unrounded(both, limits)[len(written) - redo :]
-    begin = known.point(known.length)[-1] if redo == 0 else known.start[len(known) - redo]
+    begin = known[-1:].point(known.length[-1:])[0] if redo == 0 else known.start[len(known) - redo]
     # Only a chord has an end that was moved: a turn of C, whose slides differ by noise, has no other length.
     if not len(eased) or not _chords(eased[:1], limits)[0] or (eased.start[0] == begin).all():
         return eased
-    joints = np.vstack([eased.start, eased.point(eased.length)[-1:]])
+    joints = _joints(eased)
     joints[0] = begin
     return moved(eased, joints, np.arange(len(joints)) == 0)
 
@@ -106,20 +112,24 @@ class _Window(NamedTuple):
 
     first: IntArray
     behind: IntArray
-    size: IntArray
+    size: FloatArray
 
     @classmethod
     def of(cls, around: IntArray) -> _Window:
         """So many (n+1,) joints on either side of each."""
         at = np.arange(len(around))
-        return cls(at - around, at + around + 1, 2 * around + 1)
+        return cls(at - around, at + around + 1, (2 * around + 1).astype(np.float64))
 
     def mean(self, values: FloatArray) -> FloatArray:
         """Mean (k, n+1) of the values around each."""
         base = values[:, :1]
         sums = np.zeros((len(values), values.shape[1] + 1))
-        np.cumsum(values - base, axis=1, out=sums[:, 1:])
-        mean: FloatArray = base + (sums.take(self.behind, axis=1) - sums.take(self.first, axis=1)) / self.size
+        np.subtract(values, base, out=sums[:, 1:])
+        np.cumsum(sums, axis=1, out=sums)
+        mean = sums.take(self.behind, axis=1)
+        mean -= sums.take(self.first, axis=1)
+        mean /= self.size
+        mean += base
         return mean
 
 

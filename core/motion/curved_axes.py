@@ -35,8 +35,10 @@ _SPOTS = np.array([0.25, 0.5, 0.75])  # of a chord, where it is compared with th
 
 def with_parts(table: BlockTable) -> BoolArray:
     """Blocks (m,) that this module cuts into pieces."""
-    curved = np.array([way is not None for way in table.way], dtype=bool)
-    return curved | _fed_by_c(table)
+    parted = _fed_by_c(table)
+    if table.way.count(None) < len(table.way):
+        parted = parted | np.array([way is not None for way in table.way], dtype=bool)
+    return parted
 
 
 def parts_of(whole: Pieces, table: BlockTable, limits: MotionLimits, index: int) -> Pieces:

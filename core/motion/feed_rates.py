@@ -29,7 +29,8 @@ def constant_rates(table: BlockTable) -> FloatArray:
     on_axis = (table.start[:, 0] - table.axis) * (table.end[:, 0] - table.axis) <= 0.0
     endless = surface & on_axis & np.isinf(table.hi)
     _refuse(table, endless, "the spindle speed on the axis has no upper limit; give G77 or rpm_max")
-    return np.where(table.per_rev, table.feed * rpm / 60.0, table.feed) * _per_lead(table)
+    rate = np.where(table.per_rev, table.feed * rpm / 60.0, table.feed)
+    return rate * _per_lead(table) if table.thread.any() else rate
 
 
 def _per_lead(table: BlockTable) -> FloatArray:

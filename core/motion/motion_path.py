@@ -137,7 +137,7 @@ class PathBuilder:
         if reached > end - float(known.length[len(known) - redo :].sum()):
             redo = 0
         self._parts = [known[: len(known) - redo], regrown(known, self._written, new, redo, self._limits)]
-        self._written = joined([self._written, new])[-2 * SUPPORT :]
+        self._written = joined([self._written, new[-2 * SUPPORT :]])[-2 * SUPPORT :]
 
     def path(self) -> Path:
         """The path of all blocks that were added and not dropped. Raises MotionError before the first."""
@@ -200,14 +200,15 @@ def _pieces(table: BlockTable, limits: MotionLimits) -> tuple[Pieces, IntArray]:
             parts += [whole[done:i], split]
             counts[i], done = len(split), i + 1
     pieces = joined([*parts, whole[done:]])
-    return pieces[pieces.length > 0.0], counts
+    long = pieces.length > 0.0
+    return pieces if long.all() else pieces[long], counts
 
 
 def _demand_unbroken(table: BlockTable, end: FloatArray | None) -> None:
     before = table.end[:-1] if end is None else np.vstack([end, table.end[:-1]])
-    gap = np.abs(table.start[len(table.n) - len(before) :] - before).max(axis=1, initial=0.0)
+    gap = np.abs(table.start[len(table.n) - len(before) :] - before)
     if (gap > GAP).any():
-        i = int(gap.argmax()) + len(table.n) - len(before)
+        i = int(gap.max(axis=1).argmax()) + len(table.n) - len(before)
         raise MotionError(
             f"Block {table.n[i]:.0f} starts {gap.max():.4f} mm from the end of the block before it; "
             "plan it from where the machine stands."

@@ -145,6 +145,7 @@ def _distances(length: FloatArray, a: FloatArray, ends: FloatArray) -> FloatArra
 
 
 _SETTLED = 1e-12  # relative difference of squared speeds that is rounding
+_LOOK_BACK = 1000  # joints before the end in which one that is settled is looked for first
 NEAR = 1e-9  # mm of path and relative squared speed that are rounding, not motion
 
 
@@ -192,19 +193,27 @@ def settled_joints(path: Path, start_s: float | None = None) -> int:
     anything up to its limit. Joints that come out the same for 0 and for that limit are settled.
     """
     first = int(path.piece_at(np.array([_start(path, start_s)]))[0])
-    if len(path) - first < 2:
-        return -1
-    run = _Run.of(path, float(path.s[first]), first, len(path))
+    # Joints of short chords near the end may yet be allowed more.
+    known = int(np.searchsorted(path.s[:-1], path.s[-1] - path.reach, side="right"))
+    known = min(known, len(path) - path.loose)
+    settled, back = -1, _LOOK_BACK
+    while settled < 0 and known - first >= 2:
+        begin = max(known - back, first)
+        settled = _settled_between(path, begin, known)
+        if begin == first:
+            break
+        back *= 8
+    return settled
+
+
+def _settled_between(path: Path, first: int, known: int) -> int:
+    """The last joint from ``first`` on, before ``known``, that comes out the same; -1 when there is none."""
+    run = _Run.of(path, float(path.s[first]), first, known)
     limit = run.hard[:-1].copy()
-    soft = np.minimum(path.cap, path.pieces.rate)[first:] ** 2
+    soft = np.minimum(path.cap[first:known], path.pieces.rate[first:known]) ** 2
     np.minimum(limit, soft, out=limit)
     np.minimum(limit[1:], soft[:-1], out=limit[1:])
-    # Joints of short chords near the end may yet be allowed more.
-    known = int(np.searchsorted(path.s[first : first + len(limit)], path.s[-1] - path.reach, side="right"))
-    known = min(known, len(limit) - path.loose)
-    limit, gain = limit[:known], run.gain[: max(known - 1, 0)]
-    if known < 2:
-        return -1
+    gain = run.gain[:-1]
     most = reachable_backward(limit, gain)
     limit[-1] = 0.0
     least = reachable_backward(limit, gain)

@@ -47,11 +47,13 @@ class Pieces:
 
     def tangent(self, at: FloatArray) -> FloatArray:
         """Direction (n, axes) at the distances ``at`` (n,) from the start of each piece."""
-        angle = self.angle + self.curvature * at
-        turning = np.sign(self.curvature)
-        tangent = self.direction.copy()
-        tangent[:, 0] += turning * np.cos(angle)
-        tangent[:, 1] -= turning * np.sin(angle)
+        tangent = self.direction.copy(order="K")
+        arc = np.flatnonzero(self.curvature)
+        if len(arc):
+            angle = self.angle[arc] + self.curvature[arc] * at[arc]
+            turning = np.sign(self.curvature[arc])
+            tangent[arc, 0] += turning * np.cos(angle)
+            tangent[arc, 1] -= turning * np.sin(angle)
         return tangent
 
     def point(self, at: FloatArray) -> FloatArray:

@@ -129,8 +129,12 @@ def accelerations(pieces: Pieces, speeds: FloatArray, limits: MotionLimits) -> F
 
 
 def least_ratio(limit: FloatArray, share: FloatArray) -> FloatArray:
-    """Smallest (n,) of limit / share over the axes; endless for an axis whose ``share`` (n, axes) is 0."""
-    ratios = np.divide(limit, share, out=np.full(share.shape, np.inf), where=share > 0.0)
+    """Smallest (n,) of limit / share over the axes; endless for an axis whose ``share`` (n, axes) is 0.
+
+    ``limit``, (axes,) or (n, axes), is above 0.
+    """
+    with np.errstate(divide="ignore"):
+        ratios = limit / share
     return reduce(np.minimum, ratios.T)  # three long columns are compared faster than a million short rows
 
 

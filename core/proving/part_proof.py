@@ -69,22 +69,31 @@ class PartProof:
     def __init__(self, setting: PartSetting, parts: Iterable[Part] = ()) -> None:
         self._setting = setting
         self._parts: list[Part] = list(parts)
+        self._moves = sum(map(len, self._parts))
 
     def see(self, span: MotionSpan | RestSpan) -> None:
         """The next span of the program."""
         if isinstance(span, MotionSpan):
-            self._parts += span.parts
-        elif span.block is not None:
-            self._parts.append([span.block])
+            parts = span.parts
+        else:
+            parts = ([span.block],) if span.block is not None else ()
+        self._moves += sum(map(len, parts))
+        if self._too_many:
+            self._parts.clear()
+        else:
+            self._parts += parts
+
+    @property
+    def _too_many(self) -> bool:
+        return self._moves > MOST_MOVES and self._setting.stock is None
 
     def report(self, watch: Callable[[float], None] | None = None) -> PartReport:
         """The part, when the whole program has been seen; of a very long one only where a stock is said.
 
         ``watch`` is told how many moves are done, now and then, and may raise to give up.
         """
-        moves = sum(len(part) for part in self._parts)
-        if moves > MOST_MOVES and self._setting.stock is None:
-            return _not_made(moves)
+        if self._too_many:
+            return _not_made(self._moves)
         making, steps = self._begun()
         for done, step in enumerate(steps):
             if watch is not None and done % _WATCHED == 0:

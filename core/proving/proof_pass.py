@@ -12,7 +12,7 @@ import numpy.typing as npt
 from core.geometry.lines_and_arcs import arc_sweep
 from core.geometry.virtual_mill import PlaneMove
 from core.interpreter.actions import Dwell, ProgramStop
-from core.interpreter.elementary_blocks import Block, Kind, Series
+from core.interpreter.elementary_blocks import Block, Floats, Kind, Series
 from core.interpreter.machine_requirements import Need, first_needs, needs_of
 from core.language.diagnostics import Diagnostic
 from core.language.source import Source
@@ -60,24 +60,24 @@ class Tally:
         """Count the moving blocks of a span."""
         if not parts:
             return
-        table = np.concatenate([_rows(part) for part in parts])
-        length = np.hypot(table[:, 2] - table[:, 0], table[:, 3] - table[:, 1])
+        table = np.concatenate([_columns(part) for part in parts], axis=1)
+        length = np.hypot(table[2] - table[0], table[3] - table[1])
         first = 0
         for part in parts:
             if not isinstance(part, Series):
                 self._curved(part, length[first : first + len(part)])
             first += len(part)
-        rapid, turned, locked = (table[:, column] > 0.0 for column in (8, 9, 10))
+        rapid, turned, locked = table[8:] > 0.0
         self.rapid_length += float(length[rapid].sum())
         self.cutting_length += float(length[~rapid].sum())
         for span, column in ((self.x, 2), (self.z, 3), (self.c, 4)):
-            span.see(float(table[:, column].min()), float(table[:, column].max()))
+            span.see(float(table[column].min()), float(table[column].max()))
         in_degrees = turned | (length == 0.0)  # a rapid of C alone, and what stands
         if not in_degrees.all():
-            self._feeds(table[~in_degrees])
-        self._turning(table[~(turned | locked)])
+            self._feeds(*table[5:8, ~in_degrees])
+        self._turning(table[5, ~(turned | locked)])
 
-    def _curved(self, blocks: Sequence[Block], length: npt.NDArray[np.float64]) -> None:
+    def _curved(self, blocks: Sequence[Block], length: Floats) -> None:
         """Put in the lengths of ways that are no straight lines of X and Z."""
         for index, block in enumerate(blocks):
             if block.travel is not None:
@@ -110,29 +110,27 @@ class Tally:
         self.c.see(float(low[2]), float(high[2]))
         return way.length
 
-    def _feeds(self, table: npt.NDArray[np.float64]) -> None:
-        rpm = np.abs(table[:, 5])
-        path_speed = np.where(table[:, 7] > 0, table[:, 6] * rpm / 60, table[:, 6])
+    def _feeds(self, rpm: Floats, feed: Floats, per_rev: Floats) -> None:
+        path_speed = np.where(per_rev > 0, feed * np.abs(rpm) / 60, feed)
         self.feed.see(float(path_speed.min()), float(path_speed.max()))
 
-    def _turning(self, table: npt.NDArray[np.float64]) -> None:
+    def _turning(self, rpm: Floats) -> None:
         """Speeds of the spindle as such; C has its own."""
-        rpm = np.abs(table[:, 5])
-        turning = rpm[rpm > 0]
+        turning = np.abs(rpm[rpm != 0])
         if turning.size:
             self.rpm.see(float(turning.min()), float(turning.max()))
 
 
-def _rows(part: Part) -> npt.NDArray[np.float64]:
-    """What is summed up of each block, a row (11,) each."""
+def _columns(part: Part) -> Floats:
+    """What is summed up of m blocks: columns (11, m)."""
     if not isinstance(part, Series):
-        return np.array([_row(block) for block in part])
-    rows = np.repeat(np.array([_row(part.pattern)]), len(part), axis=0)
-    rows[:, :4] = np.column_stack((part.x0, part.z0, part.x, part.z))
-    return rows
+        return np.array([_figures(block) for block in part]).T
+    columns = np.repeat(np.array([_figures(part.pattern)]).T, len(part), axis=1)
+    columns[:4] = part.x0, part.z0, part.x, part.z
+    return columns
 
 
-def _row(b: Block) -> tuple[float, ...]:
+def _figures(b: Block) -> tuple[float, ...]:
     turned = b.kind is Kind.ROTATE or b.swivels
     return b.x0, b.z0, b.x, b.z, b.c, b.rpm, b.feed, b.per_rev, b.rapid, turned, b.modal.c_locked
 
@@ -195,10 +193,12 @@ class ProofPass:
             self._look_beyond(part)
 
     def _look_beyond(self, part: Part) -> None:
+        if len(self._beyond) >= MAX_FINDINGS:
+            return
         for finding in chain(travel_findings(part, self._machine), c_findings(part, self._machine)):
+            self._beyond.setdefault((finding.line, finding.message[:1]), finding)
             if len(self._beyond) >= MAX_FINDINGS:
                 return
-            self._beyond.setdefault((finding.line, finding.message[:1]), finding)
 
     def _need(self, blocks: Part) -> None:
         """Only a controller that plans by itself can lack what a program needs."""
@@ -265,11 +265,12 @@ class ProofPass:
 
 def _rapid(parts: Sequence[Part]) -> npt.NDArray[np.bool_]:
     """For each block whether it is a rapid."""
-    found: list[bool] = []
+    found = [np.empty(0, bool)]
     for part in parts:
-        series = isinstance(part, Series)
-        found += [part[0].rapid] * len(part) if series else [block.rapid for block in part]
-    return np.array(found, dtype=bool)
+        alike = [part.pattern] if isinstance(part, Series) else part
+        rapid = np.array([block.rapid for block in alike], bool)
+        found.append(np.broadcast_to(rapid, len(part)))
+    return np.concatenate(found)
 
 
 def _lathe(start: tuple[float, ...]) -> tuple[float, float, float]:

@@ -115,9 +115,9 @@ def test_any_lines(moves: list[str], most: int) -> None:
 @settings(max_examples=60, deadline=None)
 @given(st.lists(MOVE, min_size=1, max_size=30))
 def test_numbers_are_those_of_single_lines(moves: list[str]) -> None:
+    read, alone = Columns.empty(len(moves)), Columns.empty(len(moves))
     with patch("core.interpreter.omniturn.plain_moves._FEW", 1):
-        read = read_columns(moves)
-    alone = Columns.empty(len(moves))
+        read_columns(moves, read)
     for at, text in enumerate(moves):
         if (move := read_move(text)) is not None:
             alone.put(at, move)

@@ -63,14 +63,31 @@ def test_the_name_is_that_of_the_file(tmp_path: Path) -> None:
         (b"\xfe\xff\x00G\x009\x000", "file-utf16", "UTF-16"),
         (b"G90\x00\x01\x02", "file-binary", "zero bytes"),
         (b"G90\n" + b"X1" * 500_000, "line-too-long", "Line 2"),
+        (b"G90\r" * 3000 + b"X" * 8193 + b"\rM30\r", "line-too-long", "Line 3001 .* 8193 characters"),
+        (b"G90\n" * 3000 + b"X" * 8193 + b"\r\nM30\n", "line-too-long", "Line 3001 .* 8193 characters"),
     ],
-    ids=["empty", "blank", "utf-16 le", "utf-16 be", "binary", "one line of a megabyte"],
+    ids=[
+        "empty",
+        "blank",
+        "utf-16 le",
+        "utf-16 be",
+        "binary",
+        "one line of a megabyte",
+        "by returns",
+        "among others",
+    ],
 )
 def test_what_is_no_program_is_refused(tmp_path: Path, data: bytes, code: str, word: str) -> None:
     with pytest.raises(SourceError, match=word) as refused:
         load_source(write(tmp_path, data))
     assert refused.value.diagnostic.code == code
     assert refused.value.diagnostic.hint
+
+
+@pytest.mark.parametrize("end", [b"\n", b"\r\n", b"\r"], ids=["newline", "both", "return"])
+def test_a_line_of_8192_characters_is_none_too_many(tmp_path: Path, end: bytes) -> None:
+    lines = load_source(write(tmp_path, (b"X" * 8192 + end) * 3 + (b"G90" + end) * 5000)).lines
+    assert [len(line) for line in lines] == [8192] * 3 + [3] * 5000
 
 
 def test_a_missing_file_is_refused(tmp_path: Path) -> None:

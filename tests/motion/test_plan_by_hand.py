@@ -68,6 +68,18 @@ def test_joints_that_may_yet_be_moved_are_not_settled() -> None:
     assert 100 < settled_joints(builder.path()) < 150
 
 
+@pytest.mark.parametrize("back", [2, 7, 1000])
+def test_the_settled_joint_is_found_however_far_back_is_looked(
+    back: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Joint 60 is a full reversal; behind it .6 mm are left, and to rest from 100 mm/s takes 1.64 mm."""
+    monkeypatch.setattr("core.motion.motion_plan._LOOK_BACK", back)
+    builder = PathBuilder(LIMITS)
+    there = [(0.0, 0.2 * i) for i in range(61)]
+    builder.add(polyline([*there, *((0.0, 12.0 - 0.2 * i) for i in range(1, 4))], 100.0))
+    assert settled_joints(builder.path()) == 60
+
+
 @pytest.mark.parametrize(
     ("chord", "before", "first"),
     [(0.01, 60, 47), (1.0, 60, 59)],  # .127 mm are twelve chords and a part of one; of long lines one is kept

@@ -95,9 +95,8 @@ class Columns(NamedTuple):
         return Columns(self.x[at], self.z[at], self.f[at], self.g[at], self.fine[at], self.known[at])
 
 
-def read_columns(lines: Sequence[str]) -> Columns:
-    """The lines as columns; ``known`` is False for any that is another kind of line, or of a rare shape."""
-    columns = Columns.empty(len(lines))
+def read_columns(lines: Sequence[str], columns: Columns) -> None:
+    """Put in the lines; ``known`` stays False for any that is another kind of line, or of a rare shape."""
     raw = "\n".join(lines).encode("ascii", "replace")  # a character, a byte
     digits = np.frombuffer(raw, np.uint8)
     starts = np.concatenate([[0], np.flatnonzero(digits == _NEW_LINE) + 1])
@@ -111,7 +110,6 @@ def read_columns(lines: Sequence[str]) -> Columns:
         match = _words(shape.decode()) if len(rows) >= _FEW else None
         if match is not None:
             _read_shape(columns, rows, match, digits, starts)
-    return columns
 
 
 def _read_shape(columns: Columns, rows: Ints, match: re.Match[str], digits: Digits, starts: Ints) -> None:
@@ -201,16 +199,17 @@ def read_lines(lines: Sequence[str], read: Callable[[int, str], ReadyLine], *, i
 
     ``in_order``: what a line means hangs on the lines before it, so that ``read`` is asked for each.
     """
-    parts = [Columns.empty(0)]
+    columns = Columns.empty(len(lines))
     others: dict[int, ReadyLine] = {}
     for first in range(0, len(lines), MOST):
         texts = lines[first : first + MOST]
-        part = Columns.empty(len(texts)) if in_order else read_columns(texts)
+        part = columns.part(slice(first, first + MOST))
+        if not in_order:
+            read_columns(texts, part)
         for at in np.flatnonzero(~part.known).tolist():
             line = read(first + at + 1, texts[at])
             if isinstance(line, tuple):
                 part.put(at, line)
             else:
                 others[first + at] = line
-        parts.append(part)
-    return ReadyLines(Columns._make(map(np.concatenate, zip(*parts, strict=True))), others)
+    return ReadyLines(columns, others)
