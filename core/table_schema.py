@@ -298,12 +298,12 @@ def _problem(raw: object, field: Field, inch: bool | None) -> str:
     """What was expected instead of ``raw``, or nothing. NaN fails every range."""
     if not _shape_is_right(raw, field):
         return _expected(field, inch)
-    if field.kind not in _NUMERIC or inch is None:
+    if field.kind not in _NUMERIC or (inch is None and field.unit in LENGTHS):
         return ""
     # A bound written in inches is no binary number.
     low, high = field.low - 1e-9 * abs(field.low), field.high + 1e-9 * abs(field.high)
     parts = _parts(raw)
-    inside = all(low <= to_model(part, field.unit, inch) <= high for part in parts)
+    inside = all(low <= to_model(part, field.unit, bool(inch)) <= high for part in parts)
     ordered = field.kind in {Kind.TRIPLE, Kind.NUMBERS} or parts == sorted(set(parts))
     return "" if inside and ordered else _expected(field, inch)
 
@@ -326,10 +326,10 @@ def _converted(raw: object, field: Field, inch: bool) -> Value:
 def _expected(field: Field, inch: bool | None) -> str:
     if field.kind is Kind.CHOICE:
         return "one of " + ", ".join(written(choice) for choice in field.choices)
-    if field.kind not in _NUMERIC or inch is None:
+    if field.kind not in _NUMERIC or (inch is None and field.unit in LENGTHS):
         return str(field.kind.value)
-    low = f"{to_file(field.low, field.unit, inch):.6g}"
-    return f"{field.kind.value}, {low}…{shown(field.high, field.unit, inch)}"
+    low = f"{to_file(field.low, field.unit, bool(inch)):.6g}"
+    return f"{field.kind.value}, {low}…{shown(field.high, field.unit, bool(inch))}"
 
 
 def raw_at(data: object, path: str) -> object:

@@ -25,7 +25,7 @@ def read_svg(path: Path) -> Drawing:
     left_out: Counter[str] = Counter()
     shapes = _shapes(path)
     unit = 25.4 / _PIXELS if _has_unit(path) else 0.0
-    drawn = tuple(within_limits(_drawn(shapes, nearest(unit), left_out), path.name))
+    drawn = tuple(within_limits(_drawn(shapes, nearest(unit), left_out, path.name), path.name))
     if not drawn:
         what = ", ".join(sorted(left_out)) or "nothing"
         raise DrawingError(f"{path.name} has no path nor line, only {what[:80]}: draw the contour as a path.")
@@ -53,8 +53,8 @@ def _shapes(path: Path) -> Any:
     return root
 
 
-def _drawn(root: Any, near: float, left_out: Counter[str]) -> Iterator[Drawn]:
-    from svgelements import Group, Shape, SVGElement
+def _drawn(root: Any, near: float, left_out: Counter[str], name: str) -> Iterator[Drawn]:
+    from svgelements import Close, Group, Move, Shape, SVGElement
     from svgelements import Path as Outline
 
     for each in root.elements():
@@ -68,6 +68,8 @@ def _drawn(root: Any, near: float, left_out: Counter[str]) -> Iterator[Drawn]:
         layer = str(values.get(_INKSCAPE) or values.get("class") or values.get("id") or "")
         centre = bool(values.get("stroke-dasharray")) and values.get("stroke-dasharray") != "none"
         for segment in Outline(each):
+            if not isinstance(segment, Move | Close) and segment.start is None:
+                raise DrawingError(f"{name} has a path that does not begin with M: save the drawing anew.")
             for element in _segment(segment, near):
                 yield Drawn(element, layer, centre)
 

@@ -98,6 +98,7 @@ _PRESETS = _Log(
     "'preset'",
     "there is no change of a preset to undo",
 )
+_MOST_STEPS = 2**62  # SQLite counts as far as twice that
 _LOGS = (_OFFSETS, _ZEROS, _SHAPES, _MILL_TOOLS, _PRESETS)
 _TABLES = {
     Kind.TOOL: _Table("tool_offsets", "T", TOOL_ROWS, ToolRow, _OFFSETS),
@@ -254,8 +255,7 @@ def apply(
 ) -> tuple[Change, ...]:
     """Writes offsets and their history as one step; answers what it is in the history."""
     table, log = _TABLES[kind], _TABLES[kind].log
-    step = int(connection.execute(f"SELECT coalesce(max(step), 0) + 1 FROM {log.name}").fetchone()[0])
-    at, columns = utc_now(), _columns(kind)
+    step, at, columns = _next_step(connection, log), utc_now(), _columns(kind)
     # All go before any comes: there is never more than one master.
     connection.executemany(f"DELETE FROM {table.name} WHERE {log.key} = ?", [(number,) for number in changes])
     _insert(
@@ -299,6 +299,16 @@ def undo_any(connection: sqlite3.Connection, reason: Reason) -> tuple[Change, ..
     """The same for the youngest step of all tables."""
     log = max(_LOGS, key=lambda each: _last_step(connection, each, None)[1])
     return _undo(connection, reason, log, None)
+
+
+def _next_step(connection: sqlite3.Connection, log: _Log) -> int:
+    """Behind every step that is a number; what else was put there by nobody of ours."""
+    asked = f"SELECT coalesce(max(step), 0) FROM {log.name}"
+    (last,) = connection.execute(asked).fetchone()
+    if not isinstance(last, int) or last >= _MOST_STEPS:
+        only = "WHERE typeof(step) = 'integer' AND step < ?"  # looks through all of them: only then
+        (last,) = connection.execute(f"{asked} {only}", (_MOST_STEPS,)).fetchone()
+    return int(last) + 1
 
 
 def _last_step(connection: sqlite3.Connection, log: _Log, kind: Kind | None) -> tuple[int | None, str]:

@@ -76,7 +76,8 @@ def load(connection: sqlite3.Connection, name: str, version: int | None) -> byte
         raise StoreError(f"the store has no program {name!r}{which}; see the list of programs and versions")
     number, text, digest = row
     if not _is_whole(text, digest):
-        raise StoreError(f"{name!r} version {number} is not what was saved; load another version or a backup")
+        shown = _in_line(number)
+        raise StoreError(f"{name!r} version {shown} is not what was saved; load another version or a backup")
     return bytes(text)
 
 
@@ -86,8 +87,15 @@ def spoilt(connection: sqlite3.Connection) -> tuple[str, ...]:
         "SELECT name, number, text, sha256 FROM program_versions JOIN programs ON program = programs.id"
     )
     return tuple(
-        f"{name!r} version {number}" for name, number, text, digest in rows if not _is_whole(text, digest)
+        f"{name!r} version {_in_line(number)}"
+        for name, number, text, digest in rows
+        if not _is_whole(text, digest)
     )
+
+
+def _in_line(number: object) -> str:
+    """For a sentence: a number that was spoilt may be any text."""
+    return " ".join(str(number).split())
 
 
 def _is_whole(text: object, digest: object) -> bool:

@@ -17,7 +17,7 @@ from core.store.offset_tables import Reason
 from core.store.people import People
 from core.store.program_settings import stock_key
 from core.store.row_sums import KEYS
-from core.store.store_errors import StoreError, why
+from core.store.store_errors import Cause, StoreError, why
 from core.store.store_rows import (
     Change,
     EventRow,
@@ -116,6 +116,8 @@ class Store:
                 raise StoreError(f"{self.path} is closed; nothing can be read from it any more") from error
             except sqlite3.Error as error:
                 raise why(self.path, error) from error
+            except UnicodeDecodeError as error:  # the name of a column
+                raise Cause.DAMAGED.error(self.path, error) from error
 
     def _asked(
         self, query: Callable[Concatenate[sqlite3.Connection, P], T], *args: P.args, **named: P.kwargs

@@ -65,7 +65,8 @@ def read_report(line: str) -> Report | None:
         if found is None:
             return None
         values.update(found)
-    if "position" not in values and not values.pop("work", None):
+    work = values.pop("work", None)
+    if "position" not in values and not work:
         return None
     return Report(state, int(sub) if sub else None, **values)  # type: ignore[arg-type]  # readers name the fields
 

@@ -16565,6 +16565,11 @@
     </message>
     <message>
       <location filename="core/drawings/svg_reader.py" />
+      <source>%1 has a path that does not begin with M: save the drawing anew.</source>
+      <translation>%1 tiene un trazado que no empieza con M: guarde el dibujo de nuevo.</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/svg_reader.py" />
       <source>%1 has entities of its own, which are not read: save it as plain SVG.</source>
       <translation>%1 tiene entidades propias, que no se leen: guárdelo como SVG simple.</translation>
     </message>

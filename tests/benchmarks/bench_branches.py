@@ -1,18 +1,22 @@
 """Branches that the tests of a room alone take: ``python -m tests.benchmarks.bench_branches [ROOM …]``.
 
-Each room is measured with coverage, with the processes that its tests start. Prints the files with most
-branches that are not taken, and keeps the figures for ``docs/reliability.md``.
+Each room is measured with coverage, with the processes that its tests start, HAL's bridge under the system's
+Python too. Prints the files with most branches that are not taken, and keeps the figures for
+``docs/reliability.md``.
 """
 
 from __future__ import annotations
 
 import argparse
 import json
+import os
 import subprocess
 import sys
 import tempfile
 from pathlib import Path
 from typing import Any
+
+import coverage
 
 from tests.benchmarks.footprint import RESULTS, keep_result
 
@@ -21,7 +25,7 @@ ROOMS = {
     "core/executor": ("tests/executor",),
     "core/interpreter": ("tests/interpreter", "tests/klartext", "tests/sinumerik"),
     "drivers": (
-        "tests/drivers",  # the bridge's process of HAL has another Python and is not measured
+        "tests/drivers",
         *(f"tests/machine/test_{name}.py" for name in (
             "board_table", "encoder", "hal_table", "hardware", "pendant_and_setter", "spindle_c", "wheel"
         )),  # their tables of the machine file
@@ -33,8 +37,8 @@ _HOW = """\
 [run]
 branch = true
 parallel = true
-patch = subprocess
-data_file = {folder}/coverage
+patch = subprocess, _exit
+data_file = {folder}/kept/coverage
 source = {room}
 [report]
 exclude_also =
@@ -42,19 +46,46 @@ exclude_also =
     class .*\\(Protocol\\):
     \\.\\.\\.$
 """
+# For a Python that has no coverage of its own, and none of our packages.
+_BEGIN = """\
+import contextlib
+with contextlib.suppress(ImportError):
+    import coverage
+    coverage.process_startup()
+"""
+
+
+def _opened(folder: Path) -> None:
+    """The bridge's process runs as another user where the tests run as root."""
+    os.chmod(folder, 0o755)
+    kept = folder / "kept"
+    kept.mkdir()
+    os.chmod(kept, 0o1777)
+
+
+def _environment(folder: Path) -> dict[str, str]:
+    """In which a Python of any kind begins to measure when it starts."""
+    for_all = folder / "for_all"
+    for_all.mkdir()
+    (for_all / "sitecustomize.py").write_text(_BEGIN)
+    (for_all / "coverage").symlink_to(Path(coverage.__file__).parent)
+    paths = [str(for_all), *filter(None, [os.environ.get("PYTHONPATH")])]
+    return {**os.environ, "PYTHONPATH": os.pathsep.join(paths)}
 
 
 def measured(room: str, more: list[str]) -> dict[str, Any]:
     """Branches of the room, those that are taken, and the files by what is not."""
     with tempfile.TemporaryDirectory() as folder:
         how = Path(folder) / "coveragerc"
-        how.write_text(_HOW.format(folder=folder, room=room))
+        _opened(Path(folder))
+        how.write_text(_HOW.format(folder=folder, room=Path(room).resolve()))
         tests = [sys.executable, "-m", "coverage", "run", f"--rcfile={how}", "-m", "pytest", "-q"]
         told = subprocess.run(
             [*tests, "-p", "no:cacheprovider", *ROOMS[room], *more],
             capture_output=True,
             text=True,
             check=False,
+            env=_environment(Path(folder)),
         )
         report = Path(folder) / "report.json"
         for words in (["combine", "-q"], ["json", "-q", "-o", str(report)]):

@@ -90,6 +90,8 @@ HEAD = "<svg xmlns='http://www.w3.org/2000/svg' width='40mm' height='20mm' viewB
         ),
         (f"{HEAD}<rect x='1' y='1' width='5e24' height='2'/></svg>", "point too far from its zero"),
         (f"{HEAD}<path d='M0 0 A5 50 0 0 0 {'5' * 50} 10 h10'/></svg>", "point too far from its zero"),
+        (f"{HEAD}<path d='T5 5 L0 0 A5 5 0 0 0 5 10'/></svg>", "x.svg has a path that does not begin with M"),
+        (f"{HEAD}<path d='L5 5 H20'/></svg>", "a path that does not begin with M: save the drawing anew"),
         ("<?xml version='1.0'?><!DOCTYPE s [<!ENTITY a 'b'>]><svg>&a;</svg>", "entities of its own"),
     ],
 )

@@ -96,6 +96,11 @@ def test_unknown_key_names_the_nearest() -> None:
     assert "did you mean vmax?" in found.expected
 
 
+def test_a_file_without_its_unit_has_its_other_figures_held_to_their_bounds() -> None:
+    text = "[spindle]\nrpm = [20, 3500]\naccel_rpm_s = 0\nat_speed_s = 0.3\ntimeout_s = 5\n"
+    assert "spindle.accel_rpm_s = 0: expected a number, 10…50000 rpm/s" in map(str, findings(text))
+
+
 def test_unknown_table_says_which_are_known() -> None:
     found = only(SHIPPED + "\n[profibus]\nbaud = 1000000\n")
     assert found.path == "[profibus]"

@@ -24,8 +24,6 @@ from core.motion.window_planner import ChunkPlanner
 from tests.motion.moves import LIMITS, arc, line, polyline
 from tests.motion.paths import build_path
 
-pytestmark = pytest.mark.long
-
 STEPPED = dataclasses.replace(LIMITS, grain=0.00127)
 # mm: none, what is one point, what is hardly none, parts of a step, a step, chords, moves
 _WAYS = st.sampled_from([0.0, 0.0, 0.0, 1e-12, 5e-8, 1.2e-7, 1e-6, 1e-5, 4e-4, 0.00127, 0.02, 0.3, 5.0])
@@ -81,6 +79,7 @@ limits_of_both = st.sampled_from([LIMITS, STEPPED])
 some = settings(max_examples=150, deadline=None)
 
 
+@pytest.mark.long
 @some
 @given(mostly_nothing(), limits_of_both)
 def test_a_plan_ends_where_the_last_block_does(blocks: list[Block], limits: MotionLimits) -> None:
@@ -93,6 +92,7 @@ def test_a_plan_ends_where_the_last_block_does(blocks: list[Block], limits: Moti
     assert np.isfinite(end).all()
 
 
+@pytest.mark.long
 @some
 @given(mostly_nothing(), limits_of_both, st.sampled_from([1, 2, 5]))
 def test_windows_take_every_block_once(blocks: list[Block], limits: MotionLimits, window: int) -> None:
@@ -102,6 +102,7 @@ def test_windows_take_every_block_once(blocks: list[Block], limits: MotionLimits
     assert chunks[-1].profile.position(1e9)[0] == pytest.approx(end_of(blocks), abs=1e-6)
 
 
+@pytest.mark.long
 @settings(max_examples=120, deadline=None)
 @given(mostly_nothing(), limits_of_both, st.randoms(use_true_random=False))
 def test_it_may_be_stopped_changed_and_continued_anywhere(

@@ -17,12 +17,11 @@ from core.motion.motion_plan import plan
 from tests.motion.moves import LIMITS, A, T, arc, line, polyline, programs, rounded_chords
 from tests.motion.paths import build_path
 
-pytestmark = pytest.mark.long
-
 few = settings(max_examples=60, deadline=None)
 moment = st.floats(0.0, 1.0)
 
 
+@pytest.mark.long
 @few
 @given(programs(), moment)
 def test_nothing_changed_gives_the_same_future(blocks: list[Block], when: float) -> None:
@@ -36,6 +35,7 @@ def test_nothing_changed_gives_the_same_future(blocks: list[Block], when: float)
     assert after.at(t)[0] == pytest.approx(before.at(t0 + t)[0], abs=1e-5)
 
 
+@pytest.mark.long
 @few
 @given(programs(), moment, st.sampled_from([0.2, 0.7, 1.5]))
 def test_a_hold_rests_within_the_braking_distance(blocks: list[Block], when: float, scale: float) -> None:
@@ -51,6 +51,7 @@ def test_a_hold_rests_within_the_braking_distance(blocks: list[Block], when: flo
     assert resumed.end_s == pytest.approx(path.s[-1], rel=1e-12)
 
 
+@pytest.mark.long
 @few
 @given(programs(), moment, st.sampled_from([0.0, 0.05, 0.5, 1.5]), st.sampled_from([0.0, 0.3, 1.0]))
 def test_an_override_never_jumps_and_keeps_the_corners(
@@ -105,6 +106,7 @@ def test_zero_feed_override_lets_a_rapid_come_to_the_feed() -> None:
     assert math.isinf(end[1])
 
 
+@pytest.mark.long
 def test_a_stop_far_from_the_end_of_a_long_path() -> None:
     points = [(0.0, 0.01 * i) for i in range(20_000)]
     path = build_path(polyline(points, 100.0), LIMITS)
@@ -172,6 +174,7 @@ def test_more_blocks_are_taken_up_without_a_stop() -> None:
     assert after.position(after.duration)[0] == pytest.approx([0.0, 100.0, 0.0])
 
 
+@pytest.mark.long
 @settings(max_examples=100, deadline=None)
 @given(programs(most=20), st.lists(moment, min_size=20, max_size=20))
 def test_a_growing_path_never_leads_into_a_state_without_a_future(
@@ -190,6 +193,7 @@ def test_a_growing_path_never_leads_into_a_state_without_a_future(
     assert plan(builder.path(), start_s=s, start_v=v).end_s == pytest.approx(profile.end_s, abs=1e-9)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("grid", [0.001, 0.00127, 0.004])
 @pytest.mark.parametrize("seed", range(4))
 def test_chords_on_the_step_may_come_in_and_be_dropped_at_any_moment(grid: float, seed: int) -> None:

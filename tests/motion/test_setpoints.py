@@ -18,8 +18,6 @@ from core.ports import Segments
 from tests.motion.moves import LIMITS, A, T, arc, line, polyline, programs
 from tests.motion.paths import build_path
 
-pytestmark = pytest.mark.long
-
 few = settings(max_examples=60, deadline=None)
 
 
@@ -47,6 +45,7 @@ def test_a_line_is_three_pieces_in_the_order_of_the_port() -> None:
     assert segments.a[:, 1] == pytest.approx([A, 0.0, -A])
 
 
+@pytest.mark.long
 @few
 @given(programs())
 def test_they_join_and_end_at_rest(blocks: list[Block]) -> None:
@@ -63,6 +62,7 @@ def test_they_join_and_end_at_rest(blocks: list[Block]) -> None:
     assert end_p[-1, :2] == pytest.approx([blocks[-1].x, blocks[-1].z], abs=1e-9)
 
 
+@pytest.mark.long
 @few
 @given(programs())
 def test_they_follow_the_exact_motion_within_half_a_micrometre(blocks: list[Block]) -> None:
@@ -94,6 +94,7 @@ def test_a_faster_machine_gets_shorter_parts() -> None:
     assert np.linalg.norm(played - profile.position(t), axis=1).max() < 2.5e-4
 
 
+@pytest.mark.long
 @few
 @given(programs(), st.lists(st.floats(0.0, 1.0), max_size=4))
 def test_windows_put_together_are_the_whole(blocks: list[Block], cuts: list[float]) -> None:

@@ -18,8 +18,6 @@ from core.motion.window_planner import Chunk, ChunkPlanner, sample_positions
 from tests.motion.moves import LIMITS, A, chords, line, polyline, programs, rounded_chords
 from tests.motion.paths import build_path
 
-pytestmark = pytest.mark.long
-
 
 def planned(blocks: list[Block], window: int) -> list[Chunk]:
     """All chunks of a program."""
@@ -27,6 +25,7 @@ def planned(blocks: list[Block], window: int) -> list[Chunk]:
     return [*planner.add(blocks), *planner.finish()]
 
 
+@pytest.mark.long
 @settings(max_examples=80, deadline=None)
 @given(programs(most=40), st.integers(1, 12))
 def test_windows_equal_the_whole(blocks: list[Block], window: int) -> None:
@@ -39,6 +38,7 @@ def test_windows_equal_the_whole(blocks: list[Block], window: int) -> None:
     assert chunks[-1].t + chunks[-1].profile.duration == pytest.approx(whole.duration, rel=1e-9)
 
 
+@pytest.mark.long
 @settings(max_examples=40, deadline=None)
 @given(programs(most=40), st.integers(1, 12))
 def test_chunks_continue_each_other(blocks: list[Block], window: int) -> None:
@@ -57,6 +57,7 @@ def test_chords_longer_to_brake_on_than_a_window() -> None:
     assert chunks[-1].t1[-1] == pytest.approx(whole.duration, rel=1e-9)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("window", [3, 40, 300])
 def test_windows_of_chords_on_the_step_equal_the_whole(window: int) -> None:
     """The limit of a joint looks an interval back and ahead, over what is dropped and what is to come."""

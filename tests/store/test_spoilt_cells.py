@@ -82,3 +82,34 @@ def test_a_program_whose_name_leads_elsewhere_is_exported_nowhere(
         export(store, tmp_path / "out")
     assert not (tmp_path / "out").exists()
     assert list(tmp_path.rglob("pin*")) == []
+
+
+def test_a_version_whose_number_has_a_line_end_stays_in_its_sentence(kept: Path) -> None:
+    spoil(kept, "UPDATE program_versions SET number = ?, text = ?", "a\nb", b"M30\n")
+    assert backup.problems(kept / FILE_NAME)[0] == "'pin.nc' version a b is not what was saved"
+    with Store.open(kept) as store, pytest.raises(StoreError, match="version a b is not what was saved"):
+        store.load_program("pin.nc")
+
+
+@pytest.mark.parametrize("step", [float("inf"), 1e308, 2**63 - 1, "x", b"\xff"])
+def test_an_offset_is_entered_behind_a_step_of_the_history_that_is_no_number(
+    kept: Path, step: object
+) -> None:
+    spoil(kept, "UPDATE offset_changes SET step = ? WHERE id = 2", step)
+    with Store.open(kept) as store:
+        store.set_tool(1, "worn", x=3.0).result()
+        assert store.tools() == {1: ToolRow(x=3.0)}
+    with closing(sqlite3.connect(kept / FILE_NAME)) as connection:
+        assert connection.execute("SELECT step FROM offset_changes WHERE id = 3").fetchone() == (2,)
+
+
+def test_a_column_whose_name_is_no_text_is_a_damaged_file(kept: Path, tmp_path: Path) -> None:
+    path = kept / FILE_NAME
+    content = path.read_bytes()
+    at = content.index(b"CREATE TABLE tool_lives")
+    name = content.index(b"tool", at + 24)
+    path.write_bytes(content[:name] + b"\x83" + content[name + 1 :])
+    with pytest.raises(StoreError, match="is damaged") as told, Store.open(kept) as store:
+        export(store, tmp_path / "out")
+    assert "\n" not in str(told.value)
+    assert not (tmp_path / "out").exists()

@@ -112,6 +112,13 @@ def test_a_damaged_report_is_none(line: str) -> None:
     assert read_report(line) is None
 
 
+@pytest.mark.parametrize("line", ["<Idle|MPos:1.0,2.0|WPos:3.0,4.0>", "<Idle|WPos:3.0,4.0|MPos:1.0,2.0>"])
+def test_two_lines_run_into_one_tell_the_machines_place(line: str) -> None:
+    report = read_report(line)
+    assert report is not None
+    assert report.position == (1.0, 2.0)
+
+
 def test_a_whole_report() -> None:
     report = read_report(
         "<Hold:1|MPos:-1.234,0.000,5.600|Bf:98,1000|Ln:33|FS:500,1000,998|Pn:EH|Ov:83,50,100|D:1>"
