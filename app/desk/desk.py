@@ -24,7 +24,7 @@ from app.desk.machine_status import MachineStatus, SilenceWatch, Tone, status_of
 from app.desk.program_folder import ProgramFolders
 from app.desk.program_loading import Loaded, PartProved, Phase, ProgramLoader
 from app.desk.program_renewal import ProgramRenewal
-from app.desk.prompt_line import UNDER_WAY, YES, PromptAnswers
+from app.desk.prompt_line import ONE_HAND, UNDER_WAY, YES, PromptAnswers
 from app.desk.readouts import Readout
 from app.desk.screen_settings import SettingsBook
 from app.desk.station_hands import OVERRIDE_MOST, StationHands, StationPanel, stepped
@@ -145,6 +145,8 @@ class Desk:
         self.rebuilding = ProgramRenewal(self.session, self.say)
         starting = self.answers.starting
         self.hands = StationHands(self.station, self.clock, self.say, self.clear, starting, self.barred)
+        if self.one_hand:
+            self.hands.one_palm = ONE_HAND
 
     def _not_kept(self) -> str:
         return self.not_kept()

@@ -131,6 +131,7 @@ class StationHands:
     barred: Callable[[], str] = str
     ago: Callable[[], float] = float  # s since the press that is handled now really happened
     palms: Palms = field(default_factory=Palms)
+    one_palm: str = ONE_PALM  # what is said when one was pressed alone
     estop_pressed: bool = False
     spindle_pot: Pot = field(default_factory=lambda: Pot(1.0))
     feed_pot: Pot = field(default_factory=lambda: Pot(OVERRIDE_MOST))
@@ -159,7 +160,7 @@ class StationHands:
         elif not down and side in self.palms.down:
             (station.release_left if side == "left" else station.release_right)()
             if self.palms.release(side):
-                self.say(ONE_PALM)
+                self.say(self.one_palm)
 
     def latch(self, side: str) -> None:
         """A palm where everything is simulated, by one finger or the mouse: it waits for the other one.

@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from functools import partial
 
 from PySide6.QtCore import QRectF
+from PySide6.QtGui import QWheelEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk.machine_status import MachineStatus, Tone
@@ -24,7 +25,7 @@ from core.executor.snapshot import Snapshot
 from core.quality.tool_life import ToolLife
 from core.store.store_rows import Row
 
-ROWS = 10  # at least, and as many more as fit; the others are leafed to
+HEAD, HIGH = 4.0, 8.0  # units: the line of words at most, and a row
 _NAME = 0.1  # share of the width for the number
 
 
@@ -42,18 +43,39 @@ class CellPanel(Panel):
         self._kind, self._numbers, self._columns = table.kind, table.numbers, table.columns
         self._choose: Callable[[int, int], None] = table.choose
         self._wide = [_WIDE.get(name, 1.0) for name in table.columns]
+        self._top = 0
+        self._followed = (-1, 0)  # the row of the chosen cell, and how many rows there was room for
 
     def draw(self, painter: Painter) -> None:
         self.frame(painter, self._heading)
-        room, u = self.inside(), self.look.u
-        fit = int(room.height() / self.look.row(8.0, 10.0, touch=True)) - 1
-        shown = min(max(ROWS, fit), len(self._numbers))
-        top = max(0, min(self.cell[0] - shown // 2, len(self._numbers) - shown))
-        high = min(room.height() / (shown + 1), 8.0 * u)
-        self._head(painter, QRectF(room.x(), room.y(), room.width(), high))
-        for place in range(shown):
-            y = room.y() + (place + 1) * high
-            self._row(painter, QRectF(room.x(), y, room.width(), high - 0.5 * u), top + place)
+        room, u, count = self.inside(), self.look.u, len(self._numbers)
+        least = self.look.row(HIGH, 10.0, touch=True) + 0.5 * u
+        head = min(HEAD * u, least)
+        body = room.adjusted(0, head, 0, 0)
+        fits = min(self.fitting(body, least, count), count)
+        self._follow(fits)
+        body = self.leaf(painter, body, (self._top, fits, count), self._leaf_by)
+        high = min(body.height() / fits, max(least, HIGH * u))
+        self._head(painter, QRectF(body.x(), room.y(), body.width(), head))
+        for place in range(fits):
+            row = QRectF(body.x(), body.y() + place * high, body.width(), high - 0.5 * u)
+            self._row(painter, row, self._top + place)
+
+    def _follow(self, fits: int) -> None:
+        """To the chosen cell, where a key has moved it; a finger that leafs leaves it where it is."""
+        row, last = self.cell[0], len(self._numbers) - fits
+        if (row, fits) != self._followed:
+            self._top = min(max(self._top, row - fits + 1), row)
+        self._followed = (row, fits)
+        self._top = max(0, min(self._top, last))
+
+    def _leaf_by(self, rows: int) -> None:
+        self._top = max(0, self._top + rows)
+        self.update()
+
+    def wheelEvent(self, event: QWheelEvent) -> None:
+        """Three rows a notch."""
+        self._leaf_by(-round(event.angleDelta().y() / 40))
 
     def _cells(self, row: QRectF) -> list[QRectF]:
         one = row.width() * (1.0 - _NAME) / sum(self._wide)

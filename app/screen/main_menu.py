@@ -15,6 +15,7 @@ from app.screen.look import CENTRE, Look, Painter
 from app.screen.page_base import Host, KeyActions, Page
 from app.screen.page_table import PageEntry, menu_keys, menu_of
 from app.screen.panel import Panel
+from app.screen.window_layout import FINGER
 
 COLUMNS = 2
 
@@ -73,9 +74,10 @@ class _Tiles(Panel):
         u, room = self.look.u, self.inside()
         rows = -(-len(self._entries) // COLUMNS)
         wide, high = room.width() / COLUMNS, min(room.height() / rows, 13.0 * u)
+        tall = max(high - u, min(high, FINGER))
         for number, entry in enumerate(self._entries):
             column, row = divmod(number, rows)
-            box = QRectF(room.x() + column * wide, room.y() + row * high, wide - u, high - u)
+            box = QRectF(room.x() + column * wide, room.y() + row * high, wide - u, tall)
             self._tile(painter, box, entry)
             self.place(box, partial(self._press, OF_MENU.get(entry.key, entry.key)))
 

@@ -52,12 +52,12 @@ class Listing(Panel):
     @property
     def _high(self) -> float:
         """From line to line, pixels."""
-        return self.look.row(ROW, MM)
+        return self.look.row(ROW, MM, touch=self.touched is not None)
 
     @property
     def _scale(self) -> float:
         """Of the letters, by the height of a line."""
-        return self._high / (ROW * self.look.u)
+        return min(1.0, self._high / (ROW * self.look.u))  # higher for a finger alone
 
     @property
     def top(self) -> int:

@@ -5740,6 +5740,11 @@
     </message>
     <message>
       <location filename="app/desk/prompt_line.py" />
+      <source>PRESS BOTH PALMS WITHIN HALF A SECOND; FOR ONE HAND: F10 7, PALM BUTTONS ON THE SCREEN</source>
+      <translation>PRESIONE LOS DOS PULSADORES EN MEDIO SEGUNDO; CON UNA MANO: F10 7, PULSADORES EN PANTALLA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/prompt_line.py" />
       <source>PRESS F2 TO CHOOSE A PROGRAM</source>
       <translation>OPRIMA F2 PARA ELEGIR UN PROGRAMA</translation>
     </message>

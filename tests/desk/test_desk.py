@@ -12,7 +12,7 @@ from app.desk.desk import SILENT, Desk
 from app.desk.machine_status import Tone
 from app.desk.program_folder import ProgramFolders
 from app.desk.program_loading import LoadingSteps, Phase, ProgramLoader
-from app.desk.prompt_line import CONTROL_SILENT, GIVE_UP, ONE_PALM, RESTORING
+from app.desk.prompt_line import CONTROL_SILENT, GIVE_UP, ONE_HAND, ONE_PALM, RESTORING
 from core.executor.commands import CycleStart, EnableDrives, FeedHold, FeedOverride, Reset, SetSwitch
 from core.executor.snapshot import Alarm, Event, State
 from tests.screen.desks import desk_on
@@ -166,6 +166,15 @@ def test_one_palm_does_not_start_and_is_told(desk: Desk, machine: FakeMachine) -
     desk.hands.palm("left", down=False)
     assert CycleStart() not in machine.posted
     assert desk.notice == ONE_PALM
+
+
+def test_one_palm_of_a_simulated_machine_says_how_one_hand_starts(machine: FakeMachine) -> None:
+    """A finger at a touch panel has pressed one, and knew of no other way."""
+    desk = replace(desk_on(machine), one_hand=True)
+    desk.hands.palm("left", down=True)
+    desk.hands.palm("left", down=False)
+    assert CycleStart() not in machine.posted
+    assert desk.notice == ONE_HAND
 
 
 def test_a_held_palm_that_repeats_is_pressed_once(desk: Desk, machine: FakeMachine) -> None:

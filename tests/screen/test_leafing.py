@@ -6,7 +6,8 @@ from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import Any
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any, cast
 
 import pytest
 from PySide6.QtCore import QPoint, QPointF, QRectF, Qt
@@ -15,19 +16,27 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QWidget
 from pytestqt.qtbot import QtBot
 
+from app.desk.machine_status import Tone
 from app.desk.program_folder import ProgramFolders
 from app.desk.sheet import Row, Sheet
 from app.editor.findings_view import FindingList
 from app.editor.live_proof import Findings
+from app.offsets.cell_table_view import CellPanel
+from app.offsets.mill_tools import MillTools
 from app.offsets.offsets_view import HistoryList
 from app.programs.file_prompt_view import FilePrompt
 from app.screen.look import Look, Painter
+from app.screen.main_menu import _Tiles
+from app.screen.page_table import menu_of
 from app.screen.panel import Panel
 from app.screen.sheet_panel import SheetPanel
 from app.screen.theme import DARK
 from app.screen.window_layout import FINGER
 from app.shapes.shapes_view import RowsPanel, _Line
 from core.language.diagnostics import Diagnostic, Severity
+
+if TYPE_CHECKING:
+    from app.offsets.cell_table import CellTable
 
 MANY = 30
 SMALL = 6.4  # pixels of the unit at 1024x600
@@ -228,3 +237,26 @@ def test_a_question_lies_over_no_row(above: QWidget, high: int, rows: int, notes
     assert sum(text in {"one", "two"} for text in drawn) == notes
     for text, box in drawn.items():
         assert text == "WHOSE NAME?" or not box.intersects(drawn["WHOSE NAME?"]), text
+
+
+def test_a_finger_comes_to_every_tool_of_a_mill(above: QWidget) -> None:
+    """Ten rows of 16 pixels stood there, and what was below them came by the arrows alone."""
+    chosen: list[int] = []
+    table = SimpleNamespace(
+        title="TOOL TABLE", words=("L", "R"), kind=MillTools.kind, numbers=tuple(range(1, MANY + 1)),
+        columns=("length", "radius"), choose=lambda row, _column: chosen.append(row),
+        tone_at=lambda *_: Tone.OFF, value_at=lambda *_: "1.0", field_of=lambda _: "",
+    )  # fmt: skip
+    panel = CellPanel(Look(DARK, SMALL), cast("CellTable", table), above)
+    panel.resize(500, 300)
+    assert chosen_rows(panel, lambda: chosen[-1], leaf_keys(panel)) == set(range(MANY))
+    assert all(box.height() >= FINGER for box, _press in panel._places)
+
+
+def test_tiles_of_the_main_menu_fit_a_finger(above: QWidget) -> None:
+    entries = menu_of("omniturn")
+    panel = _Tiles(Look(DARK, SMALL), lambda _key: None, entries, above)
+    panel.resize(858, 360)  # as at 1024x600
+    panel.grab()
+    assert len(panel._places) == len(entries)
+    assert all(box.height() >= FINGER for box, _press in panel._places)

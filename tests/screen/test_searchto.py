@@ -132,6 +132,7 @@ def test_a_finger_marks_a_line_or_types_its_number(operator: Operator) -> None:
     operator.key(Key.Key_F6)
     page = page_of(operator)
     page.listing.grab()
+    assert all(box.height() >= FINGER for box, _press in page.listing._places)
     press(page.listing, page.listing._places[3][0])
     assert model_of(operator).cursor.line == page.listing.top + 4
     page.asked.grab()
