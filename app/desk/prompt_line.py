@@ -136,9 +136,9 @@ def refusal(loaded: Loaded) -> str:
         first = loaded.proof.errors[0] if loaded.proof and loaded.proof.errors else "PROVING FOUND ERRORS"
         return f"WILL NOT RUN: {first}"
     first_error = errors[0]
-    where = f"LINE {first_error.line}: " if first_error.line else ""
-    more = f" ({len(errors) - 1} MORE)" if len(errors) > 1 else ""
-    return f"WILL NOT RUN: {where}{first_error.message}{more}"
+    more = len(errors) - 1
+    said = f"{first_error.message} ({more} MORE)" if more else first_error.message
+    return f"WILL NOT RUN: LINE {first_error.line}: {said}" if first_error.line else f"WILL NOT RUN: {said}"
 
 
 def remedy(loaded: Loaded, prompt: str) -> str:
@@ -151,7 +151,7 @@ def remedy(loaded: Loaded, prompt: str) -> str:
         return ""
     warned = (each for each in loaded.diagnostics if each.check and each.severity is Severity.WARNING)
     first = next(warned, None)
-    return f"LINE {first.line}: {first.text} {first.hint}" if first is not None else ""
+    return f"LINE {first.line}: {first.text}  ·  {first.hint}" if first is not None else ""
 
 
 def _progress(loaded: Loaded) -> str:

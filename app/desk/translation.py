@@ -58,6 +58,8 @@ Find = Callable[[str], str]  # the translation of a whole text; empty: it has no
 
 HOLE = re.compile(r"%\d|\{\w*(?:[:.][^{}]*)?\}")
 BETWEEN = "  ·  "  # parts of a title are texts of their own
+_AND = " · "  # those of the prompt line too
+_UNIT = re.compile(r"(?<=\d )in(?:/min|/rev|/s²?)?(?=$|[,;)]|  | …|\n)")  # not the word in of a sentence
 _WORD = re.compile(r"[^\W\d_]{2}")
 _DEEPEST = 3  # values in values
 _NAMES = frozenset({"{name}", "{program}", "{path}", "{text}", "{remark}"})  # holes for somebody's text
@@ -78,7 +80,7 @@ class _Template:
         pieces = HOLE.split(english)
         self.head, self.tail = pieces[0], pieces[-1]
         self.weight = sum(map(len, pieces))
-        self.joined = BETWEEN in english
+        self.joined = _AND in english
         self.of_program = any(_LOWER.search(piece) for piece in pieces)
         self.slight = not (self.head or self.tail) and self.weight <= _SLIGHT
         self._holes = HOLE.findall(english)
@@ -118,21 +120,27 @@ class Catalogue:
         if depth > _DEEPEST or not _WORD.search(text) or text.startswith(_DATA):
             return ""
         made = self._find(text) or self._shouted(text) or self._made(text, depth, of_program)
-        return made or self._joined(text, depth)
+        return made or self._joined(text, depth) or self._measured(text)
 
     def _shouted(self, text: str) -> str:
         """Sentences of the control that are shown in capitals."""
         return self._find(text.lower()).upper() if text.isupper() else ""
 
     def _joined(self, text: str, depth: int) -> str:
-        if BETWEEN not in text:
+        if _AND not in text:
             return ""
-        parts = [self._look_up(part, depth + 1) or part for part in text.split(BETWEEN)]
-        joined = BETWEEN.join(parts)
+        between = BETWEEN if BETWEEN in text else _AND
+        parts = [self._look_up(part, depth + 1) or part for part in text.split(between)]
+        joined = between.join(parts)
         return joined if joined != text else ""
 
+    def _measured(self, text: str) -> str:
+        """The units behind figures that no sentence stands round."""
+        shown = _UNIT.sub(lambda unit: self._find(unit.group()) or unit.group(), text)
+        return shown if shown != text else ""
+
     def _made(self, text: str, depth: int, of_program: bool) -> str:
-        joined = BETWEEN in text  # its parts are texts: no hole reaches over from one into the next
+        joined = _AND in text  # its parts are texts: no hole reaches over from one into the next
         for template in self._templates:
             values = template.values(text) if template.joined or not joined else None
             if values is not None:

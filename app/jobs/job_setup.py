@@ -70,7 +70,7 @@ def _of_life(tool: SheetTool, life: ToolLife | None, parts: int) -> Iterator[str
     if life is None or life.state is LifeState.NO_LIMIT:
         return
     if life.state is LifeState.SPENT:
-        yield tr("its life is gone, {words}: change the insert").format(words=life.words)
+        yield tr("its life is gone, {words}: change the insert").format(words=tr(life.words))
         return
     left = _parts_left(life, tool.time.cutting)
     if left is not None and left < parts:

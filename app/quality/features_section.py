@@ -163,7 +163,7 @@ class FeaturesSection(QualitySection):
     def keys(self) -> Mapping[str, Key]:
         """Of the list, or of the draft."""
         if self.draft is not None:
-            return {"F6": Key("KEEP", self.keep)}
+            return {"F6": Key("SAVE", self.keep)}
         return {
             "F2": Key(tr("NEW"), self.new),
             "F3": Key("CHANGE", self.change),

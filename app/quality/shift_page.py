@@ -184,7 +184,7 @@ def _reading(feature: FeatureRow, row: ReadingRow, *, metric: bool) -> tuple[str
 
 
 def _size(mm: float, *, metric: bool) -> str:
-    return f"{fixed(mm, 3)} mm" if metric else f"{fixed(mm / _MM_PER_INCH, 5)} in"
+    return f"{fixed(mm, 3)} mm" if metric else f"{fixed(mm / _MM_PER_INCH, 5)} {tr('in')}"
 
 
 def _time_line(found: ShiftFigures) -> str:

@@ -65,7 +65,7 @@ class ToolLifeSection(QualitySection):
         rows = tuple(self._row(each) for each in self.tools())
         tool = self.tool
         question = tr("T{number} {limit}?").format(number=tool.number, limit=tr(self.limit)) if tool else ""
-        heads = ("TOOL", "PARTS", "MINUTES", "STOPS", "LEFT", "USED")
+        heads = ("T", "PARTS", "MINUTES", "STOPS", "LEFT", "USED")
         notes = (
             "Minutes are those at feed. 0 takes a limit away. STOP: no other part begins when it is gone.",
         )

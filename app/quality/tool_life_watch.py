@@ -192,8 +192,8 @@ _WORTH_TELLING = frozenset({LifeState.WARNED, LifeState.SPENT})
 def notice(life: ToolLife) -> str:
     """What the operator reads of a life that ends."""
     if life.state is LifeState.SPENT:
-        return tr("T{number}: ITS LIFE IS GONE, {words}").format(number=life.number, words=life.words)
-    return tr("T{number}: {words} OF ITS LIFE ARE GONE").format(number=life.number, words=life.words)
+        return tr("T{number}: ITS LIFE IS GONE, {words}").format(number=life.number, words=tr(life.words))
+    return tr("T{number}: {words} OF ITS LIFE ARE GONE").format(number=life.number, words=tr(life.words))
 
 
 def spent(life: ToolLife, tools: Kind) -> str:

@@ -453,7 +453,7 @@ def scaled(drawing: Drawing, factor: float) -> Drawing:
     marks = tuple((x * by[0], y * by[1], word) for x, y, word in drawing.marks)
     curves = tuple(each * by for each in drawing.curves)
     below = tuple(each * by for each in drawing.below) if drawing.lengths_below else drawing.below
-    unit = "mm" if factor == 1.0 else "in"
+    unit = "mm" if factor == 1.0 else tr("in")
     upper, lower, across = (each.replace("{unit}", unit) for each in drawing.names)
     soft, names = drawing.soft * by, (upper, lower, across)
     return replace(drawing, soft=soft, curves=curves, marks=marks, below=below, names=names)

@@ -25,8 +25,8 @@ class Quantity(Enum):
 
     POSITION = ("POSITION", "mm", "in", 1e-3)
     ERROR = ("FOLLOWING ERROR", "mm", "in", 1e-3)
-    VELOCITY = ("VELOCITY", "mm/s", "in/s", 0.1)
-    ACCELERATION = ("ACCELERATION", "mm/s²", "in/s²", 10.0)
+    VELOCITY = ("VELOCITY", "mm/s", tr("in/s"), 0.1)
+    ACCELERATION = ("ACCELERATION", "mm/s²", tr("in/s²"), 10.0)
     ANGLE = ("ANGLE", "°", "°", 0.1)
     ANGLE_ERROR = ("FOLLOWING ERROR", "°", "°", 0.01)
     TURNING = ("TURNING SPEED", "°/s", "°/s", 1.0)
@@ -57,8 +57,8 @@ class Quantity(Enum):
         return self.unit(True) != self.unit(False)
 
     def unit(self, metric: bool) -> str:
-        """The unit it is shown in."""
-        return str(self.value[1] if metric else self.value[2])
+        """The unit it is shown in, in the operator's language."""
+        return tr(self.value[1] if metric else self.value[2])
 
     def scale(self, metric: bool) -> float:
         """By what a figure inside is multiplied to be shown."""

@@ -10,6 +10,7 @@ from app.desk.latest import Latest
 from app.desk.machine_status import Tone
 from app.desk.persistence import Persistence
 from app.desk.sheet import Entry, Key, Row, Sheet, following
+from app.desk.translation import tr
 from app.special.special_functions import SpecialFunction
 from core.executor.snapshot import Snapshot
 from core.store.store_rows import EventRow
@@ -82,7 +83,7 @@ class LoggedEvents(SpecialFunction):
         self.trouble = ""
         if events != self.events:
             self.events = events
-            self._rows = tuple(_row(event) for event in events)
+            self._rows = tuple(event_row(event) for event in events)
             self.marked = min(self.marked, max(0, len(events) - 1))
 
     def _failed(self, why: str) -> None:
@@ -139,9 +140,18 @@ class LoggedEvents(SpecialFunction):
         self.searching, self.entry.text = False, ""
 
 
-def _row(event: EventRow) -> Row:
+def event_row(event: EventRow) -> Row:
+    """One event: when, its kind, what happened in the operator's language, the line of the program."""
     at = local_time(event.at)
     line = str(event.line) if event.line else ""
     alarm = event.kind == "alarm"
-    text = f"{event.text} ({event.who})" if event.who else event.text
+    said = _of_alarm(event.text) if event.kind in {"alarm", "estop"} else tr(event.text)
+    text = f"{said} ({event.who})" if event.who else said
     return Row((at, event.kind, text, line), True if alarm else None, Tone.ALARM)
+
+
+def _of_alarm(text: str) -> str:
+    """Number, what happened and the cause, each in the operator's language: ``701 E-STOP: the cause``."""
+    head, colon, cause = text.partition(": ")
+    number, _, what = head.partition(" ")
+    return f"{number} {tr(what)}: {tr(cause)}" if colon and number.isdigit() else tr(text)

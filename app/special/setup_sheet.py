@@ -80,7 +80,7 @@ class SetupSheet:
 
     def length(self, mm: float) -> str:
         """A length with its unit, as the program counts."""
-        return f"{mm:.3f} mm" if self.metric else f"{mm / _MM_PER_INCH:.4f} in"
+        return f"{mm:.3f} mm" if self.metric else f"{mm / _MM_PER_INCH:.4f} {tr('in')}"
 
     @property
     def stock_words(self) -> str:

@@ -167,8 +167,8 @@ class MachineControl:
         if self.state not in _AT_REST or status.starts is Starts.LINE or job is None or proof is None:
             return
         if proof.digest == job.digest and proof.warned and not proof.errors:  # else nothing begins
-            more = f" ({len(proof.warned) - 1} MORE)" if len(proof.warned) > 1 else ""
-            said = f"{proof.warned[0]}{more}"
+            first, more = proof.warned[0], len(proof.warned) - 1
+            said = f"{first} ({more} MORE)" if more else first
             yield Starting("warned" + job.digest, f"WARNING: {said}", lambda: None)
 
     def feed_hold(self, reason: str, by: str = "", code: Code | None = None) -> None:

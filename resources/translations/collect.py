@@ -194,6 +194,14 @@ ALSO = (
     "approach",
     "departure",
     "C turns",
+    # Of the event log; what has changed in the file are its own words.
+    "machine file %1 accepted",
+    "machine file %1 accepted: %2",
+    "machine file %1 accepted by %2",
+    "machine file %1 accepted by %2: %3",
+    # What a finding rests on; tools are names.
+    "stock",
+    "stock, %1",
 )
 LOUD = ("app", "core/alarms", "core/executor")  # where a single word in capitals is read by somebody
 HOLE = re.compile(r"%\d|\{\w*(?:[:.][^{}]*)?\}")

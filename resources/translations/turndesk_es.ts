@@ -686,7 +686,7 @@
     <message>
       <location filename="" />
       <source>As SPOS: the block ends when the spindle is at its angle.</source>
-      <translation>Como SPOS: la secuencia termina cuando el cabezal está en su ángulo.</translation>
+      <translation>Como SPOS: la secuencia termina cuando el husillo está en su ángulo.</translation>
     </message>
     <message>
       <location filename="" />
@@ -741,7 +741,7 @@
     <message>
       <location filename="" />
       <source>Bores, stops the spindle at Q336, frees the edge by Q214, out.</source>
-      <translation>Mandrina, para el cabezal en Q336, libera el filo según Q214 y sale.</translation>
+      <translation>Mandrina, para el husillo en Q336, libera el filo según Q214 y sale.</translation>
     </message>
     <message>
       <location filename="" />
@@ -1426,7 +1426,7 @@
     <message>
       <location filename="" />
       <source>FRESH INSERTS</source>
-      <translation>PLAQUITAS NUEVAS</translation>
+      <translation>INSERTOS NUEVOS</translation>
     </message>
     <message>
       <location filename="" />
@@ -2001,7 +2001,7 @@
     <message>
       <location filename="" />
       <source>M functions: stop</source>
-      <translation>Funciones M: parada</translation>
+      <translation>Funciones M: paro</translation>
     </message>
     <message>
       <location filename="" />
@@ -2326,7 +2326,7 @@
     <message>
       <location filename="" />
       <source>Optional stop.</source>
-      <translation>Parada opcional.</translation>
+      <translation>Paro opcional.</translation>
     </message>
     <message>
       <location filename="" />
@@ -2506,12 +2506,12 @@
     <message>
       <location filename="" />
       <source>Program stop; M functions may stand behind it.</source>
-      <translation>Parada de programa; detrás pueden ir funciones M.</translation>
+      <translation>Paro de programa; detrás pueden ir funciones M.</translation>
     </message>
     <message>
       <location filename="" />
       <source>Program stop; the spindle stops and the coolant goes off.</source>
-      <translation>Parada de programa; el husillo para y el refrigerante se apaga.</translation>
+      <translation>Paro de programa; el husillo para y el refrigerante se apaga.</translation>
     </message>
     <message>
       <location filename="" />
@@ -2976,12 +2976,12 @@
     <message>
       <location filename="" />
       <source>Spindle stop.</source>
-      <translation>Parada de husillo.</translation>
+      <translation>Paro de husillo.</translation>
     </message>
     <message>
       <location filename="" />
       <source>Spindle stopped and held at the angle of cycle 13, else at 0.</source>
-      <translation>Cabezal parado y retenido en el ángulo del ciclo 13, si no en 0.</translation>
+      <translation>Husillo parado y retenido en el ángulo del ciclo 13, si no en 0.</translation>
     </message>
     <message>
       <location filename="" />
@@ -3041,7 +3041,7 @@
     <message>
       <location filename="" />
       <source>Stops when Optional Stop is on.</source>
-      <translation>Para cuando la parada opcional está activa.</translation>
+      <translation>Para cuando el paro opcional está activo.</translation>
     </message>
     <message>
       <location filename="" />
@@ -3296,7 +3296,7 @@
     <message>
       <location filename="" />
       <source>The angle at which M19 stops the spindle.</source>
-      <translation>El ángulo en el que M19 para el cabezal.</translation>
+      <translation>El ángulo en el que M19 para el husillo.</translation>
     </message>
     <message>
       <location filename="" />
@@ -3436,7 +3436,7 @@
     <message>
       <location filename="" />
       <source>The spindle stops and is held at this angle, by its drive or as C.</source>
-      <translation>El cabezal se para y queda retenido en este ángulo, por su accionamiento o como C.</translation>
+      <translation>El husillo se para y queda retenido en este ángulo, por su accionamiento o como C.</translation>
     </message>
     <message>
       <location filename="" />
@@ -4151,7 +4151,7 @@
     <message>
       <location filename="" />
       <source>begins a loop, and its lines and LF would have to follow</source>
-      <translation>empieza un lazo, y sus líneas y LF tendrían que seguir</translation>
+      <translation>empieza un bucle, y sus líneas y LF tendrían que seguir</translation>
     </message>
     <message>
       <location filename="" />
@@ -4246,7 +4246,7 @@
     <message>
       <location filename="" />
       <source>ends a loop, and there is none</source>
-      <translation>termina un lazo, y no hay ninguno</translation>
+      <translation>termina un bucle, y no hay ninguno</translation>
     </message>
     <message>
       <location filename="" />
@@ -4337,6 +4337,26 @@
       <location filename="" />
       <source>language mode</source>
       <translation>modo de lenguaje</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>machine file %1 accepted</source>
+      <translation>archivo de máquina %1 aceptado</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>machine file %1 accepted by %2</source>
+      <translation>archivo de máquina %1 aceptado por %2</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>machine file %1 accepted by %2: %3</source>
+      <translation>archivo de máquina %1 aceptado por %2: %3</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>machine file %1 accepted: %2</source>
+      <translation>archivo de máquina %1 aceptado: %2</translation>
     </message>
     <message>
       <location filename="" />
@@ -4437,6 +4457,16 @@
       <location filename="" />
       <source>spindle mode</source>
       <translation>modo de husillo</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>stock</source>
+      <translation>material</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>stock, %1</source>
+      <translation>material, %1</translation>
     </message>
     <message>
       <location filename="" />
@@ -4636,7 +4666,7 @@
     <message>
       <location filename="app/automatic/automatic_view.py" />
       <source>SECCMP</source>
-      <translation>COMPSEC</translation>
+      <translation>CORR SEC</translation>
     </message>
     <message>
       <location filename="app/automatic/automatic_view.py" />
@@ -4781,7 +4811,7 @@
     <message>
       <location filename="app/compose/screen_desk.py" />
       <source>WHAT KEEPS OFFSETS AND COUNTS</source>
-      <translation>LO QUE GUARDA COMPENSACIONES Y CUENTAS</translation>
+      <translation>LO QUE GUARDA CORRECTORES Y CUENTAS</translation>
     </message>
     <message>
       <location filename="app/compose/screen_desk.py" />
@@ -4826,7 +4856,7 @@
     <message>
       <location filename="app/compose/stored_offsets.py" />
       <source>THE OFFSETS COME FROM A FILE (--offsets) AND ARE READ ONLY: CHANGE THE FILE, OR START WITHOUT IT</source>
-      <translation>LAS COMPENSACIONES VIENEN DE UN ARCHIVO (--offsets) Y SON DE SÓLO LECTURA: CAMBIE EL ARCHIVO, O ARRANQUE SIN ÉL</translation>
+      <translation>LOS CORRECTORES VIENEN DE UN ARCHIVO (--offsets) Y SON DE SÓLO LECTURA: CAMBIE EL ARCHIVO, O ARRANQUE SIN ÉL</translation>
     </message>
     <message>
       <location filename="app/compose/stored_offsets.py" />
@@ -5021,12 +5051,12 @@
     <message>
       <location filename="app/desk/desk.py" />
       <source>A PROGRAM IS UNDER WAY: LET IT END, OR STOP IT AND PRESS R, BEFORE CHOOSING ANOTHER</source>
-      <translation>HAY UN PROGRAMA EN CURSO: DEJE QUE TERMINE, O PÁRELO Y OPRIMA R, ANTES DE ELEGIR OTRO</translation>
+      <translation>HAY UN PROGRAMA EN CURSO: DEJE QUE TERMINE, O PÁRELO Y PULSE R, ANTES DE ELEGIR OTRO</translation>
     </message>
     <message>
       <location filename="app/desk/desk.py" />
       <source>AN ALARM STANDS: PRESS R TO ACKNOWLEDGE IT FIRST</source>
-      <translation>HAY UNA ALARMA: OPRIMA PRIMERO R PARA RECONOCERLA</translation>
+      <translation>HAY UNA ALARMA: PULSE PRIMERO R PARA RECONOCERLA</translation>
     </message>
     <message>
       <location filename="app/desk/desk.py" />
@@ -5061,7 +5091,7 @@
     <message>
       <location filename="app/desk/desk.py" />
       <source>NOT KEPT, AND LOST BY CLOSING: {what}; MAKE ROOM, OR PRESS Y TO CLOSE, ESC TO STAY</source>
-      <translation>SIN GUARDAR, Y SE PIERDE AL CERRAR: {what}; HAGA ESPACIO, U OPRIMA Y PARA CERRAR, ESC PARA SEGUIR</translation>
+      <translation>SIN GUARDAR, Y SE PIERDE AL CERRAR: {what}; HAGA ESPACIO, U PULSE Y PARA CERRAR, ESC PARA SEGUIR</translation>
     </message>
     <message>
       <location filename="app/desk/desk.py" />
@@ -5071,22 +5101,22 @@
     <message>
       <location filename="app/desk/desk.py" />
       <source>PRESS BOTH PALM BUTTONS</source>
-      <translation>OPRIMA LOS DOS PULSADORES</translation>
+      <translation>PULSE LOS DOS PULSADORES</translation>
     </message>
     <message>
       <location filename="app/desk/desk.py" />
       <source>PRESS BOTH PALM BUTTONS (F11 + F12)</source>
-      <translation>OPRIMA LOS DOS PULSADORES (F11 + F12)</translation>
+      <translation>PULSE LOS DOS PULSADORES (F11 + F12)</translation>
     </message>
     <message>
       <location filename="app/desk/desk.py" />
       <source>PRESS CYCLE START</source>
-      <translation>OPRIMA INICIO DE CICLO</translation>
+      <translation>PULSE INICIO DE CICLO</translation>
     </message>
     <message>
       <location filename="app/desk/desk.py" />
       <source>PRESS CYCLE START (F12)</source>
-      <translation>OPRIMA INICIO DE CICLO (F12)</translation>
+      <translation>PULSE INICIO DE CICLO (F12)</translation>
     </message>
     <message>
       <location filename="app/desk/desk.py" />
@@ -5121,12 +5151,12 @@
     <message>
       <location filename="app/desk/desk.py" />
       <source>THE E-STOP IS NOT PRESSED</source>
-      <translation>EL PARO DE EMERGENCIA NO ESTÁ OPRIMIDO</translation>
+      <translation>EL PARO DE EMERGENCIA NO ESTÁ PULSADO</translation>
     </message>
     <message>
       <location filename="app/desk/desk.py" />
       <source>THE E-STOP IS STILL PRESSED: %1 FIRST</source>
-      <translation>EL PARO DE EMERGENCIA SIGUE OPRIMIDO: PRIMERO %1</translation>
+      <translation>EL PARO DE EMERGENCIA SIGUE PULSADO: PRIMERO %1</translation>
     </message>
     <message>
       <location filename="app/desk/desk.py" />
@@ -5136,7 +5166,7 @@
     <message>
       <location filename="app/desk/desk.py" />
       <source>THE MACHINE IS MOVING: PRESS H FOR FEED HOLD FIRST</source>
-      <translation>LA MÁQUINA SE MUEVE: OPRIMA PRIMERO H, RETENCIÓN DE AVANCE</translation>
+      <translation>LA MÁQUINA SE MUEVE: PULSE PRIMERO H, RETENCIÓN DE AVANCE</translation>
     </message>
     <message>
       <location filename="app/desk/desk.py" />
@@ -5261,12 +5291,12 @@
     <message>
       <location filename="app/desk/interrupted_notice.py" />
       <source>LINE {line} WAS INTERRUPTED: F6 SHOWS THE WAY OUT AND GOES ON THERE; Y, THEN THE START: LINE 1</source>
-      <translation>LA LÍNEA {line} SE INTERRUMPIÓ: F6 MUESTRA LA SALIDA Y SIGUE ALLÍ; OPRIMA Y, LUEGO EL ARRANQUE: LÍNEA 1</translation>
+      <translation>LA LÍNEA {line} SE INTERRUMPIÓ: F6 MUESTRA LA SALIDA Y SIGUE ALLÍ; PULSE Y, LUEGO EL ARRANQUE: LÍNEA 1</translation>
     </message>
     <message>
       <location filename="app/desk/interrupted_notice.py" />
       <source>LINE {line} WAS INTERRUPTED: JOG THE TOOL CLEAR; Y, THEN THE START: LINE 1</source>
-      <translation>LA LÍNEA {line} SE INTERRUMPIÓ: SAQUE LA HERRAMIENTA A MANO; OPRIMA Y, LUEGO EL ARRANQUE: LÍNEA 1</translation>
+      <translation>LA LÍNEA {line} SE INTERRUMPIÓ: SAQUE LA HERRAMIENTA A MANO; PULSE Y, LUEGO EL ARRANQUE: LÍNEA 1</translation>
     </message>
     <message>
       <location filename="app/desk/interrupted_notice.py" />
@@ -5351,7 +5381,7 @@
     <message>
       <location filename="app/desk/modal_rows.py" />
       <source>D OFFSET</source>
-      <translation>COMPENSACIÓN D</translation>
+      <translation>CORRECTOR D</translation>
     </message>
     <message>
       <location filename="app/desk/modal_rows.py" />
@@ -5406,7 +5436,7 @@
     <message>
       <location filename="app/desk/modal_rows.py" />
       <source>G92 PRESET</source>
-      <translation>PREAJUSTE G92</translation>
+      <translation>PRESET G92</translation>
     </message>
     <message>
       <location filename="app/desk/modal_rows.py" />
@@ -5461,7 +5491,7 @@
     <message>
       <location filename="app/desk/modal_rows.py" />
       <source>RAPID RATE</source>
-      <translation>VELOC DE RÁPIDO</translation>
+      <translation>VELOCIDAD RÁPIDO</translation>
     </message>
     <message>
       <location filename="app/desk/modal_rows.py" />
@@ -5546,7 +5576,7 @@
     <message>
       <location filename="app/desk/modal_rows.py" />
       <source>tool offset</source>
-      <translation>compensación de herramienta</translation>
+      <translation>corrector de herramienta</translation>
     </message>
     <message>
       <location filename="app/desk/persistence.py" />
@@ -5621,7 +5651,7 @@
     <message>
       <location filename="app/desk/program_renewal.py" />
       <source>NO NEXT PART WITH THE CHANGED OFFSETS: {why}</source>
-      <translation>NO HAY PRÓXIMA PIEZA CON LAS COMPENSACIONES CAMBIADAS: {why}</translation>
+      <translation>NO HAY PRÓXIMA PIEZA CON LOS CORRECTORES CAMBIADOS: {why}</translation>
     </message>
     <message>
       <location filename="app/desk/prompt_line.py" />
@@ -5630,28 +5660,28 @@
     </message>
     <message>
       <location filename="app/desk/prompt_line.py" />
-      <source> (%1 MORE)</source>
-      <translation> (%1 MÁS)</translation>
-    </message>
-    <message>
-      <location filename="app/desk/prompt_line.py" />
       <source>%1  ·  WHAT TO DO: %2</source>
       <translation>%1  ·  QUÉ HACER: %2</translation>
     </message>
     <message>
       <location filename="app/desk/prompt_line.py" />
+      <source>%1 (%2 MORE)</source>
+      <translation>%1 (%2 MÁS)</translation>
+    </message>
+    <message>
+      <location filename="app/desk/prompt_line.py" />
       <source>%1 CANNOT BE LOADED: %2; PRESS F2 FOR ANOTHER</source>
-      <translation>NO SE PUEDE CARGAR %1: %2; OPRIMA F2 PARA OTRO</translation>
+      <translation>NO SE PUEDE CARGAR %1: %2; PULSE F2 PARA OTRO</translation>
     </message>
     <message>
       <location filename="app/desk/prompt_line.py" />
       <source>A KEY THAT STOPS IS HELD DOWN: LET IT GO FIRST</source>
-      <translation>HAY UNA TECLA DE PARO OPRIMIDA: SUÉLTELA PRIMERO</translation>
+      <translation>HAY UNA TECLA DE PARO PULSADA: SUÉLTELA PRIMERO</translation>
     </message>
     <message>
       <location filename="app/desk/prompt_line.py" />
       <source>ALARM: PUT THE CAUSE RIGHT, THEN PRESS R TO ACKNOWLEDGE</source>
-      <translation>ALARMA: CORRIJA LA CAUSA Y OPRIMA R PARA RECONOCERLA</translation>
+      <translation>ALARMA: CORRIJA LA CAUSA Y PULSE R PARA RECONOCERLA</translation>
     </message>
     <message>
       <location filename="app/desk/prompt_line.py" />
@@ -5671,22 +5701,22 @@
     <message>
       <location filename="app/desk/prompt_line.py" />
       <source>CYCLES ARE STARTED ON THE AUTOMATIC PAGE: PRESS F1, THEN F2</source>
-      <translation>LOS CICLOS SE INICIAN EN LA PÁGINA AUTOMÁTICO: OPRIMA F1 Y LUEGO F2</translation>
+      <translation>LOS CICLOS SE INICIAN EN LA PÁGINA AUTOMÁTICO: PULSE F1 Y LUEGO F2</translation>
     </message>
     <message>
       <location filename="app/desk/prompt_line.py" />
       <source>DRIVES ARE OFF: PRESS D FOR DRIVES ON</source>
-      <translation>SERVOS APAGADOS: OPRIMA D PARA ENCENDERLOS</translation>
+      <translation>SERVOS APAGADOS: PULSE D PARA ENCENDERLOS</translation>
     </message>
     <message>
       <location filename="app/desk/prompt_line.py" />
       <source>E-STOP: MAKE THE MACHINE SAFE, %1, THEN PRESS D FOR DRIVES ON</source>
-      <translation>PARO DE EMERGENCIA: PONGA LA MÁQUINA SEGURA, %1, Y OPRIMA D PARA ENCENDER SERVOS</translation>
+      <translation>PARO DE EMERGENCIA: PONGA LA MÁQUINA SEGURA, %1, Y PULSE D PARA ENCENDER SERVOS</translation>
     </message>
     <message>
       <location filename="app/desk/prompt_line.py" />
       <source>FILE NOT FOUND, PRESS ANY KEY TO CONTINUE</source>
-      <translation>NO SE ENCONTRÓ EL ARCHIVO, OPRIMA CUALQUIER TECLA PARA CONTINUAR</translation>
+      <translation>NO SE ENCONTRÓ EL ARCHIVO, PULSE CUALQUIER TECLA PARA CONTINUAR</translation>
     </message>
     <message>
       <location filename="app/desk/prompt_line.py" />
@@ -5695,13 +5725,8 @@
     </message>
     <message>
       <location filename="app/desk/prompt_line.py" />
-      <source>LINE %1: </source>
-      <translation>LÍNEA %1: </translation>
-    </message>
-    <message>
-      <location filename="app/desk/prompt_line.py" />
-      <source>LINE %1: %2 %3</source>
-      <translation>LÍNEA %1: %2 %3</translation>
+      <source>LINE %1: %2  ·  %3</source>
+      <translation>LÍNEA %1: %2  ·  %3</translation>
     </message>
     <message>
       <location filename="app/desk/prompt_line.py" />
@@ -5726,12 +5751,12 @@
     <message>
       <location filename="app/desk/prompt_line.py" />
       <source>ONE PALM BUTTON ALONE DOES NOT START: PRESS BOTH WITHIN HALF A SECOND</source>
-      <translation>UN SOLO PULSADOR NO ARRANCA: OPRIMA LOS DOS EN MEDIO SEGUNDO</translation>
+      <translation>UN SOLO PULSADOR NO ARRANCA: PULSE LOS DOS EN MEDIO SEGUNDO</translation>
     </message>
     <message>
       <location filename="app/desk/prompt_line.py" />
       <source>ONE PALM BUTTON WAS HELD LONGER THAN HALF A SECOND: LET BOTH GO, THEN PRESS BOTH</source>
-      <translation>UN PULSADOR SE SOSTUVO MÁS DE MEDIO SEGUNDO: SUELTE LOS DOS Y OPRIMA LOS DOS</translation>
+      <translation>UN PULSADOR SE SOSTUVO MÁS DE MEDIO SEGUNDO: SUELTE LOS DOS Y PULSE LOS DOS</translation>
     </message>
     <message>
       <location filename="app/desk/prompt_line.py" />
@@ -5746,17 +5771,17 @@
     <message>
       <location filename="app/desk/prompt_line.py" />
       <source>PRESS F2 TO CHOOSE A PROGRAM</source>
-      <translation>OPRIMA F2 PARA ELEGIR UN PROGRAMA</translation>
+      <translation>PULSE F2 PARA ELEGIR UN PROGRAMA</translation>
     </message>
     <message>
       <location filename="app/desk/prompt_line.py" />
       <source>PRESS Y TO GIVE THE PROGRAM UP, ESC TO KEEP IT</source>
-      <translation>OPRIMA Y PARA ABANDONAR EL PROGRAMA, ESC PARA CONSERVARLO</translation>
+      <translation>PULSE Y PARA ABANDONAR EL PROGRAMA, ESC PARA CONSERVARLO</translation>
     </message>
     <message>
       <location filename="app/desk/prompt_line.py" />
       <source>PRESS Y TO TWIST THE E-STOP OUT, ESC TO LEAVE IT IN</source>
-      <translation>OPRIMA Y PARA SOLTAR EL PARO DE EMERGENCIA, ESC PARA DEJARLO OPRIMIDO</translation>
+      <translation>PULSE Y PARA SOLTAR EL PARO DE EMERGENCIA, ESC PARA DEJARLO PULSADO</translation>
     </message>
     <message>
       <location filename="app/desk/prompt_line.py" />
@@ -5766,7 +5791,7 @@
     <message>
       <location filename="app/desk/prompt_line.py" />
       <source>THE CONTROL DOES NOT ANSWER: PRESS E-STOP; WHAT IS SHOWN IS NOT OF NOW</source>
-      <translation>EL CONTROL NO RESPONDE: OPRIMA EL PARO DE EMERGENCIA; LO QUE SE VE NO ES DE AHORA</translation>
+      <translation>EL CONTROL NO RESPONDE: PULSE EL PARO DE EMERGENCIA; LO QUE SE VE NO ES DE AHORA</translation>
     </message>
     <message>
       <location filename="app/desk/prompt_line.py" />
@@ -5815,8 +5840,8 @@
     </message>
     <message>
       <location filename="app/desk/prompt_line.py" />
-      <source>WILL NOT RUN: %1%2%3</source>
-      <translation>NO CORRERÁ: %1%2%3</translation>
+      <source>WILL NOT RUN: LINE %1: %2</source>
+      <translation>NO CORRERÁ: LÍNEA %1: %2</translation>
     </message>
     <message>
       <location filename="app/desk/prompt_line.py" />
@@ -5836,7 +5861,7 @@
     <message>
       <location filename="app/desk/prompt_line.py" />
       <source>WILL NOT START: NO OFFSET WAS EVER SET FOR %1 (F8 SETS THEM)</source>
-      <translation>NO ARRANCARÁ: NUNCA SE PUSO COMPENSACIÓN PARA %1 (F8 LA PONE)</translation>
+      <translation>NO ARRANCARÁ: NUNCA SE PUSO CORRECTOR PARA %1 (F8 LO PONE)</translation>
     </message>
     <message>
       <location filename="app/desk/readouts.py" />
@@ -5906,7 +5931,7 @@
     <message>
       <location filename="app/desk/readouts.py" />
       <source>LIVE TOOL</source>
-      <translation>HERR MOTRIZ</translation>
+      <translation>HERR MOTORIZADA</translation>
     </message>
     <message>
       <location filename="app/desk/readouts.py" />
@@ -5921,7 +5946,7 @@
     <message>
       <location filename="app/desk/readouts.py" />
       <source>M05 OFF</source>
-      <translation>M05 ALTO</translation>
+      <translation>M05 PARADO</translation>
     </message>
     <message>
       <location filename="app/desk/readouts.py" />
@@ -5936,7 +5961,7 @@
     <message>
       <location filename="app/desk/readouts.py" />
       <source>M5 OFF</source>
-      <translation>M5 ALTO</translation>
+      <translation>M5 PARADO</translation>
     </message>
     <message>
       <location filename="app/desk/readouts.py" />
@@ -5976,12 +6001,12 @@
     <message>
       <location filename="app/desk/readouts.py" />
       <source>SPINDLE HELD</source>
-      <translation>CABEZAL RETENIDO</translation>
+      <translation>HUSILLO RETENIDO</translation>
     </message>
     <message>
       <location filename="app/desk/readouts.py" />
       <source>SPINDLE ORIENTS</source>
-      <translation>CABEZAL SE ORIENTA</translation>
+      <translation>HUSILLO SE ORIENTA</translation>
     </message>
     <message>
       <location filename="app/desk/readouts.py" />
@@ -6101,7 +6126,7 @@
     <message>
       <location filename="app/desk/waiting.py" />
       <source>FEED HOLD BEHIND THE TAP</source>
-      <translation>PARADA DE AVANCE TRAS EL MACHO</translation>
+      <translation>RETENCIÓN DE AVANCE TRAS EL MACHO</translation>
     </message>
     <message>
       <location filename="app/desk/waiting.py" />
@@ -6196,7 +6221,7 @@
     <message>
       <location filename="app/desk/waiting.py" />
       <source>THE TAP FIRST COMES OUT OF ITS HOLE; E-STOP STOPS IT AT ONCE</source>
-      <translation>EL MACHO SALE PRIMERO DEL AGUJERO; LA PARADA DE EMERGENCIA LO DETIENE EN EL ACTO</translation>
+      <translation>EL MACHO SALE PRIMERO DEL AGUJERO; EL PARO DE EMERGENCIA LO DETIENE EN EL ACTO</translation>
     </message>
     <message>
       <location filename="app/editor/code_help_view.py" />
@@ -6351,7 +6376,7 @@
     <message>
       <location filename="app/editor/editor_messages.py" />
       <source>PRESS F1 TO CREATE A NEW FILE, ESC TO ABORT</source>
-      <translation>OPRIMA F1 PARA CREAR UN ARCHIVO NUEVO, ESC PARA CANCELAR</translation>
+      <translation>PULSE F1 PARA CREAR UN ARCHIVO NUEVO, ESC PARA CANCELAR</translation>
     </message>
     <message>
       <location filename="app/editor/editor_messages.py" />
@@ -6396,7 +6421,7 @@
     <message>
       <location filename="app/editor/editor_messages.py" />
       <source>TYPE A LINE NUMBER AND PRESS RETURN; ESC: BACK</source>
-      <translation>ESCRIBA UN NÚMERO DE LÍNEA Y OPRIMA RETURN; ESC: REGRESA</translation>
+      <translation>ESCRIBA UN NÚMERO DE LÍNEA Y PULSE RETURN; ESC: REGRESA</translation>
     </message>
     <message>
       <location filename="app/editor/editor_messages.py" />
@@ -6495,13 +6520,18 @@
     </message>
     <message>
       <location filename="app/editor/editor_view.py" />
+      <source>LINE %1: %2 %3</source>
+      <translation>LÍNEA %1: %2 %3</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_view.py" />
       <source>NEXT ERR</source>
       <translation>SIG ERR</translation>
     </message>
     <message>
       <location filename="app/editor/editor_view.py" />
       <source>NO SAVE</source>
-      <translation>NO GUARD</translation>
+      <translation>DESCARTA</translation>
     </message>
     <message>
       <location filename="app/editor/editor_view.py" />
@@ -6576,7 +6606,7 @@
     <message>
       <location filename="app/editor/findings_view.py" />
       <source>FINDINGS  ·  %1  ·  %2</source>
-      <translation>HALLAZGOS  ·  %1  ·  %2</translation>
+      <translation>AVISOS  ·  %1  ·  %2</translation>
     </message>
     <message>
       <location filename="app/editor/findings_view.py" />
@@ -6701,7 +6731,7 @@
     <message>
       <location filename="app/jobs/job_setup.py" />
       <source>its life is gone, {words}: change the insert</source>
-      <translation>su vida se acabó, {words}: cambie la plaquita</translation>
+      <translation>su vida se acabó, {words}: cambie el inserto</translation>
     </message>
     <message>
       <location filename="app/jobs/job_setup.py" />
@@ -7151,12 +7181,12 @@
     <message>
       <location filename="app/jog/hand_functions.py" />
       <source>A LINE IS UNDER WAY: LET IT END, OR STOP IT AND PRESS R</source>
-      <translation>HAY UNA LÍNEA EN CURSO: DEJE QUE TERMINE, O PÁRELA Y OPRIMA R</translation>
+      <translation>HAY UNA LÍNEA EN CURSO: DEJE QUE TERMINE, O PÁRELA Y PULSE R</translation>
     </message>
     <message>
       <location filename="app/jog/hand_functions.py" />
       <source>AN ALARM STANDS: PUT ITS CAUSE RIGHT, THEN PRESS R</source>
-      <translation>HAY UNA ALARMA: CORRIJA SU CAUSA Y OPRIMA R</translation>
+      <translation>HAY UNA ALARMA: CORRIJA SU CAUSA Y PULSE R</translation>
     </message>
     <message>
       <location filename="app/jog/hand_functions.py" />
@@ -7191,12 +7221,12 @@
     <message>
       <location filename="app/jog/hand_functions.py" />
       <source>THE DRIVES ARE OFF: PRESS D FOR DRIVES ON</source>
-      <translation>LOS SERVOS ESTÁN APAGADOS: OPRIMA D PARA ENCENDERLOS</translation>
+      <translation>LOS SERVOS ESTÁN APAGADOS: PULSE D PARA ENCENDERLOS</translation>
     </message>
     <message>
       <location filename="app/jog/hand_functions.py" />
       <source>THE E-STOP IS PRESSED: NOTHING MOVES</source>
-      <translation>EL PARO DE EMERGENCIA ESTÁ OPRIMIDO: NADA SE MUEVE</translation>
+      <translation>EL PARO DE EMERGENCIA ESTÁ PULSADO: NADA SE MUEVE</translation>
     </message>
     <message>
       <location filename="app/jog/hand_functions.py" />
@@ -7351,7 +7381,7 @@
     <message>
       <location filename="app/jog/held_jog.py" />
       <source>RAPID IS FOR A HELD JOG: CHOOSE CONTINUOUS, OR PRESS WITHOUT SHIFT</source>
-      <translation>EL RÁPIDO ES PARA MOVER SOSTENIENDO: ELIJA CONTINUO, U OPRIMA SIN SHIFT</translation>
+      <translation>EL RÁPIDO ES PARA MOVER SOSTENIENDO: ELIJA CONTINUO, U PULSE SIN SHIFT</translation>
     </message>
     <message>
       <location filename="app/jog/held_jog.py" />
@@ -7371,7 +7401,7 @@
     <message>
       <location filename="app/jog/held_jog.py" />
       <source>TWO AT ONCE MOVE NOTHING: LET BOTH GO, THEN PRESS ONE</source>
-      <translation>DOS A LA VEZ NO MUEVEN NADA: SUELTE LAS DOS Y OPRIMA UNA</translation>
+      <translation>DOS A LA VEZ NO MUEVEN NADA: SUELTE LAS DOS Y PULSE UNA</translation>
     </message>
     <message>
       <location filename="app/jog/held_keys_view.py" />
@@ -7421,7 +7451,7 @@
     <message>
       <location filename="app/jog/jog_homing.py" />
       <source>HOME {first}: PRESS RETURN FOR ALL, {letters} FOR ONE AXIS, ESC FOR NONE</source>
-      <translation>REFERENCIAR {first}: OPRIMA RETURN PARA TODOS, {letters} PARA UN EJE, ESC PARA NINGUNO</translation>
+      <translation>REFERENCIAR {first}: PULSE RETURN PARA TODOS, {letters} PARA UN EJE, ESC PARA NINGUNO</translation>
     </message>
     <message>
       <location filename="app/jog/jog_homing.py" />
@@ -7461,12 +7491,12 @@
     <message>
       <location filename="app/jog/jog_model.py" />
       <source>AN ENTRY IS OPEN: PRESS RETURN OR ESC FIRST</source>
-      <translation>HAY UNA ENTRADA ABIERTA: OPRIMA PRIMERO RETURN O ESC</translation>
+      <translation>HAY UNA ENTRADA ABIERTA: PULSE PRIMERO RETURN O ESC</translation>
     </message>
     <message>
       <location filename="app/jog/jog_model.py" />
       <source>AN ENTRY IS OPEN: PRESS RETURN OR ESC; THE ARROWS MOVE NOTHING MEANWHILE</source>
-      <translation>HAY UNA ENTRADA ABIERTA: OPRIMA RETURN O ESC; MIENTRAS TANTO LAS FLECHAS NO MUEVEN NADA</translation>
+      <translation>HAY UNA ENTRADA ABIERTA: PULSE RETURN O ESC; MIENTRAS TANTO LAS FLECHAS NO MUEVEN NADA</translation>
     </message>
     <message>
       <location filename="app/jog/jog_model.py" />
@@ -7506,7 +7536,7 @@
     <message>
       <location filename="app/jog/jog_model.py" />
       <source>HOMING IS NOT DONE; PRESS THE ARROW AGAIN TO JOG</source>
-      <translation>LA REFERENCIA NO ESTÁ HECHA; OPRIMA OTRA VEZ LA FLECHA PARA MOVER</translation>
+      <translation>LA REFERENCIA NO ESTÁ HECHA; PULSE OTRA VEZ LA FLECHA PARA MOVER</translation>
     </message>
     <message>
       <location filename="app/jog/jog_model.py" />
@@ -7541,7 +7571,7 @@
     <message>
       <location filename="app/jog/jog_model.py" />
       <source>{axes} NOT HOMED: JOG SLOWLY, THERE ARE NO SOFT LIMITS; PRESS HOME</source>
-      <translation>{axes} SIN REFERENCIA: MUEVA DESPACIO, NO HAY LÍMITES POR PROGRAMA; OPRIMA REFERENCIA</translation>
+      <translation>{axes} SIN REFERENCIA: MUEVA DESPACIO, NO HAY LÍMITES POR PROGRAMA; PULSE REFERENCIA</translation>
     </message>
     <message>
       <location filename="app/jog/jog_pad_view.py" />
@@ -7581,7 +7611,7 @@
     <message>
       <location filename="app/jog/jog_pad_view.py" />
       <source>STEP IN</source>
-      <translation>PASO PLG</translation>
+      <translation>PASO PULG</translation>
     </message>
     <message>
       <location filename="app/jog/jog_pad_view.py" />
@@ -7811,7 +7841,7 @@
     <message>
       <location filename="app/jog/setter_touch.py" />
       <source>WHICH TOOL? PRESS T AND TYPE ITS NUMBER FIRST</source>
-      <translation>¿CUÁL HERRAMIENTA? OPRIMA T Y ESCRIBA PRIMERO SU NÚMERO</translation>
+      <translation>¿CUÁL HERRAMIENTA? PULSE T Y ESCRIBA PRIMERO SU NÚMERO</translation>
     </message>
     <message>
       <location filename="app/jog/setter_touch.py" />
@@ -7911,7 +7941,7 @@
     <message>
       <location filename="app/jog/tool_setting.py" />
       <source>THE SLIDE HAS MOVED SINCE: PRESS ESC AND TOUCH AGAIN</source>
-      <translation>EL CARRO SE MOVIÓ DESPUÉS: OPRIMA ESC Y TOQUE OTRA VEZ</translation>
+      <translation>EL CARRO SE MOVIÓ DESPUÉS: PULSE ESC Y TOQUE OTRA VEZ</translation>
     </message>
     <message>
       <location filename="app/jog/tool_setting.py" />
@@ -7991,7 +8021,7 @@
     <message>
       <location filename="app/mdi/mdi_model.py" />
       <source>A PROGRAM IS UNDER WAY: LET IT END, OR STOP IT AND PRESS R, BEFORE MDI</source>
-      <translation>HAY UN PROGRAMA EN CURSO: DEJE QUE TERMINE, O PÁRELO Y OPRIMA R, ANTES DE MDI</translation>
+      <translation>HAY UN PROGRAMA EN CURSO: DEJE QUE TERMINE, O PÁRELO Y PULSE R, ANTES DE MDI</translation>
     </message>
     <message>
       <location filename="app/mdi/mdi_model.py" />
@@ -8001,12 +8031,12 @@
     <message>
       <location filename="app/mdi/mdi_model.py" />
       <source>DRIVES ARE OFF: PRESS F5 FOR DRIVES ON; A LINE CAN BE TYPED MEANWHILE</source>
-      <translation>SERVOS APAGADOS: OPRIMA F5 PARA ENCENDERLOS; MIENTRAS TANTO SE PUEDE ESCRIBIR UNA LÍNEA</translation>
+      <translation>SERVOS APAGADOS: PULSE F5 PARA ENCENDERLOS; MIENTRAS TANTO SE PUEDE ESCRIBIR UNA LÍNEA</translation>
     </message>
     <message>
       <location filename="app/mdi/mdi_model.py" />
       <source>NO LINE IS READY: TYPE ONE AND PRESS ENTER</source>
-      <translation>NO HAY LÍNEA LISTA: ESCRIBA UNA Y OPRIMA RETURN</translation>
+      <translation>NO HAY LÍNEA LISTA: ESCRIBA UNA Y PULSE RETURN</translation>
     </message>
     <message>
       <location filename="app/mdi/mdi_model.py" />
@@ -8101,7 +8131,7 @@
     <message>
       <location filename="app/offsets/cell_table.py" />
       <source>TYPE A VALUE OR A SUM AND PRESS RETURN; ARROWS AND TAB CHOOSE ANOTHER CELL</source>
-      <translation>ESCRIBA UN VALOR O UNA SUMA Y OPRIMA RETURN; FLECHAS Y TAB ELIGEN OTRA CELDA</translation>
+      <translation>ESCRIBA UN VALOR O UNA SUMA Y PULSE RETURN; FLECHAS Y TAB ELIGEN OTRA CELDA</translation>
     </message>
     <message>
       <location filename="app/offsets/cell_table.py" />
@@ -8186,7 +8216,7 @@
     <message>
       <location filename="app/offsets/mill_touch.py" />
       <source>THE SLIDES ARE MOVING: OFFSETS CHANGE AT REST</source>
-      <translation>LOS CARROS SE MUEVEN: LAS COMPENSACIONES CAMBIAN EN REPOSO</translation>
+      <translation>LOS CARROS SE MUEVEN: LOS CORRECTORES CAMBIAN EN REPOSO</translation>
     </message>
     <message>
       <location filename="app/offsets/mill_touch.py" />
@@ -8201,17 +8231,17 @@
     <message>
       <location filename="app/offsets/offset_book.py" />
       <source>NO OFFSETS ARE KEPT HERE</source>
-      <translation>AQUÍ NO SE GUARDAN COMPENSACIONES</translation>
+      <translation>AQUÍ NO SE GUARDAN CORRECTORES</translation>
     </message>
     <message>
       <location filename="app/offsets/offset_book.py" />
       <source>OFFSETS CANNOT BE KEPT: %1</source>
-      <translation>NO SE PUEDEN GUARDAR LAS COMPENSACIONES: %1</translation>
+      <translation>NO SE PUEDEN GUARDAR LOS CORRECTORES: %1</translation>
     </message>
     <message>
       <location filename="app/offsets/offset_book.py" />
       <source>STILL SAVING THE CHANGE BEFORE: PRESS RETURN AGAIN</source>
-      <translation>EL CAMBIO ANTERIOR TODAVÍA SE ESTÁ GUARDANDO: OPRIMA RETURN OTRA VEZ</translation>
+      <translation>EL CAMBIO ANTERIOR TODAVÍA SE ESTÁ GUARDANDO: PULSE RETURN OTRA VEZ</translation>
     </message>
     <message>
       <location filename="app/offsets/offset_book.py" />
@@ -8246,7 +8276,7 @@
     <message>
       <location filename="app/offsets/offset_effect.py" />
       <source>NOTHING HAS CHANGED HERE YET: TYPE A VALUE OR CHANGE ONE, THEN PRESS F6</source>
-      <translation>AQUÍ AÚN NO CAMBIÓ NADA: ESCRIBA UN VALOR O CAMBIE UNO, Y OPRIMA F6</translation>
+      <translation>AQUÍ AÚN NO CAMBIÓ NADA: ESCRIBA UN VALOR O CAMBIE UNO, Y PULSE F6</translation>
     </message>
     <message>
       <location filename="app/offsets/offset_effect.py" />
@@ -8321,17 +8351,17 @@
     <message>
       <location filename="app/offsets/offset_history.py" />
       <source>THE PART UNDER WAY KEEPS ITS OFFSETS: A CORRECTION COUNTS FROM THE NEXT CYCLE START</source>
-      <translation>LA PIEZA EN MARCHA CONSERVA SUS COMPENSACIONES: UNA CORRECCIÓN CUENTA DESDE EL PRÓXIMO ARRANQUE DE CICLO</translation>
+      <translation>LA PIEZA EN MARCHA CONSERVA SUS CORRECTORES: UNA CORRECCIÓN CUENTA DESDE EL PRÓXIMO ARRANQUE DE CICLO</translation>
     </message>
     <message>
       <location filename="app/offsets/offset_history.py" />
       <source>{count} OFFSETS</source>
-      <translation>{count} COMPENSACIONES</translation>
+      <translation>{count} CORRECTORES</translation>
     </message>
     <message>
       <location filename="app/offsets/offset_history.py" />
       <source>{count} offsets changed: F5 shows them</source>
-      <translation>cambiaron {count} compensaciones: F5 las muestra</translation>
+      <translation>cambiaron {count} correctores: F5 los muestra</translation>
     </message>
     <message>
       <location filename="app/offsets/offset_history.py" />
@@ -8556,7 +8586,7 @@
     <message>
       <location filename="app/offsets/offset_values.py" />
       <source>{field} takes no sum; press Return to set it</source>
-      <translation>{field} no acepta sumas; oprima Return para ponerlo</translation>
+      <translation>{field} no acepta sumas; pulse Return para ponerlo</translation>
     </message>
     <message>
       <location filename="app/offsets/offset_values.py" />
@@ -8576,7 +8606,7 @@
     <message>
       <location filename="app/offsets/offsets_view.py" />
       <source>No offset was changed yet.</source>
-      <translation>Todavía no se cambia ninguna compensación.</translation>
+      <translation>Todavía no se cambia ningún corrector.</translation>
     </message>
     <message>
       <location filename="app/offsets/part_effect.py" />
@@ -8691,17 +8721,17 @@
     <message>
       <location filename="app/offsets/secondary_offsets.py" />
       <source>C CLEARS ALL OFFSETS ONLY WHILE Offset Number? IS ASKED; PRESS ESC FIRST</source>
-      <translation>C BORRA TODO SÓLO MIENTRAS SE PREGUNTA ¿Número de compensación?; OPRIMA PRIMERO ESC</translation>
+      <translation>C BORRA TODO SÓLO MIENTRAS SE PREGUNTA ¿Número de corrector?; PULSE PRIMERO ESC</translation>
     </message>
     <message>
       <location filename="app/offsets/secondary_offsets.py" />
       <source>C: all offsets cleared</source>
-      <translation>C: todas las compensaciones a cero</translation>
+      <translation>C: todos los correctores a cero</translation>
     </message>
     <message>
       <location filename="app/offsets/secondary_offsets.py" />
       <source>D{number:g} does not exist; offsets are D1…32</source>
-      <translation>D{number:g} no existe; las compensaciones son D1…32</translation>
+      <translation>D{number:g} no existe; los correctores son D1…32</translation>
     </message>
     <message>
       <location filename="app/offsets/secondary_offsets.py" />
@@ -8716,27 +8746,27 @@
     <message>
       <location filename="app/offsets/secondary_offsets.py" />
       <source>FINISH D{number} FIRST, OR PRESS ESC</source>
-      <translation>TERMINE PRIMERO D{number}, U OPRIMA ESC</translation>
+      <translation>TERMINE PRIMERO D{number}, U PULSE ESC</translation>
     </message>
     <message>
       <location filename="app/offsets/secondary_offsets.py" />
       <source>Offset Number?</source>
-      <translation>¿Número de compensación?</translation>
+      <translation>¿Número de corrector?</translation>
     </message>
     <message>
       <location filename="app/offsets/secondary_offsets.py" />
       <source>PRESS Y TO CLEAR ALL 32 SECONDARY OFFSETS, ESC TO KEEP THEM</source>
-      <translation>OPRIMA Y PARA BORRAR LAS 32 COMPENSACIONES SECUNDARIAS, ESC PARA CONSERVARLAS</translation>
+      <translation>PULSE Y PARA BORRAR LOS 32 CORRECTORES SECUNDARIOS, ESC PARA CONSERVARLOS</translation>
     </message>
     <message>
       <location filename="app/offsets/secondary_offsets.py" />
       <source>Press C to clear all offsets</source>
-      <translation>Oprima C para borrar todas las compensaciones</translation>
+      <translation>Pulse C para borrar todos los correctores</translation>
     </message>
     <message>
       <location filename="app/offsets/secondary_offsets.py" />
       <source>Press Esc to exit offset adjustment screen</source>
-      <translation>Oprima Esc para salir del ajuste de compensaciones</translation>
+      <translation>Pulse Esc para salir del ajuste de correctores</translation>
     </message>
     <message>
       <location filename="app/offsets/secondary_offsets.py" />
@@ -8746,7 +8776,7 @@
     <message>
       <location filename="app/offsets/secondary_offsets.py" />
       <source>Secondary offset number:</source>
-      <translation>Número de compensación secundaria:</translation>
+      <translation>Número de corrector secundario:</translation>
     </message>
     <message>
       <location filename="app/offsets/secondary_offsets.py" />
@@ -8766,7 +8796,7 @@
     <message>
       <location filename="app/offsets/secondary_offsets_view.py" />
       <source>ALL 32 OFFSETS</source>
-      <translation>LAS 32 COMPENSACIONES</translation>
+      <translation>LOS 32 CORRECTORES</translation>
     </message>
     <message>
       <location filename="app/offsets/secondary_offsets_view.py" />
@@ -8776,7 +8806,7 @@
     <message>
       <location filename="app/offsets/secondary_offsets_view.py" />
       <source>SECONDARY OFFSETS  ·  X STORED AS A RADIUS</source>
-      <translation>COMPENSACIONES SECUNDARIAS  ·  X SE GUARDA COMO RADIO</translation>
+      <translation>CORRECTORES SECUNDARIOS  ·  X SE GUARDA COMO RADIO</translation>
     </message>
     <message>
       <location filename="app/offsets/secondary_offsets_view.py" />
@@ -8791,7 +8821,7 @@
     <message>
       <location filename="app/offsets/tool_fields.py" />
       <source>PRESS RETURN TO SET IT, OR ESC TO LEAVE IT AS IT WAS</source>
-      <translation>OPRIMA RETURN PARA PONERLO, O ESC PARA DEJARLO COMO ESTABA</translation>
+      <translation>PULSE RETURN PARA PONERLO, O ESC PARA DEJARLO COMO ESTABA</translation>
     </message>
     <message>
       <location filename="app/offsets/tool_fields.py" />
@@ -8836,7 +8866,7 @@
     <message>
       <location filename="app/offsets/tool_offsets.py" />
       <source>PRESS RETURN TO WRITE A REMARK</source>
-      <translation>OPRIMA RETURN PARA ESCRIBIR UNA NOTA</translation>
+      <translation>PULSE RETURN PARA ESCRIBIR UNA NOTA</translation>
     </message>
     <message>
       <location filename="app/offsets/tool_offsets.py" />
@@ -8846,7 +8876,7 @@
     <message>
       <location filename="app/offsets/tool_offsets.py" />
       <source>TYPE WHAT IS TO BE ADDED FIRST, THEN PRESS F2</source>
-      <translation>ESCRIBA PRIMERO LO QUE SE SUMA, Y OPRIMA F2</translation>
+      <translation>ESCRIBA PRIMERO LO QUE SE SUMA, Y PULSE F2</translation>
     </message>
     <message>
       <location filename="app/offsets/tool_offsets.py" />
@@ -8866,7 +8896,7 @@
     <message>
       <location filename="app/offsets/tool_offsets.py" />
       <source>X AND Z ARE SHOWN FROM THE MASTER: PRESS F3, THEN TYPE THEM FROM HOME</source>
-      <translation>X Y Z SE MUESTRAN DESDE LA MAESTRA: OPRIMA F3, Y ESCRÍBALAS DESDE LA REFERENCIA</translation>
+      <translation>X Y Z SE MUESTRAN DESDE LA MAESTRA: PULSE F3, Y ESCRÍBALAS DESDE LA REFERENCIA</translation>
     </message>
     <message>
       <location filename="app/offsets/tool_offsets_view.py" />
@@ -8891,12 +8921,12 @@
     <message>
       <location filename="app/offsets/tool_shapes.py" />
       <source>PRESS RETURN TO WRITE IT</source>
-      <translation>OPRIMA RETURN PARA ESCRIBIRLO</translation>
+      <translation>PULSE RETURN PARA ESCRIBIRLO</translation>
     </message>
     <message>
       <location filename="app/offsets/tool_shapes.py" />
       <source>PRESS Y TO FORGET THE SHAPE OF T{number}, ESC TO KEEP IT</source>
-      <translation>OPRIMA Y PARA OLVIDAR LA FORMA DE T{number}, ESC PARA CONSERVARLA</translation>
+      <translation>PULSE Y PARA OLVIDAR LA FORMA DE T{number}, ESC PARA CONSERVARLA</translation>
     </message>
     <message>
       <location filename="app/offsets/tool_shapes.py" />
@@ -8971,7 +9001,7 @@
     <message>
       <location filename="app/offsets/zero_offsets.py" />
       <source>PRESS Y TO CLEAR G54 TO G59, ESC TO KEEP THEM</source>
-      <translation>OPRIMA Y PARA BORRAR G54 A G59, ESC PARA CONSERVARLOS</translation>
+      <translation>PULSE Y PARA BORRAR G54 A G59, ESC PARA CONSERVARLOS</translation>
     </message>
     <message>
       <location filename="app/offsets/zero_offsets.py" />
@@ -9456,7 +9486,7 @@
     <message>
       <location filename="app/programs/copy_rename_delete.py" />
       <source>PRESS Y TO DELETE {name} (ITS VERSIONS ARE KEPT), ESC TO LEAVE IT</source>
-      <translation>OPRIMA Y PARA BORRAR {name} (SUS VERSIONES SE GUARDAN), ESC PARA DEJARLO</translation>
+      <translation>PULSE Y PARA BORRAR {name} (SUS VERSIONES SE GUARDAN), ESC PARA DEJARLO</translation>
     </message>
     <message>
       <location filename="app/programs/copy_rename_delete.py" />
@@ -9641,7 +9671,7 @@
     <message>
       <location filename="app/programs/import_export.py" />
       <source>{names}: THERE ALREADY WITH ANOTHER TEXT. PRESS Y TO REPLACE, ESC TO KEEP</source>
-      <translation>{names}: YA EXISTE CON OTRO TEXTO. OPRIMA Y PARA REEMPLAZAR, ESC PARA CONSERVAR</translation>
+      <translation>{names}: YA EXISTE CON OTRO TEXTO. PULSE Y PARA REEMPLAZAR, ESC PARA CONSERVAR</translation>
     </message>
     <message>
       <location filename="app/programs/preview.py" />
@@ -9751,7 +9781,7 @@
     <message>
       <location filename="app/programs/program_list.py" />
       <source>TYPE A NAME AND PRESS RETURN; ESC KEEPS EVERYTHING AS IT IS</source>
-      <translation>ESCRIBA UN NOMBRE Y OPRIMA RETURN; ESC DEJA TODO COMO ESTÁ</translation>
+      <translation>ESCRIBA UN NOMBRE Y PULSE RETURN; ESC DEJA TODO COMO ESTÁ</translation>
     </message>
     <message>
       <location filename="app/programs/program_list.py" />
@@ -9911,7 +9941,7 @@
     <message>
       <location filename="app/quality/charts_section.py" />
       <source>NOTHING IS MEASURED OF THIS FEATURE YET</source>
-      <translation>DE ESTA CARACTERÍSTICA AÚN NO SE HA MEDIDO NADA</translation>
+      <translation>AÚN SIN MEDIR</translation>
     </message>
     <message>
       <location filename="app/quality/charts_section.py" />
@@ -9991,7 +10021,7 @@
     <message>
       <location filename="app/quality/features_section.py" />
       <source>A LARGER OFFSET MAKES IT</source>
-      <translation>UNA COMPENSACIÓN MAYOR LA HACE</translation>
+      <translation>UN CORRECTOR MAYOR LA HACE</translation>
     </message>
     <message>
       <location filename="app/quality/features_section.py" />
@@ -10037,11 +10067,6 @@
       <location filename="app/quality/features_section.py" />
       <source>ITS NUMBER</source>
       <translation>SU NÚMERO</translation>
-    </message>
-    <message>
-      <location filename="app/quality/features_section.py" />
-      <source>KEEP</source>
-      <translation>GUARDAR</translation>
     </message>
     <message>
       <location filename="app/quality/features_section.py" />
@@ -10116,7 +10141,7 @@
     <message>
       <location filename="app/quality/features_section.py" />
       <source>SECONDARY OFFSET</source>
-      <translation>COMPENSACIÓN SECUNDARIA</translation>
+      <translation>CORRECTOR SECUNDARIO</translation>
     </message>
     <message>
       <location filename="app/quality/features_section.py" />
@@ -10231,7 +10256,7 @@
     <message>
       <location filename="app/quality/parts_function.py" />
       <source>features, readings, charts, trends</source>
-      <translation>características, lecturas, gráficos, tendencias</translation>
+      <translation>características, lecturas, gráficas, tendencias</translation>
     </message>
     <message>
       <location filename="app/quality/parts_watch.py" />
@@ -10525,11 +10550,6 @@
     </message>
     <message>
       <location filename="app/quality/shift_page.py" />
-      <source>%1 in</source>
-      <translation>%1 pulg</translation>
-    </message>
-    <message>
-      <location filename="app/quality/shift_page.py" />
       <source>%1 mm</source>
       <translation>%1 mm</translation>
     </message>
@@ -10556,12 +10576,12 @@
     <message>
       <location filename="app/quality/shift_page.py" />
       <source>INSERT OF</source>
-      <translation>PLAQUITA DE</translation>
+      <translation>INSERTO DE</translation>
     </message>
     <message>
       <location filename="app/quality/shift_page.py" />
       <source>Inserts changed in this time</source>
-      <translation>Plaquitas cambiadas en este tiempo</translation>
+      <translation>Insertos cambiados en este tiempo</translation>
     </message>
     <message>
       <location filename="app/quality/shift_page.py" />
@@ -10751,7 +10771,7 @@
     <message>
       <location filename="app/quality/tool_life_section.py" />
       <source>STOPS</source>
-      <translation>PARADAS</translation>
+      <translation>PAROS</translation>
     </message>
     <message>
       <location filename="app/quality/tool_life_section.py" />
@@ -10916,7 +10936,7 @@
     <message>
       <location filename="app/quality/trends_section.py" />
       <source>cycle times, stops, availability</source>
-      <translation>tiempos de ciclo, paradas, disponibilidad</translation>
+      <translation>tiempos de ciclo, paros, disponibilidad</translation>
     </message>
     <message>
       <location filename="app/quality/trends_section.py" />
@@ -11840,6 +11860,16 @@
     </message>
     <message>
       <location filename="app/scope/signals.py" />
+      <source>in/s</source>
+      <translation>pulg/s</translation>
+    </message>
+    <message>
+      <location filename="app/scope/signals.py" />
+      <source>in/s²</source>
+      <translation>pulg/s²</translation>
+    </message>
+    <message>
+      <location filename="app/scope/signals.py" />
       <source>load</source>
       <translation>carga</translation>
     </message>
@@ -12001,12 +12031,12 @@
     <message>
       <location filename="app/screen/main_menu.py" />
       <source>PRESS A FUNCTION KEY OR TOUCH A PAGE; ESC FOR AUTOMATIC</source>
-      <translation>OPRIMA UNA TECLA DE FUNCIÓN O TOQUE UNA PÁGINA; ESC A AUTOMÁTICO</translation>
+      <translation>PULSE UNA TECLA DE FUNCIÓN O TOQUE UNA PÁGINA; ESC A AUTOMÁTICO</translation>
     </message>
     <message>
       <location filename="app/screen/main_window.py" />
       <source>A PROGRAM IS UNDER WAY: STOP IT AND PRESS R BEFORE LEAVING</source>
-      <translation>HAY UN PROGRAMA EN CURSO: PÁRELO Y OPRIMA R ANTES DE SALIR</translation>
+      <translation>HAY UN PROGRAMA EN CURSO: PÁRELO Y PULSE R ANTES DE SALIR</translation>
     </message>
     <message>
       <location filename="app/screen/main_window.py" />
@@ -12016,12 +12046,12 @@
     <message>
       <location filename="app/screen/main_window.py" />
       <source>THE DESK WAS STARTED AS A KIOSK: IT ENDS WITH THE COMPUTER OR BY SIGTERM</source>
-      <translation>EL PUESTO SE ARRANCÓ COMO QUIOSCO: TERMINA CON EL ORDENADOR O POR SIGTERM</translation>
+      <translation>EL PUESTO SE ARRANCÓ COMO QUIOSCO: TERMINA CON LA COMPUTADORA O POR SIGTERM</translation>
     </message>
     <message>
       <location filename="app/screen/main_window.py" />
       <source>THE SCREEN STOOD STILL FOR {seconds} S: WHAT WAS PRESSED MEANWHILE WAS FORGOTTEN</source>
-      <translation>LA PANTALLA ESTUVO DETENIDA {seconds} S: LO OPRIMIDO MIENTRAS TANTO SE OLVIDÓ</translation>
+      <translation>LA PANTALLA ESTUVO DETENIDA {seconds} S: LO PULSADO MIENTRAS TANTO SE OLVIDÓ</translation>
     </message>
     <message>
       <location filename="app/screen/main_window.py" />
@@ -12081,7 +12111,7 @@
     <message>
       <location filename="app/screen/page_table.py" />
       <source>SECONDARY OFFSETS</source>
-      <translation>COMPENSACIÓN SECUNDARIA</translation>
+      <translation>CORRECTORES SECUNDARIOS</translation>
     </message>
     <message>
       <location filename="app/screen/page_table.py" />
@@ -12241,7 +12271,7 @@
     <message>
       <location filename="app/screen/station_dock.py" />
       <source>CYCLE START: BOTH PALMS</source>
-      <translation>INICIO DE CICLO: DOS PULSADORES</translation>
+      <translation>INICIO CICLO: AMBOS</translation>
     </message>
     <message>
       <location filename="app/screen/station_dock.py" />
@@ -12261,7 +12291,7 @@
     <message>
       <location filename="app/screen/station_dock.py" />
       <source>IS IN</source>
-      <translation>OPRIMIDO</translation>
+      <translation>PULSADO</translation>
     </message>
     <message>
       <location filename="app/screen/station_dock.py" />
@@ -12281,7 +12311,7 @@
     <message>
       <location filename="app/screen/station_dock.py" />
       <source>SPINDLE SPEED</source>
-      <translation>VELOC DE HUSILLO</translation>
+      <translation>VEL. HUSILLO</translation>
     </message>
     <message>
       <location filename="app/screen/station_dock.py" />
@@ -12336,7 +12366,7 @@
     <message>
       <location filename="app/screen/window_frame.py" />
       <source>TOOL  ·  OFFSET</source>
-      <translation>HERRAMIENTA  ·  COMPENSACIÓN</translation>
+      <translation>HERRAMIENTA  ·  CORRECTOR</translation>
     </message>
     <message>
       <location filename="app/searchto/searchto_model.py" />
@@ -12346,7 +12376,7 @@
     <message>
       <location filename="app/searchto/searchto_model.py" />
       <source>A PROGRAM IS UNDER WAY: LET IT END, OR STOP IT AND PRESS R, BEFORE SEARCHTO</source>
-      <translation>HAY UN PROGRAMA EN CURSO: DEJE QUE TERMINE, O PÁRELO Y OPRIMA R, ANTES DE BUSCAR A</translation>
+      <translation>HAY UN PROGRAMA EN CURSO: DEJE QUE TERMINE, O PÁRELO Y PULSE R, ANTES DE BUSCAR A</translation>
     </message>
     <message>
       <location filename="app/searchto/searchto_model.py" />
@@ -12366,7 +12396,7 @@
     <message>
       <location filename="app/searchto/searchto_model.py" />
       <source>ENTER FIRST; ONLY A LINE IN A LOOP OR A SUBROUTINE HAS PASSES</source>
-      <translation>PRIMERO ENTER; SÓLO TIENE PASADAS UNA LÍNEA DE UN LAZO O DE UNA SUBRUTINA</translation>
+      <translation>PRIMERO ENTER; SÓLO TIENE PASADAS UNA LÍNEA DE UN BUCLE O DE UNA SUBRUTINA</translation>
     </message>
     <message>
       <location filename="app/searchto/searchto_model.py" />
@@ -12506,7 +12536,7 @@
     <message>
       <location filename="app/searchto/searchto_plan.py" />
       <source>SPINDLE TURNED TO {angle} AND HELD</source>
-      <translation>CABEZAL GIRADO A {angle} Y RETENIDO</translation>
+      <translation>HUSILLO GIRADO A {angle} Y RETENIDO</translation>
     </message>
     <message>
       <location filename="app/searchto/searchto_plan.py" />
@@ -13035,6 +13065,11 @@
     </message>
     <message>
       <location filename="app/sharing/sharing_model.py" />
+      <source>KEEP</source>
+      <translation>CONSERVAR</translation>
+    </message>
+    <message>
+      <location filename="app/sharing/sharing_model.py" />
       <source>LOOKING</source>
       <translation>MIRANDO</translation>
     </message>
@@ -13076,12 +13111,12 @@
     <message>
       <location filename="app/sharing/sharing_model.py" />
       <source>PRESS Y TO KEEP {name} AS IT IS HERE (THE OTHERS STAY VERSIONS), ESC TO LEAVE IT</source>
-      <translation>OPRIMA Y PARA CONSERVAR {name} COMO ESTÁ AQUÍ (LAS OTRAS QUEDAN COMO VERSIONES), ESC PARA DEJARLO</translation>
+      <translation>PULSE Y PARA CONSERVAR {name} COMO ESTÁ AQUÍ (LAS OTRAS QUEDAN COMO VERSIONES), ESC PARA DEJARLO</translation>
     </message>
     <message>
       <location filename="app/sharing/sharing_model.py" />
       <source>PRESS Y TO TAKE {name} AS {desk} HAS IT (WHAT IS HERE STAYS A VERSION), ESC TO LEAVE IT</source>
-      <translation>OPRIMA Y PARA TOMAR {name} COMO LO TIENE {desk} (LO DE AQUÍ QUEDA COMO VERSIÓN), ESC PARA DEJARLO</translation>
+      <translation>PULSE Y PARA TOMAR {name} COMO LO TIENE {desk} (LO DE AQUÍ QUEDA COMO VERSIÓN), ESC PARA DEJARLO</translation>
     </message>
     <message>
       <location filename="app/sharing/sharing_model.py" />
@@ -13411,7 +13446,7 @@
     <message>
       <location filename="app/special/backup_and_restore.py" />
       <source>offsets, versions, counts, settings, log</source>
-      <translation>compensaciones, versiones, ajustes</translation>
+      <translation>correctores, versiones, ajustes</translation>
     </message>
     <message>
       <location filename="app/special/backup_and_restore.py" />
@@ -13541,12 +13576,12 @@
     <message>
       <location filename="app/special/inputs_outputs.py" />
       <source>PRESS Y TO SWITCH {name} OFF, ESC TO LEAVE IT ON</source>
-      <translation>OPRIMA Y PARA APAGAR {name}, ESC PARA DEJARLA ENCENDIDA</translation>
+      <translation>PULSE Y PARA APAGAR {name}, ESC PARA DEJARLA ENCENDIDA</translation>
     </message>
     <message>
       <location filename="app/special/inputs_outputs.py" />
       <source>PRESS Y TO SWITCH {name} ON, ESC TO LEAVE IT OFF</source>
-      <translation>OPRIMA Y PARA ENCENDER {name}, ESC PARA DEJARLA APAGADA</translation>
+      <translation>PULSE Y PARA ENCENDER {name}, ESC PARA DEJARLA APAGADA</translation>
     </message>
     <message>
       <location filename="app/special/inputs_outputs.py" />
@@ -13796,7 +13831,7 @@
     <message>
       <location filename="app/special/machine_file_acceptance.py" />
       <source>PRESS Y TO ACCEPT THE MACHINE FILE AS IT IS NOW, ESC TO LEAVE IT</source>
-      <translation>OPRIMA Y PARA ACEPTAR EL ARCHIVO DE MÁQUINA COMO ESTÁ, ESC PARA DEJARLO</translation>
+      <translation>PULSE Y PARA ACEPTAR EL ARCHIVO DE MÁQUINA COMO ESTÁ, ESC PARA DEJARLO</translation>
     </message>
     <message>
       <location filename="app/special/machine_file_acceptance.py" />
@@ -13871,7 +13906,7 @@
     <message>
       <location filename="app/special/parts_counter.py" />
       <source>NO COUNT: what runs is a dry run and no part. Nor is a restart that leaves something out.</source>
-      <translation>SIN CONT: prueba en vacío, no una pieza. Tampoco lo es un rearranque que omite algo.</translation>
+      <translation>SIN CONT: marcha en vacío, no una pieza. Tampoco lo es un rearranque que omite algo.</translation>
     </message>
     <message>
       <location filename="app/special/parts_counter.py" />
@@ -13906,7 +13941,7 @@
     <message>
       <location filename="app/special/parts_counter.py" />
       <source>PRESS Y TO PUT THE COUNT TO NOUGHT, ESC TO KEEP IT</source>
-      <translation>OPRIMA Y PARA PONER LA CUENTA EN CERO, ESC PARA CONSERVARLA</translation>
+      <translation>PULSE Y PARA PONER LA CUENTA EN CERO, ESC PARA CONSERVARLA</translation>
     </message>
     <message>
       <location filename="app/special/parts_counter.py" />
@@ -13941,7 +13976,7 @@
     <message>
       <location filename="app/special/parts_counter.py" />
       <source>TYPE HOW MANY PARTS AND PRESS RETURN; ESC GOES BACK TO THE LIST</source>
-      <translation>ESCRIBA CUÁNTAS PIEZAS Y OPRIMA RETURN; ESC REGRESA A LA LISTA</translation>
+      <translation>ESCRIBA CUÁNTAS PIEZAS Y PULSE RETURN; ESC REGRESA A LA LISTA</translation>
     </message>
     <message>
       <location filename="app/special/parts_counter.py" />
@@ -14401,7 +14436,7 @@
     <message>
       <location filename="app/special/spindle_limit.py" />
       <source>PRESS Y TO LIFT THE LIMIT, ESC TO KEEP IT</source>
-      <translation>OPRIMA Y PARA QUITAR EL TOPE, ESC PARA CONSERVARLO</translation>
+      <translation>PULSE Y PARA QUITAR EL TOPE, ESC PARA CONSERVARLO</translation>
     </message>
     <message>
       <location filename="app/special/spindle_limit.py" />
@@ -14416,7 +14451,7 @@
     <message>
       <location filename="app/special/spindle_limit.py" />
       <source>TYPE A SPEED AND PRESS RETURN; IT TAKES ARITHMETIC; ESC GOES BACK TO THE LIST</source>
-      <translation>ESCRIBA UNA VELOCIDAD Y OPRIMA RETURN; ACEPTA OPERACIONES; ESC REGRESA A LA LISTA</translation>
+      <translation>ESCRIBA UNA VELOCIDAD Y PULSE RETURN; ACEPTA OPERACIONES; ESC REGRESA A LA LISTA</translation>
     </message>
     <message>
       <location filename="app/special/spindle_limit.py" />
@@ -14611,7 +14646,7 @@
     <message>
       <location filename="app/transfer/serial_transfer.py" />
       <source>PRESS Y TO THROW THE RECEIVED PROGRAM AWAY, ESC TO KEEP IT</source>
-      <translation>OPRIMA Y PARA DESECHAR EL PROGRAMA RECIBIDO, ESC PARA CONSERVARLO</translation>
+      <translation>PULSE Y PARA DESECHAR EL PROGRAMA RECIBIDO, ESC PARA CONSERVARLO</translation>
     </message>
     <message>
       <location filename="app/transfer/serial_transfer.py" />
@@ -14781,7 +14816,7 @@
     <message>
       <location filename="core/alarms/alarm_entry.py" />
       <source>what was asked for: a stop that somebody pressed or programmed</source>
-      <translation>lo que se pidió: un paro que alguien oprimió o programó</translation>
+      <translation>lo que se pidió: un paro que alguien pulsó o programó</translation>
     </message>
     <message>
       <location filename="core/alarms/alarms_page.py" />
@@ -14796,7 +14831,7 @@
     <message>
       <location filename="core/alarms/axis_alarms.py" />
       <source>E-stop is pressed or the safety circuit is open</source>
-      <translation>el paro de emergencia está oprimido o el circuito de seguridad está abierto</translation>
+      <translation>el paro de emergencia está pulsado o el circuito de seguridad está abierto</translation>
     </message>
     <message>
       <location filename="core/alarms/axis_alarms.py" />
@@ -15521,12 +15556,12 @@
     <message>
       <location filename="core/alarms/control_alarms.py" />
       <source>PRESS E-STOP, switch the machine off; save the log (F10), end TurnDesk and start it again</source>
-      <translation>OPRIMA EL PARO DE EMERGENCIA, apague la máquina; guarde la bitácora (F10), cierre TurnDesk y ábralo otra vez</translation>
+      <translation>PULSE EL PARO DE EMERGENCIA, apague la máquina; guarde la bitácora (F10), cierre TurnDesk y ábralo otra vez</translation>
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
       <source>PRESS E-STOP: what is shown is not of now; save the log, end TurnDesk and start it again</source>
-      <translation>OPRIMA EL PARO DE EMERGENCIA: lo que se ve no es de ahora; guarde la bitácora, cierre TurnDesk y ábralo otra vez</translation>
+      <translation>PULSE EL PARO DE EMERGENCIA: lo que se ve no es de ahora; guarde la bitácora, cierre TurnDesk y ábralo otra vez</translation>
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
@@ -15576,7 +15611,7 @@
     <message>
       <location filename="core/alarms/control_alarms.py" />
       <source>check the tool's offset and where the slides stood at the start; Reset</source>
-      <translation>revise la compensación de la herramienta y dónde estaban los carros al arrancar; Reset</translation>
+      <translation>revise el corrector de la herramienta y dónde estaban los carros al arrancar; Reset</translation>
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
@@ -15661,7 +15696,7 @@
     <message>
       <location filename="core/alarms/control_alarms.py" />
       <source>the offset of the tool, or the zero of the part, is wrong</source>
-      <translation>la compensación de la herramienta o el cero de la pieza está mal</translation>
+      <translation>el corrector de la herramienta o el cero de la pieza está mal</translation>
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
@@ -15701,22 +15736,22 @@
     <message>
       <location filename="core/alarms/spindle_alarms.py" />
       <source>E-stop is pressed</source>
-      <translation>el paro de emergencia está oprimido</translation>
+      <translation>el paro de emergencia está pulsado</translation>
     </message>
     <message>
       <location filename="core/alarms/spindle_alarms.py" />
       <source>IF THE SPINDLE TURNS PRESS E-STOP; then check the inverter's cable and power, Reset</source>
-      <translation>SI EL HUSILLO GIRA OPRIMA EL PARO DE EMERGENCIA; luego revise cable y alimentación del variador, Reset</translation>
+      <translation>SI EL HUSILLO GIRA PULSE EL PARO DE EMERGENCIA; luego revise cable y alimentación del variador, Reset</translation>
     </message>
     <message>
       <location filename="core/alarms/spindle_alarms.py" />
       <source>PRESS E-STOP; look at belt and encoder before the spindle is started again</source>
-      <translation>OPRIMA EL PARO DE EMERGENCIA; revise banda y encoder antes de arrancar otra vez el husillo</translation>
+      <translation>PULSE EL PARO DE EMERGENCIA; revise banda y encoder antes de arrancar otra vez el husillo</translation>
     </message>
     <message>
       <location filename="core/alarms/spindle_alarms.py" />
       <source>PRESS E-STOP; then find out why before it is started again</source>
-      <translation>OPRIMA EL PARO DE EMERGENCIA; luego busque por qué antes de arrancarlo otra vez</translation>
+      <translation>PULSE EL PARO DE EMERGENCIA; luego busque por qué antes de arrancarlo otra vez</translation>
     </message>
     <message>
       <location filename="core/alarms/spindle_alarms.py" />
@@ -16096,7 +16131,7 @@
     <message>
       <location filename="core/alarms/spindle_alarms.py" />
       <source>the spindle is not at its angle</source>
-      <translation>el cabezal no está en su ángulo</translation>
+      <translation>el husillo no está en su ángulo</translation>
     </message>
     <message>
       <location filename="core/alarms/spindle_alarms.py" />
@@ -16181,7 +16216,7 @@
     <message>
       <location filename="core/alarms/station_alarms.py" />
       <source>Reset was pressed: the program was given up</source>
-      <translation>se oprimió Reset: el programa se abandonó</translation>
+      <translation>se pulsó Reset: el programa se abandonó</translation>
     </message>
     <message>
       <location filename="core/alarms/station_alarms.py" />
@@ -16191,7 +16226,7 @@
     <message>
       <location filename="core/alarms/station_alarms.py" />
       <source>an E-stop button was pressed</source>
-      <translation>se oprimió un botón de paro de emergencia</translation>
+      <translation>se pulsó un botón de paro de emergencia</translation>
     </message>
     <message>
       <location filename="core/alarms/station_alarms.py" />
@@ -16216,7 +16251,7 @@
     <message>
       <location filename="core/alarms/station_alarms.py" />
       <source>feed hold was pressed</source>
-      <translation>se oprimió la retención de avance</translation>
+      <translation>se pulsó la retención de avance</translation>
     </message>
     <message>
       <location filename="core/alarms/station_alarms.py" />
@@ -16606,12 +16641,12 @@
     <message>
       <location filename="core/executor/changed_offsets.py" />
       <source>another program is under way: new offsets are taken by the same program only</source>
-      <translation>hay otro programa en marcha: las compensaciones nuevas sólo las toma el mismo programa</translation>
+      <translation>hay otro programa en marcha: los correctores nuevos sólo los toma el mismo programa</translation>
     </message>
     <message>
       <location filename="core/executor/changed_offsets.py" />
       <source>the changed offsets are in force</source>
-      <translation>las compensaciones cambiadas están en vigor</translation>
+      <translation>los correctores cambiados están en vigor</translation>
     </message>
     <message>
       <location filename="core/executor/command_handler.py" />
@@ -16626,7 +16661,7 @@
     <message>
       <location filename="core/executor/command_handler.py" />
       <source>a program is under way: it keeps the offsets that it was proved with</source>
-      <translation>hay un programa en curso: conserva las compensaciones con que se comprobó</translation>
+      <translation>hay un programa en curso: conserva los correctores con que se comprobó</translation>
     </message>
     <message>
       <location filename="core/executor/command_handler.py" />
@@ -16646,7 +16681,7 @@
     <message>
       <location filename="core/executor/command_handler.py" />
       <source>an alarm stands: press Reset first</source>
-      <translation>hay una alarma: oprima primero Reset</translation>
+      <translation>hay una alarma: pulse primero Reset</translation>
     </message>
     <message>
       <location filename="core/executor/command_handler.py" />
@@ -16706,7 +16741,7 @@
     <message>
       <location filename="core/executor/command_handler.py" />
       <source>press both palm buttons</source>
-      <translation>oprima los dos pulsadores</translation>
+      <translation>pulse los dos pulsadores</translation>
     </message>
     <message>
       <location filename="core/executor/command_handler.py" />
@@ -16741,7 +16776,7 @@
     <message>
       <location filename="core/executor/command_handler.py" />
       <source>the offsets of the tables are in force</source>
-      <translation>las compensaciones de las tablas están vigentes</translation>
+      <translation>los correctores de las tablas están vigentes</translation>
     </message>
     <message>
       <location filename="core/executor/command_handler.py" />
@@ -16816,7 +16851,7 @@
     <message>
       <location filename="core/executor/drive_test.py" />
       <source>feed hold is pressed</source>
-      <translation>la retención de avance está oprimida</translation>
+      <translation>la retención de avance está pulsada</translation>
     </message>
     <message>
       <location filename="core/executor/drive_test.py" />
@@ -16926,7 +16961,7 @@
     <message>
       <location filename="core/executor/handwheel.py" />
       <source>a key or finger came while it was turned</source>
-      <translation>se oprimió una tecla o la pantalla mientras giraba</translation>
+      <translation>se pulsó una tecla o la pantalla mientras giraba</translation>
     </message>
     <message>
       <location filename="core/executor/handwheel.py" />
@@ -17026,12 +17061,12 @@
     <message>
       <location filename="core/executor/interruption_watch.py" />
       <source>go on there by SEARCHTO (F6), or press Y</source>
-      <translation>siga allí con BUSCAR A (F6), u oprima la tecla Y</translation>
+      <translation>siga allí con BUSCAR A (F6), u pulse la tecla Y</translation>
     </message>
     <message>
       <location filename="core/executor/interruption_watch.py" />
       <source>jog it clear, press Y</source>
-      <translation>sáquela a mano, oprima la tecla Y</translation>
+      <translation>sáquela a mano, pulse la tecla Y</translation>
     </message>
     <message>
       <location filename="core/executor/interruption_watch.py" />
@@ -17261,7 +17296,7 @@
     <message>
       <location filename="core/executor/program_run.py" />
       <source>PROOF WITH THE CHANGED OFFSETS</source>
-      <translation>COMPROBACIÓN CON LAS COMPENSACIONES CAMBIADAS</translation>
+      <translation>COMPROBACIÓN CON LOS CORRECTORES CAMBIADOS</translation>
     </message>
     <message>
       <location filename="core/executor/program_run.py" />
@@ -17421,7 +17456,7 @@
     <message>
       <location filename="core/executor/spindle_control.py" />
       <source>the spindle's angle</source>
-      <translation>el ángulo del cabezal</translation>
+      <translation>el ángulo del husillo</translation>
     </message>
     <message>
       <location filename="core/executor/spindle_control.py" />
@@ -17431,7 +17466,7 @@
     <message>
       <location filename="core/executor/spindle_orientation.py" />
       <source>nothing at this machine stops the spindle at an angle</source>
-      <translation>nada en esta máquina para el cabezal en un ángulo</translation>
+      <translation>nada en esta máquina para el husillo en un ángulo</translation>
     </message>
     <message>
       <location filename="core/executor/spindle_orientation.py" />
@@ -17441,7 +17476,7 @@
     <message>
       <location filename="core/executor/standstill.py" />
       <source>SPINDLE ORIENT</source>
-      <translation>ORIENTAR CABEZAL</translation>
+      <translation>ORIENTAR HUSILLO</translation>
     </message>
     <message>
       <location filename="core/executor/standstill.py" />
@@ -17471,12 +17506,12 @@
     <message>
       <location filename="core/executor/start_conditions.py" />
       <source>E-stop is pressed: release it</source>
-      <translation>el paro de emergencia está oprimido: suéltelo</translation>
+      <translation>el paro de emergencia está pulsado: suéltelo</translation>
     </message>
     <message>
       <location filename="core/executor/start_conditions.py" />
       <source>an alarm stands: clear its cause and press Reset</source>
-      <translation>hay una alarma: elimine su causa y oprima Reset</translation>
+      <translation>hay una alarma: elimine su causa y pulse Reset</translation>
     </message>
     <message>
       <location filename="core/executor/start_conditions.py" />
@@ -17501,7 +17536,7 @@
     <message>
       <location filename="core/executor/start_conditions.py" />
       <source>line %1: the driver of this machine's spindle cannot stop it at an angle</source>
-      <translation>línea %1: el controlador del cabezal de esta máquina no puede pararlo en un ángulo</translation>
+      <translation>línea %1: el controlador del husillo de esta máquina no puede pararlo en un ángulo</translation>
     </message>
     <message>
       <location filename="core/executor/start_conditions.py" />
@@ -17591,7 +17626,7 @@
     <message>
       <location filename="core/executor/start_conditions.py" />
       <source>the proof belongs to another program or to other offsets: load it again</source>
-      <translation>la comprobación es de otro programa o de otras compensaciones: cárguelo de nuevo</translation>
+      <translation>la comprobación es de otro programa o de otros correctores: cárguelo de nuevo</translation>
     </message>
     <message>
       <location filename="core/executor/start_conditions.py" />
@@ -17616,7 +17651,7 @@
     <message>
       <location filename="core/executor/start_conditions.py" />
       <source>tool offset %1 has never been set</source>
-      <translation>la compensación de herramienta %1 nunca se puso</translation>
+      <translation>el corrector de herramienta %1 nunca se puso</translation>
     </message>
     <message>
       <location filename="core/executor/station_signals.py" />
@@ -17702,6 +17737,11 @@
       <location filename="core/executor/thread_path.py" />
       <source>the spindle turned the wrong way, at %1 rpm</source>
       <translation>el husillo giró al revés, a %1 rpm</translation>
+    </message>
+    <message>
+      <location filename="core/executor/touch_off.py" />
+      <source>%1 in</source>
+      <translation>%1 pulg</translation>
     </message>
     <message>
       <location filename="core/executor/touch_off.py" />
@@ -18311,7 +18351,7 @@
     <message>
       <location filename="core/interpreter/klartext/cycle_moves.py" />
       <source>%1 is no angle of a spindle.</source>
-      <translation>%1 no es un ángulo de un cabezal.</translation>
+      <translation>%1 no es un ángulo de un husillo.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/cycle_moves.py" />
@@ -18416,7 +18456,7 @@
     <message>
       <location filename="core/interpreter/klartext/cycle_moves.py" />
       <source>this machine's spindle is not oriented</source>
-      <translation>el cabezal de esta máquina no se orienta</translation>
+      <translation>el husillo de esta máquina no se orienta</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/cycle_moves.py" />
@@ -18771,7 +18811,7 @@
     <message>
       <location filename="core/interpreter/klartext/hole_cycles.py" />
       <source>Cycle 204 goes through the hole with the spindle at an angle, and %1.</source>
-      <translation>El ciclo 204 pasa por el agujero con el cabezal en un ángulo, y %1.</translation>
+      <translation>El ciclo 204 pasa por el agujero con el husillo en un ángulo, y %1.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/hole_cycles.py" />
@@ -19066,7 +19106,7 @@
     <message>
       <location filename="core/interpreter/klartext/m_functions.py" />
       <source>M19 stops the spindle at an angle, and %1.</source>
-      <translation>M19 para el cabezal en un ángulo, y %1.</translation>
+      <translation>M19 para el husillo en un ángulo, y %1.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/m_functions.py" />
@@ -19846,7 +19886,7 @@
     <message>
       <location filename="core/interpreter/klartext/tool_call.py" />
       <source>Set the tool's offset.</source>
-      <translation>Ponga la compensación de la herramienta.</translation>
+      <translation>Ponga el corrector de la herramienta.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/tool_call.py" />
@@ -19866,7 +19906,7 @@
     <message>
       <location filename="core/interpreter/klartext/tool_call.py" />
       <source>Tool %1 has no offset; 0 is used, and the machine will refuse to start.</source>
-      <translation>La herramienta %1 no tiene compensación; se usa 0, y la máquina se negará a arrancar.</translation>
+      <translation>La herramienta %1 no tiene corrector; se usa 0, y la máquina se negará a arrancar.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/tool_call.py" />
@@ -19911,7 +19951,7 @@
     <message>
       <location filename="core/interpreter/machine_requirements.py" />
       <source>a spindle that is stopped at an angle</source>
-      <translation>un cabezal que se para en un ángulo</translation>
+      <translation>un husillo que se para en un ángulo</translation>
     </message>
     <message>
       <location filename="core/interpreter/machine_requirements.py" />
@@ -20386,7 +20426,7 @@
     <message>
       <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
       <source>Add LF where the loop ends.</source>
-      <translation>Agregue LF donde termina el lazo.</translation>
+      <translation>Agregue LF donde termina el bucle.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
@@ -20401,7 +20441,7 @@
     <message>
       <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
       <source>LF ends no loop.</source>
-      <translation>LF no termina ningún lazo.</translation>
+      <translation>LF no termina ningún bucle.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
@@ -20561,7 +20601,7 @@
     <message>
       <location filename="core/interpreter/omniturn/nose_compensation.py" />
       <source>Enter the nose radius among the offsets.</source>
-      <translation>Ponga el radio de punta entre las compensaciones.</translation>
+      <translation>Ponga el radio de punta entre los correctores.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/nose_compensation.py" />
@@ -20691,7 +20731,7 @@
     <message>
       <location filename="core/interpreter/omniturn/omniturn_interpreter.py" />
       <source>Lower the counts of the loops.</source>
-      <translation>Baje las cuentas de los lazos.</translation>
+      <translation>Baje las cuentas de los bucles.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/omniturn_interpreter.py" />
@@ -20726,7 +20766,7 @@
     <message>
       <location filename="core/interpreter/omniturn/omniturn_program.py" />
       <source>A comment stands inside a loop.</source>
-      <translation>Hay un comentario dentro de un lazo.</translation>
+      <translation>Hay un comentario dentro de un bucle.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/omniturn_program.py" />
@@ -20756,7 +20796,7 @@
     <message>
       <location filename="core/interpreter/omniturn/omniturn_program.py" />
       <source>Press Return after it.</source>
-      <translation>Oprima Return después.</translation>
+      <translation>Pulse Return después.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/omniturn_program.py" />
@@ -21261,7 +21301,7 @@
     <message>
       <location filename="core/interpreter/omniturn/tools_and_offsets.py" />
       <source>%1 have no offset; 0 is used, and the machine will refuse to start.</source>
-      <translation>%1 no tienen compensación; se usa 0 y la máquina no arrancará.</translation>
+      <translation>%1 no tienen corrector; se usa 0 y la máquina no arrancará.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/tools_and_offsets.py" />
@@ -21286,7 +21326,7 @@
     <message>
       <location filename="core/interpreter/omniturn/tools_and_offsets.py" />
       <source>Set their offsets.</source>
-      <translation>Ponga sus compensaciones.</translation>
+      <translation>Ponga sus correctores.</translation>
     </message>
     <message>
       <location filename="core/interpreter/restart/loop_passes.py" />
@@ -21296,7 +21336,7 @@
     <message>
       <location filename="core/interpreter/restart/loop_passes.py" />
       <source>Line %1 is run more than %2 times: choose the line that begins the loop.</source>
-      <translation>La línea %1 corre más de %2 veces: elija la línea que empieza el lazo.</translation>
+      <translation>La línea %1 corre más de %2 veces: elija la línea que empieza el bucle.</translation>
     </message>
     <message>
       <location filename="core/interpreter/restart/loop_passes.py" />
@@ -21421,7 +21461,7 @@
     <message>
       <location filename="core/interpreter/restart/restart_lines.py" />
       <source>is inside the loop of lines %1 to %2.</source>
-      <translation>está dentro del lazo de las líneas %1 a %2.</translation>
+      <translation>está dentro del bucle de las líneas %1 a %2.</translation>
     </message>
     <message>
       <location filename="core/interpreter/restart/restart_lines.py" />
@@ -21971,7 +22011,7 @@
     <message>
       <location filename="core/interpreter/sinumerik/groove_cycle.py" />
       <source>%1 needs a tool with its offset.</source>
-      <translation>%1 necesita una herramienta con su compensación.</translation>
+      <translation>%1 necesita una herramienta con su corrector.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/groove_cycle.py" />
@@ -21986,12 +22026,12 @@
     <message>
       <location filename="core/interpreter/sinumerik/groove_cycle.py" />
       <source>Correct the offsets of its two corners.</source>
-      <translation>Corrija las compensaciones de sus dos esquinas.</translation>
+      <translation>Corrija los correctores de sus dos esquinas.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/groove_cycle.py" />
       <source>Set %1 on the page of tool offsets (F8).</source>
-      <translation>Ponga %1 en la página de compensaciones de herramienta (F8).</translation>
+      <translation>Ponga %1 en la página de correctores de herramienta (F8).</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/groove_cycle.py" />
@@ -22541,7 +22581,7 @@
     <message>
       <location filename="core/interpreter/sinumerik/radius_compensation.py" />
       <source>Enter the nose radius among the offsets (F8).</source>
-      <translation>Ponga el radio de punta entre las compensaciones (F8).</translation>
+      <translation>Ponga el radio de punta entre los correctores (F8).</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/radius_compensation.py" />
@@ -22646,7 +22686,7 @@
     <message>
       <location filename="core/interpreter/sinumerik/radius_compensation.py" />
       <source>the tool has no tip quadrant: G%1 takes its offset as that of the nose's centre.</source>
-      <translation>la herramienta no tiene cuadrante de punta: G%1 toma su compensación como la del centro del radio.</translation>
+      <translation>la herramienta no tiene cuadrante de punta: G%1 toma su corrector como el del centro del radio.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/radius_compensation.py" />
@@ -22986,7 +23026,7 @@
     <message>
       <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
       <source>%1 counts from an angle, and the spindle is held at none.</source>
-      <translation>%1 cuenta desde un ángulo, y el cabezal no está retenido en ninguno.</translation>
+      <translation>%1 cuenta desde un ángulo, y el husillo no está retenido en ninguno.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
@@ -23026,7 +23066,7 @@
     <message>
       <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
       <source>%1: %2 is no angle of a spindle.</source>
-      <translation>%1: %2 no es un ángulo de un cabezal.</translation>
+      <translation>%1: %2 no es un ángulo de un husillo.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
@@ -23081,7 +23121,7 @@
     <message>
       <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
       <source>Take the machine sinumerik-live, whose spindle is C.</source>
-      <translation>Tome la máquina sinumerik-live, cuyo cabezal es C.</translation>
+      <translation>Tome la máquina sinumerik-live, cuyo husillo es C.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
@@ -23121,12 +23161,12 @@
     <message>
       <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
       <source>the spindle of this machine is no axis C: %1, and its drive only brings it to an angle.</source>
-      <translation>el cabezal de esta máquina no es un eje C: %1, y su accionamiento solo lo lleva a un ángulo.</translation>
+      <translation>el husillo de esta máquina no es un eje C: %1, y su accionamiento solo lo lleva a un ángulo.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
       <source>the spindle of this machine is not oriented: %1, and nothing else brings it to an angle.</source>
-      <translation>el cabezal de esta máquina no se orienta: %1, y nada más lo lleva a un ángulo.</translation>
+      <translation>el husillo de esta máquina no se orienta: %1, y nada más lo lleva a un ángulo.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/stock_removal.py" />
@@ -23636,12 +23676,12 @@
     <message>
       <location filename="core/interpreter/sinumerik/tools_and_edges.py" />
       <source>%1 does not exist: T%2 has no such cutting edge in the tool offsets.</source>
-      <translation>%1 no existe: T%2 no tiene ese filo en las compensaciones de herramienta.</translation>
+      <translation>%1 no existe: T%2 no tiene ese filo en los correctores de herramienta.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/tools_and_edges.py" />
       <source>%1 has no tool offset; 0 is used, and the machine will refuse to start.</source>
-      <translation>%1 no tiene compensación de herramienta; se usa 0 y la máquina no arrancará.</translation>
+      <translation>%1 no tiene corrector de herramienta; se usa 0 y la máquina no arrancará.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/tools_and_edges.py" />
@@ -23661,7 +23701,7 @@
     <message>
       <location filename="core/interpreter/sinumerik/tools_and_edges.py" />
       <source>Set the tool's offset on the page of tool offsets (F8); tools are T1 to T32.</source>
-      <translation>Ponga la compensación de la herramienta en la página de compensaciones (F8); las herramientas son de T1 a T32.</translation>
+      <translation>Ponga el corrector de la herramienta en la página de correctores (F8); las herramientas son de T1 a T32.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/tools_and_edges.py" />
@@ -24701,7 +24741,7 @@
     <message>
       <location filename="core/language/klartext/klartext_milling_book.py" />
       <source>Bores from below: through the hole with the spindle at Q336 and beside the centre by Q251.</source>
-      <translation>Mandrina desde abajo: por el agujero con el cabezal en Q336 y a Q251 del centro.</translation>
+      <translation>Mandrina desde abajo: por el agujero con el husillo en Q336 y a Q251 del centro.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/klartext_milling_book.py" />
@@ -26021,12 +26061,12 @@
     <message>
       <location filename="core/language/omniturn/other_controls.py" />
       <source>%1: T%2 takes tool %3 with its offset here%4.</source>
-      <translation>%1: aquí T%2 toma la herramienta %3 con su compensación%4.</translation>
+      <translation>%1: aquí T%2 toma la herramienta %3 con su corrector%4.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/other_controls.py" />
       <source>, and a second offset is D%1</source>
-      <translation>, y una segunda compensación es D%1</translation>
+      <translation>, y un segundo corrector es D%1</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/other_controls.py" />
@@ -26131,7 +26171,7 @@
     <message>
       <location filename="core/language/omniturn/other_controls.py" />
       <source>Part zero is in the tool's offset here, and a work shift is G10.</source>
-      <translation>El cero de pieza está aquí en la compensación de la herramienta, y un desplazamiento es G10.</translation>
+      <translation>El cero de pieza está aquí en el corrector de la herramienta, y un desplazamiento es G10.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/other_controls.py" />
@@ -26156,7 +26196,7 @@
     <message>
       <location filename="core/language/omniturn/other_controls.py" />
       <source>T0 takes the tool's offset away here.</source>
-      <translation>Aquí T0 quita la compensación de la herramienta.</translation>
+      <translation>Aquí T0 quita el corrector de la herramienta.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/other_controls.py" />
@@ -26176,12 +26216,12 @@
     <message>
       <location filename="core/language/omniturn/other_controls.py" />
       <source>The offset of a tool is T here, and a second one D.</source>
-      <translation>La compensación de una herramienta es aquí T, y una segunda D.</translation>
+      <translation>El corrector de una herramienta es aquí T, y el segundo, D.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/other_controls.py" />
       <source>The offset of a tool is T here.</source>
-      <translation>La compensación de una herramienta es aquí T.</translation>
+      <translation>El corrector de una herramienta es aquí T.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/other_controls.py" />
@@ -26446,7 +26486,7 @@
     <message>
       <location filename="core/language/omniturn/word_faults.py" />
       <source>%1 is out of range: a loop runs %2 to %3 times.</source>
-      <translation>%1 está fuera de rango: un lazo corre de %2 a %3 veces.</translation>
+      <translation>%1 está fuera de rango: un bucle corre de %2 a %3 veces.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/word_faults.py" />
@@ -26471,7 +26511,7 @@
     <message>
       <location filename="core/language/omniturn/word_faults.py" />
       <source>%1: offsets go from 1 to 32.</source>
-      <translation>%1: las compensaciones van de 1 a 32.</translation>
+      <translation>%1: los correctores van de 1 a 32.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/word_faults.py" />
@@ -27376,7 +27416,7 @@
     <message>
       <location filename="core/part/insert_codes.py" />
       <source>size of insert shape %1</source>
-      <translation>tamaño de el inserto de forma %1</translation>
+      <translation>tamaño del inserto de forma %1</translation>
     </message>
     <message>
       <location filename="core/part/insert_codes.py" />
@@ -27776,7 +27816,7 @@
     <message>
       <location filename="core/proving/edge_checks.py" />
       <source>%1 cuts %2 deep with the back of its insert.</source>
-      <translation>%1 corta a %2 de profundidad con la parte trasera de su plaquita.</translation>
+      <translation>%1 corta a %2 de profundidad con la parte trasera de su inserto.</translation>
     </message>
     <message>
       <location filename="core/proving/edge_checks.py" />
@@ -27816,7 +27856,7 @@
     <message>
       <location filename="core/proving/edge_checks.py" />
       <source>%1 goes in at %2°, and the back of its insert clears %3°.</source>
-      <translation>%1 entra a %2°, y la parte trasera de su plaquita libra %3°.</translation>
+      <translation>%1 entra a %2°, y la parte trasera de su inserto libra %3°.</translation>
     </message>
     <message>
       <location filename="core/proving/edge_checks.py" />
@@ -27851,7 +27891,7 @@
     <message>
       <location filename="core/proving/machine_checks.py" />
       <source>check the %1 word, the offset of %2 and any G10 or G92</source>
-      <translation>revise la palabra %1, la compensación de %2 y cualquier G10 o G92</translation>
+      <translation>revise la palabra %1, el corrector de %2 y cualquier G10 o G92</translation>
     </message>
     <message>
       <location filename="core/proving/machine_checks.py" />
@@ -27976,7 +28016,7 @@
     <message>
       <location filename="core/proving/part_checks.py" />
       <source>An insert cuts with its back.</source>
-      <translation>Una plaquita corta con su parte trasera.</translation>
+      <translation>Un inserto corta con su parte trasera.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -28026,7 +28066,7 @@
     <message>
       <location filename="core/proving/part_checks.py" />
       <source>Check K, X of the last pass, the X where it starts, and the pitch of the insert.</source>
-      <translation>Revise K, la X de la última pasada, la X donde empieza y el paso de la plaquita.</translation>
+      <translation>Revise K, la X de la última pasada, la X donde empieza y el paso del inserto.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -28076,7 +28116,7 @@
     <message>
       <location filename="core/proving/part_checks.py" />
       <source>It is deeper than a sharp V of the lead; or the lead is no multiple of the pitch of the insert.</source>
-      <translation>Es más profunda que una V aguda de ese paso; o el paso no es múltiplo del de la plaquita.</translation>
+      <translation>Es más profunda que una V aguda de ese paso; o el paso no es múltiplo del del inserto.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -28296,7 +28336,7 @@
     <message>
       <location filename="core/proving/part_checks.py" />
       <source>Use a tool of the other hand, a slimmer insert, or cut from the other side.</source>
-      <translation>Use una herramienta de la otra mano, una plaquita más fina, o corte desde el otro lado.</translation>
+      <translation>Use una herramienta de la otra mano, un inserto más fino, o corte desde el otro lado.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -28441,7 +28481,7 @@
     <message>
       <location filename="core/proving/program_branches.py" />
       <source>Fewer conditional calls in loops, or subroutines that end where they begin, make all provable.</source>
-      <translation>Con menos llamadas condicionales en lazos, o subrutinas que acaban donde empiezan, todo se puede comprobar.</translation>
+      <translation>Con menos llamadas condicionales en bucles, o subrutinas que acaban donde empiezan, todo se puede comprobar.</translation>
     </message>
     <message>
       <location filename="core/proving/program_branches.py" />
@@ -28686,7 +28726,7 @@
     <message>
       <location filename="core/quality/measured_feature.py" />
       <source>%1: offsets are 1 to %2, not %3</source>
-      <translation>%1: las compensaciones son 1 a %2, no %3</translation>
+      <translation>%1: los correctores son 1 a %2, no %3</translation>
     </message>
     <message>
       <location filename="core/quality/measured_feature.py" />
@@ -29726,7 +29766,7 @@
     <message>
       <location filename="core/shapes/threading.py" />
       <source>%1 cuts %2°, this thread has %3°: take another insert.</source>
-      <translation>%1 corta %2°, esta rosca tiene %3°: tome otra plaquita.</translation>
+      <translation>%1 corta %2°, esta rosca tiene %3°: tome otro inserto.</translation>
     </message>
     <message>
       <location filename="core/shapes/threading.py" />
@@ -29741,7 +29781,7 @@
     <message>
       <location filename="core/shapes/threading.py" />
       <source>%1, not %2: take another insert.</source>
-      <translation>%1, no %2: tome otra plaquita.</translation>
+      <translation>%1, no %2: tome otro inserto.</translation>
     </message>
     <message>
       <location filename="core/shapes/threading.py" />
@@ -30091,7 +30131,7 @@
     <message>
       <location filename="core/store/backup.py" />
       <source>a row of %1 points to a row of %2 that is not there</source>
-      <translation>un renglón de %1 apunta a un renglón de %2 que no está</translation>
+      <translation>una fila de %1 apunta a una fila de %2 que no está</translation>
     </message>
     <message>
       <location filename="core/store/backup.py" />
@@ -30321,7 +30361,7 @@
     <message>
       <location filename="core/store/offset_tables.py" />
       <source>%1%2 does not exist; offsets are %31…32</source>
-      <translation>%1%2 no existe; las compensaciones son %31…32</translation>
+      <translation>%1%2 no existe; los correctores son %31…32</translation>
     </message>
     <message>
       <location filename="core/store/offset_tables.py" />
@@ -30391,7 +30431,7 @@
     <message>
       <location filename="core/store/offset_tables.py" />
       <source>there is no offset change to undo</source>
-      <translation>no hay cambio de compensación que deshacer</translation>
+      <translation>no hay cambio de corrector que deshacer</translation>
     </message>
     <message>
       <location filename="core/store/people.py" />
@@ -30481,7 +30521,7 @@
     <message>
       <location filename="core/store/store_export.py" />
       <source># Offsets in inches, X a radius.</source>
-      <translation># Compensaciones en pulgadas, X es radio.</translation>
+      <translation># Correctores en pulgadas, X es radio.</translation>
     </message>
     <message>
       <location filename="core/store/store_export.py" />

@@ -18,6 +18,8 @@ KNOWN = {
     "SPINDLE %1": "HUSILLO %1",
     "spindle has stopped": "el husillo se detuvo",
     "LINE %1": "LÍNEA %1",
+    "in": "pulg",
+    "in/min": "pulg/min",
     "{number} OF {count}": "{number} DE {count}",
 }
 
@@ -36,6 +38,11 @@ def spanish() -> Catalogue:
         ("3 OF 9 PARTS", "DE 9 PIEZAS, 3"),
         ("REFUSED: the entry is longer than 80 characters", "RECHAZADO: la entrada pasa de 80 caracteres"),
         ("READY  ·  X  ·  READY", "LISTO  ·  X  ·  LISTO"),
+        ("SPINDLE HAS STOPPED · READY", "EL HUSILLO SE DETUVO · LISTO"),
+        ("LINE 4: X · 3 OF 9 PARTS · READY", "LÍNEA 4: X · DE 9 PIEZAS, 3 · LISTO"),
+        ("300.00 in/min", "300.00 pulg/min"),
+        ("0.00800 in … 0.08000 in", "0.00800 pulg … 0.08000 pulg"),
+        ("4 in line", "4 in line"),
         ("−0.12345", "−0.12345"),
         ("bushing.nc", "bushing.nc"),
         ("", ""),
@@ -48,9 +55,9 @@ def test_what_is_known_is_told(spanish: Catalogue, english: str, told: str) -> N
 
 
 def test_the_more_exact_sentence_wins() -> None:
-    known = {"%1 FIRST": "PRIMERO %1", "PRESS %1 FIRST": "OPRIMA PRIMERO %1"}
+    known = {"%1 FIRST": "PRIMERO %1", "PRESS %1 FIRST": "PULSE PRIMERO %1"}
     catalogue = Catalogue(lambda text: known.get(text, ""), known)
-    assert catalogue.translate("PRESS R FIRST") == "OPRIMA PRIMERO R"
+    assert catalogue.translate("PRESS R FIRST") == "PULSE PRIMERO R"
     assert catalogue.translate("STOP FIRST") == "PRIMERO STOP"
 
 

@@ -21,10 +21,12 @@ from app.screen.main_window import MainWindow
 from app.screen.page_base import Page
 from app.screen.theme import DARK
 from app.shapes.shape_form import ShapeForm
+from app.special.logged_events import event_row
 from core.alarms import CATALOGUE, Entry
 from core.executor.snapshot import Alarm
 from core.shapes.shape_setting import Setting
 from core.shapes.shape_table import SHAPES
+from core.store.store_rows import EventRow
 from resources.translations.collect import HERE, HOLE, texts
 from resources.translations.collect import catalogue as written
 from tests.screen.hands import Hands, Key
@@ -87,6 +89,24 @@ def test_an_alarm_of_the_control_is_told_in_spanish(spanish: Hands, monkeypatch:
     assert "libere el carro" in texts
     assert "LÍNEA 4" in texts
     assert "  ·  LINE" not in texts
+
+
+@pytest.mark.parametrize(
+    ("kind", "english", "told"),
+    [
+        ("estop", "701 E-STOP: an E-stop button was pressed", "701 PARO DE EMERGENCIA: se pulsó un botón"),
+        ("alarm", "102 FOLLOWING ERROR: Z is 2.1 off its setpoint", "102 ERROR DE SEGUIMIENTO: Z está a 2.1"),
+        ("alarm", "while stopping x: no answer", "al parar x: no answer"),
+        (
+            "accepted",
+            "machine file a.toml accepted by BEN",
+            "archivo de máquina a.toml aceptado por BEN",
+        ),
+    ],
+)
+def test_the_log_is_told_in_spanish(spanish: Hands, kind: str, english: str, told: str) -> None:
+    row = event_row(EventRow("2026-03-02T08:00:00.000Z", kind, english))
+    assert told in row.cells[2]
 
 
 @pytest.mark.parametrize("entry", CATALOGUE.values(), ids=str)
