@@ -31,10 +31,12 @@ from app.screen import page_table
 from app.screen.look import Look, dress, load_fonts
 from app.screen.main_window import MainWindow
 from app.screen.theme import PALETTES
+from core.access.access_table import Level
 from core.executor.snapshot import State
 from core.store import job_queue, measured_parts, part_cycles, tool_lives
 from core.store.measured_parts import FeatureRow, ReadingRow
 from core.store.part_cycles import CycleRow, StopRow
+from core.store.people import PersonRow
 from core.store.store import Store
 from core.store.store_rows import Kind
 from core.store.tool_lives import LifeRow
@@ -234,6 +236,7 @@ def _pictures(out: Path, looks: Looks) -> Iterator[Path]:
     stage.close()
     journal.close()
     yield from _of_the_mill(out, looks)
+    yield from _of_levels(out, looks)
 
 
 def _of_the_mill(out: Path, looks: Looks) -> Iterator[Path]:
@@ -247,6 +250,21 @@ def _of_the_mill(out: Path, looks: Looks) -> Iterator[Path]:
     stage.tick(lambda: stage.desk.snapshot().block >= TILTED_BLOCK)
     yield from taken(stage.desk, out, True, looks, mill=True)
     stage.close()
+
+
+def _of_levels(out: Path, looks: Looks) -> Iterator[Path]:
+    """Signing in, where people have been entered."""
+    with TemporaryDirectory() as home:
+        os.environ["TURNDESK_HOME"] = home
+        journal = Journal.at_home()
+        stage = Stage(journal)
+        for name, level in (("ANNA", Level.SERVICE), ("BEN", Level.SETUP)):
+            journal.keep_person(PersonRow(name, level, b"-", b"-"))  # nobody has to sign in
+        stage.desk.access.reload()
+        stage.make_ready()
+        yield from taken(stage.desk, out, False, looks, levels=True)
+        stage.close()
+        journal.close()
 
 
 def _z(desk: Desk) -> float:
@@ -270,6 +288,7 @@ class Scene:
     language: str = ""  # that of all others, unless another is told
     mill: bool = False  # the tilted sample on the mill with an A-C table
     line: int = 0  # where the editor's cursor is put
+    levels: bool = False  # people have been entered
 
 
 # One line for each picture.
@@ -308,6 +327,7 @@ SCENES = (
     Scene("lamps", f"F10 {'Down ' * 14}Enter"),
     Scene("automatic", running=True),
     Scene("spanish", running=True, language="es"),
+    Scene("levels", f'F10 {"Down " * 15}Enter Down Enter "12', levels=True),
     Scene("mill-editor", "F3", mill=True, line=18),
     Scene("mill", running=True, mill=True),
 )
@@ -320,6 +340,7 @@ def taken(
     looks: Looks,
     *,
     mill: bool = False,
+    levels: bool = False,
     heard: Callable[[], None] = lambda: None,
 ) -> Iterator[Path]:
     """The scenes of a machine that runs or stands, at every size and in every theme.
@@ -331,7 +352,7 @@ def taken(
         dress(PALETTES[theme])
         for width, height in looks.sizes:
             for scene in SCENES:
-                if (scene.running, scene.mill) != (running, mill):
+                if (scene.running, scene.mill, scene.levels) != (running, mill, levels):
                     continue
                 desk.settings.choose("theme", theme)
                 desk.settings.choose("language", scene.language or looks.language)

@@ -59,6 +59,7 @@ def main(argv: list[str] | None = None) -> int:
     """Write the pictures; the exit status."""
     parser = argparse.ArgumentParser(prog="python -m tests.screen.scope_pictures", description=__doc__)
     parser.add_argument("out", metavar="OUT", type=Path, help="folder for the PNG files")
+    parser.add_argument("--language", default="en", choices=("en", "es"), help="of the screen; default en")
     args = parser.parse_args(argv)
     os.environ["QT_QPA_PLATFORM"] = "offscreen"
     args.out.mkdir(parents=True, exist_ok=True)
@@ -68,12 +69,14 @@ def main(argv: list[str] | None = None) -> int:
     for name, program, wear, curves, keys in PICTURES:
         with TemporaryDirectory() as folder:
             os.environ["TURNDESK_HOME"] = folder
-            _picture(args.out / f"{name}.png", Path(folder), program, wear, curves, keys)
+            _picture(args.out / f"{name}.png", Path(folder), program, wear, curves, keys, args.language)
         sys.stdout.write(f"{args.out / name}.png\n")
     return 0
 
 
-def _picture(path: Path, home: Path, program: str, wear: Wear, curves: tuple[str, ...], keys: str) -> None:
+def _picture(
+    path: Path, home: Path, program: str, wear: Wear, curves: tuple[str, ...], keys: str, language: str
+) -> None:
     """One machine, worn, that runs one program to its end."""
     file = home / "worn.nc"
     file.write_text(program)
@@ -96,6 +99,7 @@ def _picture(path: Path, home: Path, program: str, wear: Wear, curves: tuple[str
 
     stage.tick(over, 200.0)
     scope.chosen = curves or scope.chosen
+    desk.settings.choose("language", language)
     window = MainWindow(Look(DARK))
     window.resize(1024, 600)
     window.open_desk(desk)
