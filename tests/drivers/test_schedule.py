@@ -123,3 +123,50 @@ def test_the_load_of_the_spindle_is_told_where_an_input_measures_it(measures: bo
     sim, clock = simulation(dataclasses.replace(CONFIG, measures_load=measures))
     play(sim, clock, 0.1)
     assert (sim.ports.station.snapshot().spindle_load is not None) is measures
+
+
+# --- what the ports refuse ----------------------------------------------------------------------------------
+
+ORIENTS = dataclasses.replace(CONFIG, spindle=dataclasses.replace(CONFIG.spindle, orients=True))
+
+
+@pytest.mark.parametrize("broken", [False, True])
+def test_in_estop_or_with_a_fault_the_spindle_neither_turns_nor_goes_to_an_angle(broken: bool) -> None:
+    sim, clock = simulation(ORIENTS)
+    assert sim.ports.orientation is not None
+    sim.ports.orientation.orient(90.0)
+    play(sim, clock, 3.0)
+    assert sim.ports.orientation.oriented()
+    sim.ports.orientation.release()
+    assert not sim.ports.orientation.oriented()
+    if broken:
+        sim.machine.spindle_fault("over-current")
+    else:
+        sim.machine.press_estop()
+    why = "the spindle stays off: over-current" if broken else "while E-stop is pressed; release it first"
+    for act in (lambda: sim.ports.orientation.orient(0.0), lambda: sim.ports.spindle.run(100.0)):
+        with pytest.raises(DriverError, match=why) as told:
+            act()
+        assert told.value.code == "spindle-off"
+    sim.ports.spindle.run(0.0)  # to stop is always taken
+    assert (sim.ports.spindle.fault() == "over-current") is broken
+
+
+def test_without_an_encoder_there_is_no_angle_and_without_a_setter_no_touch() -> None:
+    sim, _ = simulation(dataclasses.replace(CONFIG, spindle=dataclasses.replace(CONFIG.spindle, ppr=0)))
+    assert sim.ports.spindle.angle() is None
+    assert (sim.ports.touch, sim.ports.orientation) == (None, None)
+
+
+def test_axes_and_outputs_that_are_not_there_are_named() -> None:
+    sim, _ = simulation()
+    with pytest.raises(DriverError, match="there is no axis 'Q'"):
+        sim.ports.axes.home("Q")
+    with pytest.raises(DriverError, match="no such"):
+        sim.ports.io.write("no such", True)
+
+
+def test_the_rate_of_the_samples_is_that_of_the_grid() -> None:
+    sim, _ = simulation()
+    assert sim.ports.samples is not None
+    assert sim.ports.samples.rate == pytest.approx(1.0 / CONFIG.step)

@@ -15,7 +15,7 @@ from drivers.feeder.feeder_line import Line
 from drivers.feeder.feeder_links import LoopLink
 from drivers.feeder.feeder_messages import LARGEST, NOTHING, Inbox, Message, packed
 from drivers.feeder.feeder_ports import feeder_ports
-from drivers.feeder.feeder_server import PERIOD, RESTS, Driven, Feeder
+from drivers.feeder.feeder_server import PERIOD, RESTS, Driven, Feeder, TripGuard, act
 from drivers.simulated.simulated_machine import Simulation, build_simulation
 from drivers.wakeup import Bell
 from tests.drivers.contract.simulated import SimDriven
@@ -503,3 +503,38 @@ def test_a_bell_that_is_full_or_closed_is_no_error() -> None:
     assert not bell.wait(0.0)
     bell.close()
     bell.ring()
+
+
+@pytest.mark.parametrize(
+    ("what", "says"),
+    [
+        ("hold", "the spindle's drive of this machine is not C"),
+        ("orient", "the driver of this machine's spindle cannot stop it at an angle"),
+        ("release", "the driver of this machine's spindle cannot stop it at an angle"),
+        ("arm", "this driver keeps no touch"),
+        ("dance", "the feeder does not know this order; are both of the same version"),
+    ],
+)
+def test_an_order_for_what_the_machine_has_not_is_refused_with_the_reason(what: str, says: str) -> None:
+    sim = build_simulation(CONFIG, StepClock())
+    with pytest.raises(DriverError, match=says):
+        act(sim.ports, {"what": what, "angle": 90.0, "sense": 0})
+
+
+def test_a_trip_is_acknowledged_by_its_number_alone_and_a_stop_is_always_let_through() -> None:
+    guard = TripGuard()
+    guard.trip(0.4, [], spindle=True)
+    assert guard.tripped is None  # nothing was on
+    guard.trip(0.4, ["coolant"], spindle=True)
+    assert guard.tripped is not None
+    for head in ({"what": "run", "rpm": 100.0}, {"what": "home"}, {"do": "splice"}, {"what": "orient"}):
+        with pytest.raises(DriverError, match=r"heard nothing for 0\.40 s and stopped"):
+            guard.demand_allowed(Message(head, ()))
+    for head in ({"what": "run", "rpm": 0.0}, {"what": "stop"}, {"what": "write", "on": False}):
+        guard.demand_allowed(Message(head, ()))
+    guard.acknowledge(guard.tripped.number + 1)
+    assert guard.tripped is not None
+    guard.acknowledge(guard.tripped.number)
+    assert guard.tripped is None
+    guard.acknowledge(1)
+    guard.demand_allowed(Message({"what": "home"}, ()))

@@ -10,6 +10,7 @@ import pytest
 import resources
 from app.compose.hal_backend import hal_config
 from app.compose.machine_files import parse_machine
+from core.ports import DriverError
 from drivers.hal.hal_axes import HalAxes
 from drivers.hal.hal_link import HalLink
 from drivers.hal.hal_spindle_c import HalSpindleC, Step
@@ -38,11 +39,16 @@ class Link:
     def __init__(self) -> None:
         self.told = {"powered": True, "on": True, "c_at": STANDS}
         self.lost = self.trouble = ""
-        self.blind = False
+        self.blind = self.is_c = False
+        self.said: list[tuple[str, object]] = []
         self.rows: list[Sequence[float]] = []
 
-    def say(self, *_what: object, **_values: object) -> int:
+    def say(self, what: str, **values: object) -> int:
+        self.said.append((what, values.get("on")))
         return 0
+
+    def bit(self, _name: str) -> bool:
+        return self.is_c
 
     def say_pieces(self, *_what: object, **_values: object) -> None:
         """Taken."""
@@ -61,16 +67,20 @@ class Link:
 class Spindle:
     """It stands, and its index is known."""
 
-    ordered = 0.0
-    lent = False
-    known = True
+    def __init__(self) -> None:
+        self.ordered = self.rpm = 0.0
+        self.lent = False
+        self.known = True
+
+    def run(self, rpm: float) -> None:
+        self.ordered = rpm
 
     @property
     def index(self) -> Spindle:
         return self
 
     def measured(self) -> float:
-        return 0.0
+        return self.rpm
 
     def angle(self) -> tuple[float, float]:
         return 0.0, STANDS / 360.0
@@ -79,13 +89,15 @@ class Spindle:
 class Stand:
     """Axes and C on a clock of its own."""
 
-    def __init__(self) -> None:
+    def __init__(self, *, tells: bool = False) -> None:
         text = changed(resources.machine_file("gt75-hal.toml"), (*PATIENT, *OF_C))
         self.t, self.link, self.z = 0.0, Link(), 0.0
         self.axes = HalAxes(
             hal_config(parse_machine(text, "gt75-hal.toml")), cast(HalLink, self.link), lambda: self.t
         )
-        self.c = HalSpindleC(self.axes, cast(HalSpindle, Spindle()), cast(HalLink, self.link), C, "")
+        self.turning = Spindle()
+        told = "spindle.in_position_mode" if tells else ""
+        self.c = HalSpindleC(self.axes, cast(HalSpindle, self.turning), cast(HalLink, self.link), C, told)
         pins = self.axes.config.spindle.pins
         self.spindle = (STANDS / 360.0,) * bool(pins.position) + (0.0,) * bool(pins.velocity)
         self.axes.enable(True)
@@ -130,3 +142,92 @@ def test_a_slide_that_lags_keeps_its_setpoint_while_c_is_taken_and_let_go(orient
     stand.c.hold(False)
     stand.run(0.1)
     assert stand.axes.demand_at(stand.t)[0][Z] == 0.0
+
+
+# --- what is refused, and what fails ------------------------------------------------------------------------
+
+
+def test_with_the_drives_off_or_the_spindle_turning_it_is_not_taken() -> None:
+    stand = Stand()
+    stand.run(0.2)
+    for ordered, rpm in ((100.0, 0.0), (0.0, 2.0), (0.0, -2.5)):
+        stand.turning.ordered, stand.turning.rpm = ordered, rpm
+        with pytest.raises(DriverError, match="the spindle turns; stop it first"):
+            stand.c.hold(True)
+    stand.turning.rpm = 1.9
+    stand.link.told["powered"] = False
+    stand.run(0.05)
+    with pytest.raises(DriverError, match="the drives are off; switch them on first") as told:
+        stand.c.hold(True)
+    assert told.value.code == "c-coupling"
+    assert stand.c.step is Step.FREE
+    assert not [each for each in stand.link.said if each[0] == "c"]
+
+
+def test_its_index_is_looked_for_with_60_rpm_and_it_brakes_before_it_is_taken() -> None:
+    stand = Stand()
+    stand.run(0.2)
+    stand.turning.known = False
+    stand.c.hold(True, orient=True)
+    assert (stand.c.step, stand.turning.ordered, stand.turning.lent) == (Step.INDEX, 60.0, True)
+    stand.c.hold(True, orient=True)  # asked again, it goes on
+    stand.turning.rpm = 60.0
+    stand.run(1.0)
+    assert stand.c.step is Step.INDEX
+    stand.turning.known = True
+    stand.run(0.1)
+    assert (stand.c.step, stand.turning.ordered) == (Step.STOP, 0.0)
+    stand.turning.rpm = 1.0
+    stand.run(0.01)
+    assert stand.c.step is Step.CHANGE
+    assert stand.link.said[-1] == ("c", True)
+
+
+@pytest.mark.parametrize(
+    ("known", "rpm", "seconds", "says"),
+    [
+        (False, 60.0, 15.0, "C: the spindle's index does not come by"),
+        (True, 60.0, 15.0, "C: the spindle does not stop"),
+        (True, 0.0, 2.0, "C: hal.spindle.in_position_mode does not come on"),
+    ],
+)
+def test_what_does_not_come_in_its_time_is_a_fault_and_the_spindle_is_free(
+    known: bool, rpm: float, seconds: float, says: str
+) -> None:
+    stand = Stand(tells=True)
+    stand.run(0.2)
+    stand.turning.known = False
+    stand.c.hold(True, orient=True)
+    stand.turning.known, stand.turning.rpm = known, rpm
+    stand.run(0.02)  # and what it waits for begins
+    stand.run(seconds - 0.05)
+    assert stand.axes.fault == ""
+    stand.run(0.1)
+    assert str(stand.axes.fault) == says
+    assert (stand.c.step, stand.turning.ordered, stand.turning.lent) == (Step.FREE, 0.0, False)
+    assert stand.link.said[-1] == ("c", False)
+
+
+@pytest.mark.parametrize("lost", ["", "the bridge to HAL has ended"])
+def test_behind_a_blind_link_it_is_let_go_and_a_lost_one_is_told_nothing(lost: str) -> None:
+    stand = Stand()
+    stand.run(0.2)
+    stand.turning.known = False
+    stand.c.hold(True, orient=True)
+    stand.link.blind, stand.link.lost = True, lost
+    stand.c.tick()
+    assert stand.c.step is Step.FREE
+    assert stand.turning.ordered == (60.0 if lost else 0.0)
+    assert (("c", False) in stand.link.said) is not bool(lost)
+
+
+def test_a_drive_that_tells_that_it_is_c_is_waited_for() -> None:
+    stand = Stand(tells=True)
+    stand.run(0.2)
+    stand.c.hold(True)
+    stand.run(1.0)
+    assert not stand.c.held()
+    stand.link.is_c = True
+    stand.run(0.1)
+    assert stand.c.held()
+    assert stand.axes.fault == ""

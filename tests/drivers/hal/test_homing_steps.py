@@ -1,0 +1,206 @@
+"""Homing on HAL, step by step, before slides that are played here: each way it may end, and each refusal."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from core.ports import DriverError, Segments
+from drivers.hal.hal_config import HalAxis
+from drivers.hal.hal_homing import Homing
+from drivers.hal.hal_table import HalAxisPins
+
+PINS = HalAxisPins("cmd", "fb", home="h", limit_low="l", limit_high="u", index_enable="i")
+OFFSET = 2.5  # mm from the mark to zero
+
+
+class Slides:
+    """One axis that is where it was sent as soon as anybody looks, if it is not held."""
+
+    commit = 0.03
+
+    def __init__(self) -> None:
+        self.t, self.place, self.until = 0.0, 0.0, 0.0
+        self.ways: list[tuple[float, float]] = []  # to where, and how fast
+        self.halts = 0
+        self.limits: list[bool] = []  # whether its limit switch is let by
+        self.asked: list[bool] = []
+        self.index, self.index_at = False, 0.0
+        self.zero: float | None = None
+
+    def now(self) -> float:
+        return self.t
+
+    def horizon(self) -> float:
+        return self.until
+
+    def demand_at(self, _t: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        return (self.place - (self.zero or 0.0),), (0.0,)
+
+    def bit(self, _name: str) -> bool:
+        return self.index
+
+    def figure(self, _name: str) -> float:
+        return self.index_at
+
+    def move(self, segments: Segments) -> None:
+        dt, p, v, a = (
+            each[-1] for each in (segments.dt, segments.p[:, 0], segments.v[:, 0], segments.a[:, 0])
+        )
+        ends = p + (v + 0.5 * a * dt) * dt
+        self.ways.append((float(ends), float(abs(segments.v).max())))
+        self.until = float(segments.t[-1] + segments.dt[-1])
+
+    def halt(self) -> None:
+        self.halts += 1
+        self.until = self.t
+
+    def ask_index(self, _pin: str, on: bool) -> None:
+        self.asked.append(on)
+        self.index = on
+
+    def let_limit(self, _axis: str, on: bool) -> None:
+        self.limits.append(on)
+
+    def raw(self, _index: int) -> float:
+        return self.place
+
+    def found(self, _index: int, zero: float) -> None:
+        self.zero = zero
+
+
+def homing(method: int, latch: float = 0.0) -> tuple[Homing, Slides]:
+    """An axis of 100 mm that searches with 20 mm/s."""
+    axis = HalAxis(
+        "X", 100.0, 1000.0, 0.001, 1.0, 0.02, (-50.0, 50.0), False, 20.0,
+        pins=PINS, home_method=method, home_latch=latch, home_offset=OFFSET,
+    )  # fmt: skip
+    slides = Slides()
+    return Homing(axis, 0, slides), slides
+
+
+def steps(order: Homing, slides: Slides, seconds: float) -> None:
+    """Rounds of 10 ms."""
+    for _ in range(round(seconds / 0.01)):
+        slides.t += 0.01
+        order.step(slides.t)
+
+
+def rests(order: Homing, slides: Slides) -> None:
+    """Until all that was queued is over, and what comes behind it."""
+    slides.t = max(slides.t, slides.until)
+    steps(order, slides, 0.25)
+
+
+@pytest.mark.parametrize(("method", "way"), [(19, 1.0), (21, -1.0), (18, 1.0), (17, -1.0)])
+def test_onto_its_switch_and_slowly_off_it_again(method: int, way: float) -> None:
+    """1.2 times its travel at the search's speed, back with a tenth; zero lies OFFSET beside the mark."""
+    order, slides = homing(method)
+    order.see(0.0, False)
+    order.step(0.0)
+    assert slides.ways[-1] == pytest.approx((way * 120.0, 20.0))
+    slides.place = way * 30.0
+    order.see(slides.place, True)
+    steps(order, slides, 0.01)
+    assert slides.halts == 1
+    rests(order, slides)
+    assert slides.ways[-1] == pytest.approx((slides.place - way * 120.0, 2.0))
+    slides.place = way * 29.0
+    order.see(slides.place, False)
+    slides.place = way * 28.5  # it brakes behind its mark
+    order.see(slides.place, False)
+    steps(order, slides, 0.01)
+    assert slides.halts == 2
+    rests(order, slides)
+    assert slides.zero == pytest.approx(way * 29.0 + OFFSET)
+    assert slides.ways[-1][1] == pytest.approx(20.0)  # to its home
+    assert not order.done
+    rests(order, slides)
+    assert order.done
+    assert slides.limits == [True, False]
+
+
+def test_on_its_switch_already_it_leaves_it_with_the_speed_that_the_file_says() -> None:
+    order, slides = homing(19, latch=3.0)
+    order.see(0.0, True)
+    order.step(0.0)
+    assert slides.ways == [pytest.approx((-120.0, 3.0))]
+
+
+@pytest.mark.parametrize("method", [35, 37])
+def test_the_present_place_is_home_at_once(method: int) -> None:
+    order, slides = homing(method)
+    slides.place = 7.0
+    order.step(0.0)
+    rests(order, slides)
+    assert order.done
+    assert (slides.zero, slides.ways) == (7.0 + OFFSET, [])
+
+
+def test_behind_its_switch_the_index_is_the_mark() -> None:
+    order, slides = homing(3)
+    order.see(0.0, True)
+    order.step(0.0)
+    order.see(-1.0, False)
+    steps(order, slides, 0.05)
+    assert slides.asked == [True]
+    slides.index, slides.index_at = False, -3.25
+    steps(order, slides, 0.05)
+    assert slides.halts == 0  # a bit that has not risen yet is none that has fallen
+    steps(order, slides, 0.05)
+    assert slides.halts == 1
+    rests(order, slides)
+    assert slides.zero == pytest.approx(-3.25 + OFFSET)
+
+
+@pytest.mark.parametrize(("method", "way"), [(33, -1.0), (34, 1.0)])
+def test_the_index_alone_is_looked_for_within_thirty_millimetres(method: int, way: float) -> None:
+    order, slides = homing(method)
+    order.step(0.0)
+    assert slides.ways == [pytest.approx((way * 30.0, 2.0))]
+    steps(order, slides, 0.2)
+    slides.t = slides.until
+    with pytest.raises(DriverError, match="X: homing has failed: no index came by"):
+        rests(order, slides)
+    assert (slides.asked, slides.limits) == ([True, False], [True, False])
+
+
+def test_a_switch_that_nobody_samples_is_told_after_a_second() -> None:
+    order, slides = homing(19)
+    steps(order, slides, 1.0)
+    with pytest.raises(DriverError, match="its switch is not sampled"):
+        steps(order, slides, 0.05)
+    assert slides.ways == []
+
+
+def test_no_switch_in_the_whole_travel() -> None:
+    order, slides = homing(19)
+    order.see(0.0, False)
+    order.step(0.0)
+    steps(order, slides, 1.0)
+    with pytest.raises(DriverError, match="no switch was found within the travel"):
+        rests(order, slides)
+    assert slides.limits == [True, False]
+
+
+def test_a_slide_that_ran_over_its_switch() -> None:
+    order, slides = homing(19)
+    order.see(0.0, False)
+    order.step(0.0)
+    order.see(30.0, True)
+    steps(order, slides, 0.01)
+    order.see(31.0, False)
+    with pytest.raises(DriverError, match="has run over its switch; make it longer, or the search slower"):
+        rests(order, slides)
+
+
+def test_a_switch_that_does_not_go_off() -> None:
+    order, slides = homing(19)
+    order.see(0.0, True)
+    order.step(0.0)
+    steps(order, slides, 1.0)
+    with pytest.raises(DriverError, match="its switch does not go off") as told:
+        rests(order, slides)
+    assert told.value.code == "homing"
+    assert math.isfinite(slides.until)

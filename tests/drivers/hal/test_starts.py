@@ -1,0 +1,129 @@
+"""A halrun that ends at its start, or whose bridge refuses: one sentence that says why, and nothing left."""
+
+from __future__ import annotations
+
+import sys
+import tempfile
+from pathlib import Path
+
+import pytest
+
+import resources
+from app.compose.hal_backend import hal_config
+from app.compose.machine_files import parse_machine
+from core.ports import DriverError
+from drivers.hal.hal_config import HalConfig
+from drivers.hal.hal_leftovers import PREFIX
+from drivers.hal.hal_session import HalSession
+
+ROOT = Path(__file__).resolve().parents[3]
+# Says in the bridge's stead what stands in WORDS, one packet each.
+SAYS = """\
+#!{python}
+import json, socket, sys
+from pathlib import Path
+sys.path.insert(0, {root!r})
+from drivers.hal.bridge.packets import pack
+if sys.argv[1] == "-f":
+    bridge = socket.socket(fileno=json.loads(Path(sys.argv[2]).with_name("bridge.json").read_text())["fd"])
+    for words in {words!r}:
+        bridge.send(pack(words))
+"""
+
+
+def config() -> HalConfig:
+    """Of the shipped lathe."""
+    return hal_config(parse_machine(resources.machine_file("gt75-hal.toml"), "gt75-hal.toml"))
+
+
+@pytest.fixture
+def path(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A folder that is all of PATH and one for sessions, with no halrun yet."""
+    monkeypatch.setenv("PATH", str(tmp_path))
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    return tmp_path
+
+
+def halrun(path: Path, text: str) -> None:
+    file = path / "halrun"
+    file.write_text(text, encoding="utf-8")
+    file.chmod(0o755)
+
+
+def refused(path: Path) -> DriverError:
+    """How the start of a session ends; its folder is gone behind it."""
+    with pytest.raises(DriverError) as told:
+        HalSession(config(), 0.0)
+    assert list(path.glob(f"{PREFIX}*")) == []
+    return told.value
+
+
+def test_without_linuxcnc_it_says_what_to_install(path: Path) -> None:
+    assert "there is no halrun: backend hal needs LinuxCNC (apt install" in str(refused(path))
+
+
+@pytest.mark.parametrize(
+    ("said", "told"),
+    [
+        (
+            "Note: rt-preempt\nRefusing to run as root",
+            "LinuxCNC refuses to run as root; start the control as",
+        ),
+        ("Realtime already running.  Use 'halrun -U'", "another LinuxCNC or HAL session runs; end it"),
+        ("one\ntwo\n\nthree\nfour", "halrun has ended at its start: two / three / four"),
+        ("Note: only what is worth nothing", "halrun has ended at its start: it says nothing"),
+    ],
+)
+def test_a_halrun_that_ends_is_told_with_what_it_said(path: Path, said: str, told: str) -> None:
+    halrun(path, f"#!/bin/sh\n[ $1 = -U ] || printf '%s' \"{said}\"\nexit 1\n")
+    error = refused(path)
+    assert told in str(error)
+    assert error.code == "hal-setup"
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        ([{"error": "python3 has no module hal"}], "HAL: python3 has no module hal"),
+        (
+            [{"verdicts": [["hal.axes.X.command", "x-cmd", "there is no such pin"], ["b", "c", ""]]}],
+            "hal.axes.X.command = x-cmd: there is no such pin",
+        ),
+        (
+            [{}, {"verdicts": [["a", "b", "is written by another"], ["c", "d", "is no float"]]}],
+            "a = b: is written by another (and 1 more)",
+        ),
+    ],
+)
+def test_what_the_bridge_refuses_is_told_in_its_words(
+    path: Path, words: list[dict[str, object]], told: str
+) -> None:
+    halrun(path, SAYS.format(python=sys.executable, root=str(ROOT), words=words))
+    assert str(refused(path)) == told
+
+
+def test_only_looked_at_every_pin_is_told(path: Path) -> None:
+    """Then it is no fault of the session: who asked shows them all."""
+    wrong = [["a", "b", "is written by another"], ["c", "d", ""]]
+    halrun(path, SAYS.format(python=sys.executable, root=str(ROOT), words=[{"verdicts": wrong}]))
+    session = HalSession(config(), 0.0, only_check=True)
+    assert [tuple(each) for each in session.verdicts] == [tuple(each) for each in wrong]
+    session.close()
+    assert list(path.glob(f"{PREFIX}*")) == []
+
+
+def test_a_bridge_that_ends_behind_its_start_is_gone(path: Path) -> None:
+    ready = [{"ready": True, "pid": 1, "warnings": ["slow"]}]
+    halrun(path, SAYS.format(python=sys.executable, root=str(ROOT), words=ready))
+    session = HalSession(config(), 0.0)
+    assert session.warnings == ("slow",)
+    assert session._halrun is not None
+    session._halrun.wait()
+    assert session.down
+    with pytest.raises(DriverError, match="the bridge to HAL has ended") as told:
+        list(session.receive())
+    assert told.value.code == "hal-bridge"
+    with pytest.raises(DriverError, match="the bridge to HAL has ended"):
+        session.send(b"")
+    session.close()
+    assert list(path.glob(f"{PREFIX}*")) == []
