@@ -74,6 +74,7 @@ def test_changed_offsets_count_at_once_for_the_loaded_tool() -> None:
     rig.post(UseOffsets({1: ToolOffset(-12.0, -50.0)}, {}))
     assert rig.shot.offset == (-12.0, -50.0)
     assert rig.shot.modal.tool == 1
+    assert rig.said("offsets") == ["the offsets of the tables are in force"]
 
 
 def test_changed_offsets_are_refused_while_a_program_is_under_way() -> None:

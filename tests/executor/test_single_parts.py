@@ -22,9 +22,11 @@ from core.executor.commands import (
 )
 from core.executor.drive_test_path import DriveTestPath, Limits, Shape
 from core.executor.homing_order import Homing
+from core.executor.jogging import jog_ramps
 from core.executor.raised_alarm import AlarmError
 from core.executor.snapshot import State
 from core.executor.spindle_control import SpindleAngle, SpindleDemand
+from core.executor.spindle_orientation import Orientation
 from core.executor.standstill import at_speed
 from core.executor.thread_path import ThreadPath
 from core.ports import Stop
@@ -91,6 +93,35 @@ def test_a_wave_has_forty_pieces_none_shorter_than_two_milliseconds_and_twelve_a
     ramps = path.ramps(Limits(top=42.3, amax=3048.0, rate=1000.0))
     assert len(ramps) == waves * pieces + 1  # and the rest behind it
     assert [dt for dt, _, _ in ramps[:-1]] == pytest.approx([1.0 / frequency / pieces] * waves * pieces)
+
+
+# --- jog ----------------------------------------------------------------------------------------------------
+
+
+def played(ramps: list[tuple[float, float, float]]) -> tuple[float, float]:
+    """Seconds and mm of ramps of (time, first speed, acceleration)."""
+    return sum(dt for dt, _, _ in ramps), sum((v + 0.5 * a * dt) * dt for dt, v, a in ramps)
+
+
+@pytest.mark.parametrize(
+    ("v0", "v1", "time", "way", "seconds", "mm"),
+    [
+        (0.0, 20.0, 1.0, math.inf, 1.2, 20.0),  # .2 s up (2 mm), .8 s on (16), .2 s down (2)
+        (0.0, 20.0, 0.1, math.inf, 0.2, 1.0),  # 10 mm/s are reached in .1 s
+        (0.0, 20.0, 0.0, math.inf, 0.0, 0.0),
+        (0.0, -20.0, 1.0, math.inf, 1.2, -20.0),
+        (20.0, 0.0, 1.0, math.inf, 0.2, 2.0),
+        (20.0, 10.0, 1.0, math.inf, 1.1, 11.0),  # .1 s to 10 (1.5), .9 s (9), .1 s (.5)
+        (0.0, 20.0, 9.0, 8.0, 0.6, 8.0),  # 4 mm of ramps, 4 mm on
+        (0.0, 20.0, 9.0, 1.0, 0.2, 1.0),  # top sqrt(100·1) = 10
+        (10.0, -20.0, 1.1, math.inf, 1.3, -19.5),  # .1 s to rest (.5), then as the first
+    ],
+)
+def test_a_jog_goes_for_its_time_and_no_further_than_its_way(
+    v0: float, v1: float, time: float, way: float, seconds: float, mm: float
+) -> None:
+    """At 100 mm/s²."""
+    assert played(jog_ramps(v0, v1, 100.0, time, way)) == pytest.approx((seconds, mm))
 
 
 # --- threads ------------------------------------------------------------------------------------------------
@@ -186,6 +217,55 @@ def test_the_time_limit_for_the_speed_counts_from_when_the_operator_lets_it_turn
     with pytest.raises(AlarmError) as told:
         wait.over(context.now)
     assert told.value.code == "at-speed"
+
+
+@dataclass
+class _Held:
+    """A drive that brings the spindle to angles."""
+
+    there: bool = False
+    told: list[object] = field(default_factory=list)
+
+    def orient(self, angle: float, sense: int = 0) -> None:
+        self.told.append((angle, sense))
+
+    def release(self) -> None:
+        self.told.append("release")
+
+    def oriented(self) -> bool:
+        return self.there
+
+
+def test_an_angle_counts_from_when_the_drive_holds_it_until_it_is_let_go() -> None:
+    port = _Held()
+    held = Orientation(port, 100.0)
+    assert (held.at, held.on_its_way, held.turns_at) == (None, False, 0.0)
+    held.let_go()
+    assert port.told == []
+    assert not held.bring(90.0, 1)
+    assert (held.at, held.on_its_way, held.turns_at) == (None, True, 100.0)
+    port.there = True
+    assert held.bring(90.0, 1)
+    assert (held.at, held.on_its_way) == (90.0, False)
+    port.there = False
+    assert not held.bring(90.0, -1)  # the same angle from the other side is another
+    assert held.at is None
+    held.let_go()
+    assert (held.at, held.on_its_way, held.turns_at) == (None, False, 0.0)
+    assert port.told == [(90.0, 1), (90.0, -1), "release"]
+
+
+def test_an_angle_that_the_drive_lets_slip_is_an_alarm_once() -> None:
+    port = _Held(there=True)
+    held = Orientation(port, 100.0)
+    held.bring(45.0, 0)
+    held.look()
+    port.there = False
+    with pytest.raises(AlarmError, match="the drive no longer holds it at 45 degrees"):
+        held.look()
+    held.look()
+    with pytest.raises(AlarmError, match="nothing at this machine stops the spindle at an angle"):
+        Orientation(None, 100.0).bring(0.0, 0)
 
 
 # --- homing -------------------------------------------------------------------------------------------------

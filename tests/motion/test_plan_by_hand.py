@@ -136,6 +136,27 @@ def test_parts_of_an_arc_join_on_it_and_are_as_short_as_its_jerk_wants() -> None
     assert ends[-1] == pytest.approx(profile.position(t[-1] + dt[-1])[0], abs=1e-9)
 
 
+def test_a_place_is_reached_when_the_ramps_bring_it_there() -> None:
+    """Up to 100 mm/s: s = At²/2; on; and down as it went up. Beyond the end it is never."""
+    profile = plan(build_path([line((0.0, 0.0), (0.0, 50.0), 100.0)], LIMITS))
+    ramp = 100.0 / A
+    times = np.array([0.25, 0.5, 0.9]) * ramp
+    ways = 0.5 * A * times**2
+    assert profile.time_at(ways) == pytest.approx(times)
+    assert profile.time_at(50.0 - ways) == pytest.approx(profile.duration - times)
+    assert profile.time_at(np.array([25.0])) == pytest.approx([0.5 * profile.duration])
+    assert profile.duration == pytest.approx(0.5 + ramp)
+    assert profile.time_at(np.array([-1.0, 50.0, 51.0])).tolist() == [0.0, profile.duration, math.inf]
+
+
+def test_a_creep_at_the_end_of_the_path_is_rounding_and_2_hundredths_are_not() -> None:
+    """Over the 1e-9 mm that are rounding sqrt(2e-9·A) = .0025 mm/s come to rest."""
+    path = build_path([line((0.0, 0.0), (0.0, 1.0))], LIMITS)
+    assert plan(path, start_s=1.0, start_v=0.0024).duration == 0.0
+    with pytest.raises(MotionError, match=r"0\.0[0-9]+ mm/s at the end of the path cannot come to rest"):
+        plan(path, start_s=1.0, start_v=0.02)
+
+
 # --- chords -------------------------------------------------------------------------------------------------
 
 
@@ -205,3 +226,11 @@ def test_a_row_of_moves_stands_in_the_table_with_its_offsets() -> None:
     assert table.start[:, :2].tolist() == [[11.0, 23.0], [12.0, 24.0]]
     assert table.end[:, :2].tolist() == [[12.0, 24.0], [15.0, 28.0]]
     assert table.feed.tolist() == [20.0, 20.0]
+
+
+def test_blocks_before_and_behind_a_row_stand_in_their_places() -> None:
+    before, behind = line((0.0, 0.0), (1.0, 3.0), 5.0, n=3), line((5.0, 8.0), (6.0, 8.0), 7.0, n=6)
+    table = table_of([[before], Columns(line((7.0, 7.0), (8.0, 8.0), 20.0)), [behind]], 3500.0)
+    assert table.n.tolist() == [3.0, 4.0, 5.0, 6.0]
+    assert table.start[:, 0].tolist() == [0.0, 1.0, 2.0, 5.0]
+    assert table.feed.tolist() == [5.0, 20.0, 20.0, 7.0]

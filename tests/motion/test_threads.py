@@ -32,6 +32,23 @@ def test_a_taper_keeps_its_lead_along_z() -> None:
     assert middle[0][1] - middle[1][1] == pytest.approx(2.0)
 
 
+@pytest.mark.parametrize(
+    ("start", "end"), [((7.0, 5.0), (7.0, 0.0)), ((0.0, -3.0), (4.0, 0.0)), ((6.0, 0.0), (3.0, -4.0))]
+)
+def test_a_lead_counts_along_z_wherever_the_thread_begins(start: Point, end: Point) -> None:
+    """Ways of 5 mm along 5, 3 and 4 mm of Z."""
+    block = replace(line(start, end, 2.0, kind=Kind.THREAD), rpm=600.0)
+    way = 5.0 if start[0] == end[0] else float(np.hypot(end[0] - start[0], end[1] - start[1]))
+    path = build_path([block], LIMITS)
+    assert path.pieces.rate.tolist() == pytest.approx([20.0 * way / abs(end[1] - start[1])])
+
+
+@pytest.mark.parametrize("z", [0.0, 4.0])
+def test_a_thread_across_z_is_refused_wherever_it_lies(z: float) -> None:
+    with pytest.raises(MotionError, match="does not advance along Z"):
+        build_path([replace(line((1.0, z), (5.0, z), 2.0, kind=Kind.THREAD), rpm=600.0)], LIMITS)
+
+
 def test_a_thread_that_does_not_advance_is_refused() -> None:
     with pytest.raises(MotionError, match="Block 1: a thread does not advance along Z"):
         build_path([thread((5, 0))], LIMITS)
