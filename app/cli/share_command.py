@@ -44,6 +44,7 @@ def add_parser(subparsers: SubParsers) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Does what ``args`` asks; raises CommandError with one sentence."""
+    from app.cli.place_answer import answered
     from app.compose.machine_setup import read_machine
     from app.compose.sharing_desk import sharing_of
 
@@ -55,7 +56,7 @@ def run(args: argparse.Namespace) -> int:
             raise CommandError(
                 "the machine file has no [sharing]; name a folder, a git remote or a database there"
             )
-        status = _ACTIONS[args.action](sharing, args)
+        status = answered(sharing.place, lambda: _ACTIONS[args.action](sharing, args))
     if acts:
         program = f"program {args.name}: " if args.action in {"take", "keep"} else ""
         note_change(opened_store, who, f"{program}share {args.action}")
@@ -138,9 +139,11 @@ def _compare(sharing: Sharing, args: argparse.Namespace) -> int:
 
 def _take(sharing: Sharing, args: argparse.Namespace) -> int:
     version = _chosen(_looked(sharing), args)
+    before = sharing.now.families[version.key].here
     name = sharing.take(version)
     _looked(sharing)
-    said = f"{name} is that of {version.desk} now; what was here is kept among its versions"
+    kept = "; what was here is kept among its versions" if before else ""
+    said = f"{name} is that of {version.desk} now{kept}"
     _say(args, said, {"taken": _of(version), "file": name})
     return EXIT_OK
 

@@ -15,9 +15,15 @@ from core.sharing.sharing_errors import Cause, SharingError
 PATIENCE = 60.0  # s: a transfer that takes longer is given up
 # In the order in which they are looked for: some of what git says names two things.
 _SAID = (
+    (Cause.OTHER_HOST, r"host key for .* has changed"),
+    (Cause.UNKNOWN_HOST, r"host key verification failed"),
+    (Cause.NO_SSH, r"\bssh: (command )?not found|cannot run ssh"),
+    (Cause.NO_GIT_THERE, r"git-(upload|receive)-pack.*not found|bad line length"),
     (
         Cause.NO_RIGHT,
-        r"permission denied|authentication failed|could not read (username|password)|access denied|40[13]",
+        r"permission denied|authentication failed|could not read (username|password)"
+        r"|access denied|error: 40[13]|dubious ownership|insufficient permission"
+        r"|unable to create temporary object directory",
     ),
     (Cause.FULL, r"no space left|quota exceeded"),
     (
@@ -44,10 +50,11 @@ class GitCommand:
         try:
             out, told = process.communicate(data, timeout=self._patience)
         except subprocess.TimeoutExpired:
-            _end(process)
             raise Cause.AWAY.error(self._remote, f"no answer in {self._patience:g} s") from None
         finally:
             self._running = None
+            if process.poll() is None:  # no answer, or Ctrl+C: it is in a session of its own
+                _end(process)
         if process.returncode:
             refusal = self._refusal(told.decode(errors="replace"))
             refusal.told = told.decode(errors="replace")

@@ -41,14 +41,19 @@ class SharedFolder:
         self._folder = folder
         self._sizes: dict[str, int] = {}  # of files, by the id of the version
 
+    @property
+    def mark(self) -> Path:
+        """The file by which the folder is known for one of shared programs."""
+        return self._folder / MARK
+
     def begin(self) -> None:
         """Lay it out; the folder itself has to be there: one that is not mounted must not be made."""
         with self._system():
-            if not (self._folder / MARK).exists():
+            if not self.mark.exists():
                 os.stat(self._folder)
                 for each in (VERSIONS, DESKS):
                     (self._folder / each).mkdir(exist_ok=True)
-                self._write(self._folder / MARK, json.dumps({"format": FORMAT}).encode())
+                self._write(self.mark, json.dumps({"format": FORMAT}).encode())
             self._demand()
 
     def look(self, known: Mapping[str, SharedVersion]) -> Found:
@@ -138,7 +143,7 @@ class SharedFolder:
         """Raises SharingError where the folder is not one of shared programs, or of a newer format."""
         os.stat(self._folder)
         try:
-            data = (self._folder / MARK).read_bytes()
+            data = self.mark.read_bytes()
         except FileNotFoundError:
             raise Cause.NOT_BEGUN.error(self.name) from None
         check_mark(self.name, data)

@@ -25,7 +25,20 @@ class Cause(Enum):
     FULL = "the disk of {place} is full; make room there"
     REFUSED = "{place} refuses it: {why}"
     DAMAGED = "{place}: {why}"
+    UNKNOWN_HOST = (
+        "the computer of {place} is not known here ({why}); log in there once by ssh, as the user of this "
+        "desk, and compare its key"
+    )
+    OTHER_HOST = (
+        "the computer of {place} shows another key than before ({why}); ask whoever looks after it, and "
+        "let ssh-keygen -R forget the old one only then"
+    )
     NO_GIT = "the command git is not on this computer; install git"
+    NO_SSH = "{place} is reached by ssh, which is not on this computer; install openssh-client"
+    NO_GIT_THERE = (
+        "the computer of {place} answers, but not as git does ({why}); is git installed there, and may this "
+        "user start it by ssh?"
+    )
     NO_PSYCOPG = "[sharing] postgresql wants psycopg, which is not installed; install turndesk[postgresql]"
     NAME_TAKEN = (
         "{place}: another desk is called {why} too; give this one its own name (desk in [sharing]), "

@@ -30055,6 +30055,21 @@
     </message>
     <message>
       <location filename="core/sharing/sharing_errors.py" />
+      <source>the computer of {place} answers, but not as git does ({why}); is git installed there, and may this user start it by ssh?</source>
+      <translation>el equipo de {place} responde, pero no como git ({why}); ¿está git instalado allí y puede este usuario iniciarlo por ssh?</translation>
+    </message>
+    <message>
+      <location filename="core/sharing/sharing_errors.py" />
+      <source>the computer of {place} is not known here ({why}); log in there once by ssh, as the user of this desk, and compare its key</source>
+      <translation>el equipo de {place} no se conoce aquí ({why}); entre allí una vez por ssh, como el usuario de este puesto, y compare su clave</translation>
+    </message>
+    <message>
+      <location filename="core/sharing/sharing_errors.py" />
+      <source>the computer of {place} shows another key than before ({why}); ask whoever looks after it, and let ssh-keygen -R forget the old one only then</source>
+      <translation>el equipo de {place} muestra otra clave que antes ({why}); pregunte a quien lo cuida, y solo entonces haga que ssh-keygen -R olvide la anterior</translation>
+    </message>
+    <message>
+      <location filename="core/sharing/sharing_errors.py" />
       <source>the disk of {place} is full; make room there</source>
       <translation>el disco de {place} está lleno; libere espacio allí</translation>
     </message>
@@ -30077,6 +30092,11 @@
       <location filename="core/sharing/sharing_errors.py" />
       <source>{place} is not there ({why}); is it mounted, is its name right?</source>
       <translation>{place} no está ({why}); ¿está montado, es correcto su nombre?</translation>
+    </message>
+    <message>
+      <location filename="core/sharing/sharing_errors.py" />
+      <source>{place} is reached by ssh, which is not on this computer; install openssh-client</source>
+      <translation>a {place} se llega por ssh, que no está en este equipo; instale openssh-client</translation>
     </message>
     <message>
       <location filename="core/sharing/sharing_errors.py" />

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import errno
 import os
+import signal
+import subprocess
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -191,6 +193,59 @@ def test_a_remote_that_refuses_is_told_in_its_own_words(tmp_path: Path) -> None:
     rig.hook("echo only the office may push >&2; exit 1")
     cause, words = cause_of(place.put, [published(1)], state())
     assert (cause, "hook declined" in words) == (Cause.REFUSED, True)
+
+
+@pytest.mark.parametrize(
+    ("told", "cause"),
+    [
+        ("Host key verification failed.", Cause.UNKNOWN_HOST),
+        (
+            "@@@@\nHost key for [127.0.0.1]:22823 has changed and you have requested strict checking.",
+            Cause.OTHER_HOST,
+        ),
+        ("root@shop: Permission denied (publickey,password).", Cause.NO_RIGHT),
+        ("fatal: detected dubious ownership in repository at '/srv/shop.git'", Cause.NO_RIGHT),
+        ("error: remote unpack failed: unable to create temporary object directory", Cause.NO_RIGHT),
+        ("ssh -oBatchMode=yes: 1: ssh: not found", Cause.NO_SSH),
+        ("error: cannot run ssh: No such file or directory", Cause.NO_SSH),
+        ("sh: 1: git-upload-pack: not found", Cause.NO_GIT_THERE),
+        ("fatal: protocol error: bad line length character: This", Cause.NO_GIT_THERE),
+        ("ssh: connect to host shop port 4013: Connection refused", Cause.AWAY),
+        ("fatal: unable to access 'https://shop/x/': The requested URL returned error: 403", Cause.NO_RIGHT),
+        ("Connection timed out during banner exchange", Cause.AWAY),
+    ],
+)
+def test_what_ssh_and_its_server_say_is_told_by_its_cause(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, told: str, cause: Cause
+) -> None:
+    """As OpenSSH 9.2 and git 2.39 said it against a server on this computer."""
+    (tmp_path / "git").write_text(
+        f'#!/bin/sh\ncat >&2 <<"END"\n{told}\nfatal: Could not read from remote repository.\nEND\nexit 128\n'
+    )
+    (tmp_path / "git").chmod(0o755)
+    monkeypatch.setenv("PATH", str(tmp_path), prepend=os.pathsep)
+    command = GitCommand(tmp_path / "copy.git", "the repository")
+    found, words = cause_of(command.run, ["fetch"])
+    assert (found, "@@" in words) == (cause, False)
+
+
+def test_ctrl_c_ends_git_with_all_that_it_started(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "git").write_text("#!/bin/sh\nread nothing < /dev/zero\n")
+    (tmp_path / "git").chmod(0o755)
+    monkeypatch.setenv("PATH", str(tmp_path))
+    started = list[subprocess.Popen[bytes]]()
+    talk = subprocess.Popen.communicate
+
+    def press(process: subprocess.Popen[bytes], *args: object, **words: object) -> object:
+        if not started:
+            started.append(process)
+            raise KeyboardInterrupt
+        return talk(process)
+
+    monkeypatch.setattr(subprocess.Popen, "communicate", press)
+    with pytest.raises(KeyboardInterrupt):
+        GitCommand(tmp_path / "copy.git", "the repository").run(["fetch"])
+    assert started[0].returncode == -signal.SIGKILL
 
 
 def test_git_that_is_not_there_or_does_not_answer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,0 +1,66 @@
+"""The wait of a command for a place of shared programs: a dead network drive may never answer."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import threading
+from collections.abc import Callable
+from concurrent.futures import Future, wait
+from typing import TypeVar
+
+from core.sharing.shared_folder import SharedFolder
+from core.sharing.shared_place import SharedPlace
+
+T = TypeVar("T")
+_TOLD_AFTER = 30.0  # s, as on the desk; a slow place may take longer and answer yet
+_OPEN = "import sys; open(sys.argv[1], 'rb').read(1)"
+
+
+def answered(place: SharedPlace, work: Callable[[], T], told_after: float = _TOLD_AFTER) -> T:
+    """What ``work`` gives, or raises; a place that keeps it waiting is named on stderr.
+
+    The work has a thread of its own: a call that hangs in the system sees no Ctrl+C, this wait does. What
+    hangs then is left behind, and ends with the process.
+    """
+    if isinstance(place, SharedFolder):
+        _wait_for_folder(place, told_after)
+    answer: Future[T] = Future()
+    threading.Thread(target=_work, args=(work, answer), name="shared-place", daemon=True).start()
+    try:
+        if not wait([answer], told_after).done:
+            _tell(place, told_after)
+        return answer.result()
+    except KeyboardInterrupt:
+        place.close()
+        raise
+
+
+def _wait_for_folder(place: SharedFolder, told_after: float) -> None:
+    """Until its mark was opened, or refused, by a process of its own.
+
+    What hangs in a dead FUSE drive outlives SIGKILL, and as a thread it would keep the whole command: a
+    process is left behind instead. Opened, because what a look at names finds may be kept on this side.
+    """
+    opening = subprocess.Popen(
+        [sys.executable, "-I", "-S", "-c", _OPEN, str(place.mark)],
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        start_new_session=True,  # no Ctrl+C there: it has nothing to say
+    )
+    try:
+        opening.wait(told_after)
+    except subprocess.TimeoutExpired:
+        _tell(place, told_after)
+        opening.wait()
+
+
+def _tell(place: SharedPlace, seconds: float) -> None:
+    sys.stderr.write(f"turndesk: {place.name} has not answered for {seconds:g} s; Ctrl+C ends the wait\n")
+
+
+def _work(work: Callable[[], T], answer: Future[T]) -> None:
+    try:
+        answer.set_result(work())
+    except BaseException as error:  # noqa: BLE001 - whatever it is, it is raised again where it is waited for
+        answer.set_exception(error)

@@ -1,0 +1,91 @@
+"""The wait of ``turndesk share``: a silent place is told, Ctrl+C ends the wait, refusals come through."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import threading
+from pathlib import Path
+from typing import cast
+
+import pytest
+
+from app.cli import place_answer
+from app.cli.place_answer import answered
+from core.sharing.shared_folder import MARK, SharedFolder
+from core.sharing.shared_place import SharedPlace
+from core.sharing.sharing_errors import Cause, SharingError
+
+
+class Place:
+    """One that knows when it was closed."""
+
+    name, closed = "the database shop", False
+
+    def close(self) -> None:
+        self.closed = True
+
+
+def test_a_silent_place_is_told_once_and_its_answer_still_counts(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    told = threading.Event()
+    tell = place_answer._tell
+
+    def tell_and_answer(place: SharedPlace, seconds: float) -> None:
+        tell(place, seconds)
+        told.set()
+
+    monkeypatch.setattr(place_answer, "_tell", tell_and_answer)
+    assert answered(cast("SharedPlace", Place()), lambda: told.wait(60.0), 0.0) is True
+    words = "turndesk: the database shop has not answered for 0 s; Ctrl+C ends the wait\n"
+    assert capsys.readouterr() == ("", words)
+
+
+def test_an_answer_in_time_says_nothing(capsys: pytest.CaptureFixture[str]) -> None:
+    assert answered(cast("SharedPlace", Place()), lambda: 7) == 7
+    assert capsys.readouterr() == ("", "")
+
+
+def test_what_the_place_refuses_is_raised_where_it_was_asked() -> None:
+    def refuse() -> None:
+        raise Cause.FULL.error("the folder x")
+
+    with pytest.raises(SharingError, match="the disk of the folder x is full"):
+        answered(cast("SharedPlace", Place()), refuse)
+
+
+def test_ctrl_c_ends_the_wait_and_what_the_place_does(monkeypatch: pytest.MonkeyPatch) -> None:
+    place, never = Place(), threading.Event()
+
+    def press(*_args: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(place_answer, "wait", press)
+    with pytest.raises(KeyboardInterrupt):
+        answered(cast("SharedPlace", place), lambda: never.wait(60.0))
+    never.set()
+    assert place.closed
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no pipes with names here")
+def test_a_folder_that_hangs_is_told_before_it_is_touched(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    os.mkfifo(tmp_path / MARK)  # opening it waits for a writer, as a dead drive does
+    waits, real = list[object](), subprocess.Popen.wait
+
+    def wait_once(process: subprocess.Popen[bytes], timeout: float | None = None) -> int:
+        waits.append(timeout)
+        if timeout is None:
+            process.kill()
+            real(process)
+            raise KeyboardInterrupt
+        raise subprocess.TimeoutExpired("open", timeout)
+
+    touched = threading.Event()
+    monkeypatch.setattr(subprocess.Popen, "wait", wait_once)
+    with pytest.raises(KeyboardInterrupt):
+        answered(SharedFolder(tmp_path), touched.set)
+    assert (waits, touched.is_set()) == ([30.0, None], False)
+    assert capsys.readouterr().err.endswith(" has not answered for 30 s; Ctrl+C ends the wait\n")
