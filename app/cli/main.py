@@ -10,6 +10,7 @@ import sys
 import threading
 from collections.abc import Sequence
 
+from app.cli import dropped_interrupt
 from app.cli.command_parser import Parser, add_screen_options, settled
 from app.cli.crash_report import report_crash, report_thread
 from app.desk.command_errors import EXIT_INTERRUPTED, EXIT_OK, EXIT_USAGE, CommandError
@@ -72,8 +73,11 @@ def main(argv: Sequence[str] | None = None) -> int:
     gc.set_threshold(200_000)  # importing alone would collect a hundred times and find nothing
     args = build_parser(_commands_for(argv)).parse_args(argv)
     try:
-        check_data_folder()
-        return _dispatch(settled(args))
+        with dropped_interrupt.kept():
+            check_data_folder()
+            status = _dispatch(settled(args))
+            dropped_interrupt.look()
+            return status
     except (CommandError, DataFolderError) as error:
         sys.stderr.write(f"turndesk: {error}\n")
         return EXIT_USAGE

@@ -13,6 +13,8 @@ from collections.abc import Callable, Generator, Iterator
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, ProcessPoolExecutor, wait
 from typing import Generic, Protocol, TypeVar
 
+from app.cli import dropped_interrupt
+
 Unit = TypeVar("Unit")
 Made = TypeVar("Made")
 
@@ -109,6 +111,7 @@ class Proving(Generic[Unit, Made]):
         done = False
         try:
             while True:
+                dropped_interrupt.look()
                 for unit in units:
                     executor = executor or self._workers.open()
                     self._give(executor, unit)

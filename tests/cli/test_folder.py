@@ -288,6 +288,35 @@ def test_ctrl_c_while_a_class_is_made_ends_with_the_same_status(tmp_path: Path) 
     assert (ended.returncode, ended.stderr) == (130, "turndesk: interrupted\n")
 
 
+class Finalized:
+    """Ctrl+C arrives while it is put away."""
+
+    def __del__(self) -> None:
+        raise KeyboardInterrupt
+
+
+def test_ctrl_c_that_python_drops_ends_the_command(
+    turndesk: Turndesk, parts: Path, offsets: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for number in range(20):
+        (parts / f"{number:02d}.nc").write_text(program(number))
+    given: list[int] = []
+
+    def interrupted(_executor: Executor, *_: object) -> Future[Proof]:
+        given.append(1)
+        Finalized()
+        future: Future[Proof] = Future()
+        future.set_exception(ZeroDivisionError("made for this test"))
+        return future
+
+    monkeypatch.setattr("concurrent.futures.ProcessPoolExecutor.submit", interrupted)
+    hook = sys.unraisablehook
+    told = turndesk("prove", parts, "--offsets", offsets, "--jobs=1")
+    assert (told.status, told.err.splitlines()[-1]) == (130, "turndesk: interrupted")
+    assert sys.unraisablehook is hook
+    assert 0 < len(given) < 20
+
+
 # --- what is refused
 
 
