@@ -346,7 +346,7 @@ def _ball_drawing(found: Found, factor: float) -> Drawing:
 
 
 def _length(mm: float, metric: bool) -> str:
-    return f"{formats.length(mm, metric)} {'mm' if metric else 'in'}"
+    return f"{formats.length(mm, metric)} {tr('mm') if metric else tr('in')}"
 
 
 def _path_sheet(title: str, found: Found, metric: bool, marked: int) -> Sheet:

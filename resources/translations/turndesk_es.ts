@@ -6606,7 +6606,7 @@
     <message>
       <location filename="app/editor/findings_view.py" />
       <source>FINDINGS  ·  %1  ·  %2</source>
-      <translation>AVISOS  ·  %1  ·  %2</translation>
+      <translation>HALLAZGOS  ·  %1  ·  %2</translation>
     </message>
     <message>
       <location filename="app/editor/findings_view.py" />
@@ -9031,7 +9031,7 @@
     <message>
       <location filename="app/part/part_sheet.py" />
       <source>FINDINGS</source>
-      <translation>AVISOS</translation>
+      <translation>HALLAZGOS</translation>
     </message>
     <message>
       <location filename="app/part/part_sheet.py" />
@@ -11111,7 +11111,7 @@
     <message>
       <location filename="app/scope/analyses.py" />
       <source>PASS</source>
-      <translation>PASADA</translation>
+      <translation>Nº</translation>
     </message>
     <message>
       <location filename="app/scope/analyses.py" />
@@ -11151,7 +11151,7 @@
     <message>
       <location filename="app/scope/analyses.py" />
       <source>RPM LOST</source>
-      <translation>RPM PERDIDAS</translation>
+      <translation>RPM PERD.</translation>
     </message>
     <message>
       <location filename="app/scope/analyses.py" />
