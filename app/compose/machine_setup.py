@@ -10,6 +10,7 @@ from app.desk.command_errors import CommandError
 from core.interpreter.job_setup import ControlLimits, SecondaryOffset, Setup, ToolOffset, ZeroOffset
 
 if TYPE_CHECKING:
+    from core.geometry.rotary_axes import Kinematics
     from core.machine.machine_model import Machine
 
 
@@ -79,11 +80,9 @@ def setup_for(
     strict: bool = False,
 ) -> Setup:
     """Circumstances of a pass after power-up, from the machine's home; inputs that nobody names are open."""
-    from app.compose.kinematics_chain import kinematics_of
-
     return Setup(
         start=(0.0,) * len(machine.axes),
-        kinematics=kinematics_of(machine),
+        kinematics=_kinematics(machine),
         tools=tools,
         secondary=secondary,
         zero=zero or {},
@@ -94,3 +93,12 @@ def setup_for(
         last_rapid=machine.manual_rapid,
         inputs=InputStates(dict(inputs or {})),
     )
+
+
+def _kinematics(machine: Machine) -> Kinematics | None:
+    """The chain of axes of a mill."""
+    if machine.kinematics is None:
+        return None
+    from app.compose.kinematics_chain import kinematics_of
+
+    return kinematics_of(machine)

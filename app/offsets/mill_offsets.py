@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
 
-from core.geometry.rotary_axes import DatumPreset
 from core.interpreter.job_setup import MillTool, Setup, ToolOffset
 from core.store.store_rows import MillRow, PresetRow, ToolRow
+
+if TYPE_CHECKING:
+    from core.geometry.rotary_axes import DatumPreset
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,6 +31,8 @@ def with_mill(setup: Setup, offsets: MillOffsets) -> Setup:
     machine = setup.kinematics
     if machine is None:
         return setup
+    from core.geometry.rotary_axes import DatumPreset
+
     presets = {0: DatumPreset(machine.origin, machine.basic_rotation)}
     presets |= {number: preset_of(row) for number, row in offsets.presets.items()}
     active = offsets.preset if offsets.preset in presets else 0
@@ -49,6 +54,8 @@ def rows_of(tools: Mapping[int, ToolRow]) -> dict[int, MillRow]:
 
 def preset_of(row: PresetRow) -> DatumPreset:
     """A row of the preset table as it is reckoned with."""
+    from core.geometry.rotary_axes import DatumPreset
+
     return DatumPreset((row.x, row.y, row.z), row.rotation, tuple(zeros_of(row).items()))
 
 

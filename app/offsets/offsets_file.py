@@ -90,12 +90,14 @@ def read_tool_shapes(path: Path) -> dict[int, ToolShape]:
     Lengths are inches in the file, as in an offsets file; outlines of holder and profile are texts in mm.
     Raises CommandError naming every mistake.
     """
-    from app.desk.stored_shapes import tool_shapes
-
     data = read_toml(path)
     mistakes = _unknown_tables(data)
     found = _tools(data, mistakes)
     refuse(path, mistakes)
+    if not found.shapes:
+        return {}
+    from app.desk.stored_shapes import tool_shapes
+
     return tool_shapes(found.shapes, found.rows)
 
 

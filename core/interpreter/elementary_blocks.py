@@ -10,17 +10,19 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from math import hypot
-from typing import NamedTuple, overload
+from typing import TYPE_CHECKING, NamedTuple, overload
 
 import numpy as np
 import numpy.typing as npt
 
 from core.geometry.lines_and_arcs import arc_extent, arc_length
-from core.geometry.machine_travel import Travel
-from core.geometry.virtual_mill import PlaneMove
 from core.interpreter.actions import Action
 from core.interpreter.modal_state import Modal
-from core.interpreter.working_plane import Swivel
+
+if TYPE_CHECKING:
+    from core.geometry.machine_travel import Travel
+    from core.geometry.virtual_mill import PlaneMove
+    from core.interpreter.working_plane import Swivel
 
 
 class Kind(StrEnum):

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
-from core.geometry.rotary_axes import DatumPreset, Kinematics
-from core.interpreter.checkpoint import Begin
+if TYPE_CHECKING:
+    from core.geometry.rotary_axes import DatumPreset, Kinematics
+    from core.interpreter.checkpoint import Begin
 
 
 @dataclass(frozen=True, slots=True)

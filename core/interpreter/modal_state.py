@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from core.geometry.surface_speed import surface_rpm
-from core.geometry.virtual_mill import Face, Side
 from core.interpreter import units
+
+if TYPE_CHECKING:
+    from core.geometry.virtual_mill import Face, Side
 
 
 class Mill(NamedTuple):

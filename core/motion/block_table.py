@@ -10,13 +10,15 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, fields
 from itertools import chain, repeat
 from operator import attrgetter
-from typing import Any, Protocol, TypeGuard
+from typing import TYPE_CHECKING, Any, Protocol, TypeGuard
 
 import numpy as np
 
-from core.geometry.machine_travel import CurvedMove, Travel
-from core.geometry.virtual_mill import PlaneMove
 from core.motion.axis_limits import BoolArray, FloatArray, IntArray, MotionError
+
+if TYPE_CHECKING:
+    from core.geometry.machine_travel import CurvedMove, Travel
+    from core.geometry.virtual_mill import PlaneMove
 
 
 class ModalLike(Protocol):

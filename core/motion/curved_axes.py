@@ -8,10 +8,10 @@ becomes chords in X, Z and C; the reasons are in docs/decisions/0010-c-axis-and-
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from core.geometry.machine_travel import CurvedMove
 from core.motion.axis_limits import (
     CENTRIPETAL_SHARE,
     OVERRIDE_MAX,
@@ -23,6 +23,9 @@ from core.motion.axis_limits import (
 from core.motion.block_table import BlockTable
 from core.motion.path_pieces import SAME_POINT, Pieces, joined
 from core.motion.speed_limits import least_ratio
+
+if TYPE_CHECKING:
+    from core.geometry.machine_travel import CurvedMove
 
 CHORD_ERROR = 1e-4  # mm by which a chord may leave the mill's way, seen from the part
 STEP_SHARE = 0.5  # of what a corner may ask of an axis: the joints of chords then cost no speed

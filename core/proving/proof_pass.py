@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from itertools import chain
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
 from core.geometry.lines_and_arcs import arc_sweep
-from core.geometry.virtual_mill import PlaneMove
 from core.interpreter.actions import Dwell, ProgramStop
 from core.interpreter.elementary_blocks import Block, Floats, Kind, Series
 from core.interpreter.machine_requirements import Need, first_needs, needs_of
@@ -21,6 +21,9 @@ from core.proving.cutting_checks import CuttingChecks
 from core.proving.machine_checks import c_findings, travel_findings
 from core.proving.program_timeline import MotionSpan, Part, RestSpan, Timeline
 from core.proving.proof_report import MillFigures, Range, Reach, Report, Times, in_order
+
+if TYPE_CHECKING:
+    from core.geometry.virtual_mill import PlaneMove
 
 # --- sums -----------------------------------------------------------------------------------------------
 

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 from core.interpreter.machine_requirements import Need
-from core.interpreter.working_plane import Swivel
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Dialect
+
+if TYPE_CHECKING:
+    from core.interpreter.working_plane import Swivel
 
 Range = tuple[float, float]
 

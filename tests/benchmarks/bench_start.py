@@ -19,7 +19,8 @@ TURNDESK = (sys.executable, "-m", "app.cli.main")
 SAMPLES = Path(__file__).parents[2] / "resources" / "programs"
 
 WINDOW = """
-import os, sys
+import gc, os, sys
+gc.set_threshold(200_000)  # as the command does
 from PySide6.QtCore import QTimer
 from PySide6.QtWidgets import QApplication
 from app.screen import run_screen as screen
@@ -42,7 +43,8 @@ screen.run_screen(program=program, build=build)
 """
 
 HEADLESS = """
-import os, sys
+import gc, os, sys
+gc.set_threshold(200_000)  # as the command does
 from pathlib import Path
 from app.compose.machine_setup import read_machine, setup_for
 from app.compose.stored_offsets import chosen_offsets

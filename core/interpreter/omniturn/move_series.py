@@ -106,7 +106,7 @@ class SeriesLookAhead:
         self._state, self._flow = state, flow
         self._ready, self._texts = program.ready, program.source.lines
         self._loops = program.structure.loop_ends
-        self._looked = -1  # index of a line from which on there was no series
+        self._without = range(0)  # indices of lines at which no series begins
 
     def take(self, lines: int, blocks: int) -> tuple[Series, int] | None:
         """The moves that come next and how many lines they have executed; None where they do not pay.
@@ -114,25 +114,26 @@ class SeriesLookAhead:
         ``lines`` and ``blocks`` are how many may yet be executed and made. ``state.fast`` must hold.
         """
         at = self._flow.at
-        if self._looked <= at < self._looked + LEAST:
+        if at in self._without:
             return None
-        taken = (
+        self._without = range(at, at + LEAST)  # unless one is found, or there is another line before that
+        return (
             self._passes(at, lines, blocks) if at - 1 in self._loops else self._consecutive(at, lines, blocks)
         )
-        if taken is None:
-            self._looked = at
-        return taken
 
     def _consecutive(self, at: int, lines: int, blocks: int) -> tuple[Series, int] | None:
         """Lines one after the other."""
         end = min(self._ready.moves_until(at), self._flow.end, at + min(MOST, lines, blocks))
         columns = self._ready.columns
-        if end - at < LEAST or not unchanged(self._state, columns.part(slice(at, at + LEAST))).all():
+        if end - at < LEAST:
+            self._without = range(at, end + 1)
+            return None
+        if not unchanged(self._state, columns.part(slice(at, at + LEAST))).all():
             return None
         part = columns.part(slice(at, end))
         other = np.flatnonzero(~unchanged(self._state, part))
         count = int(other[0]) if len(other) else end - at
-        self._flow.at = at + count
+        self._flow.at, self._without = at + count, range(0)
         numbers = np.arange(at + 1, at + 1 + count)
         return series(self._state, part.part(slice(0, count)), numbers, self._texts), count
 
@@ -150,5 +151,6 @@ class SeriesLookAhead:
             return None
         index = np.tile(np.arange(length), times)
         self._flow.passed(times)
+        self._without = range(0)
         made = series(self._state, body.part(index), at + 1 + index, self._texts)
         return made, times * (length + 1)

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
-from core.geometry.virtual_mill import PlaneMove
 from core.interpreter.actions import Action, Dwell
 from core.interpreter.diagnostic_log import Log
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.job_setup import Setup
 from core.interpreter.modal_state import Modal
 from core.interpreter.units import MM_PER_INCH
+
+if TYPE_CHECKING:
+    from core.geometry.virtual_mill import PlaneMove
 
 
 class Corner(NamedTuple):

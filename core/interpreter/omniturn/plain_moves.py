@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator, Sequence
-from math import isnan
 from typing import NamedTuple, overload
 
 import numpy as np
@@ -86,13 +85,21 @@ class Columns(NamedTuple):
 
     def moves(self) -> list[PlainMove | None]:
         """Each line as it would have been read alone; None where it is no plain move."""
-        x, z, f = ([None if isnan(v) else v for v in column.tolist()] for column in self[:3])
+        x, z, f = (_words_of(column) for column in self[:3])
         rows = zip(x, z, f, self.g.tolist(), self.fine.tolist(), strict=True)
         return [row if known else None for row, known in zip(rows, self.known.tolist(), strict=True)]
 
     def part(self, at: slice | Ints) -> Columns:
         """The lines of a slice, or of these indices."""
         return Columns(self.x[at], self.z[at], self.f[at], self.g[at], self.fine[at], self.known[at])
+
+
+def _words_of(column: Floats) -> list[float | None]:
+    """The numbers of a column, None where a line has none."""
+    numbers: list[float | None] = column.tolist()
+    for at in np.isnan(column).nonzero()[0].tolist():
+        numbers[at] = None
+    return numbers
 
 
 def read_columns(lines: Sequence[str], columns: Columns) -> None:
@@ -173,7 +180,7 @@ class ReadyLines(Sequence[ReadyLine]):
 
     def __iter__(self) -> Iterator[ReadyLine]:
         for number in range(-(-len(self) // _PAGE)):
-            yield from self._pages.get(number) or self._made(number)
+            yield from self._page(number)
 
     def moves_until(self, at: int) -> int:
         """The next line from this one on that is no plain move, or one that is MOST or more away."""
