@@ -5236,12 +5236,12 @@
     <message>
       <location filename="app/desk/first_job.py" />
       <source>P (NO COUNT), D, THEN BOTH PALMS; H HOLDS. LOOK AT EVERY MOVE, WITHOUT STOCK</source>
-      <translation>P (SIN CONTAR), D, LUEGO LOS DOS BOTONES; H DETIENE. MIRE CADA MOVIMIENTO, SIN MATERIAL</translation>
+      <translation>P (SIN CONT), D, LUEGO LOS DOS PULSADORES; H RETIENE. MIRE CADA MOVIMIENTO, SIN MATERIAL</translation>
     </message>
     <message>
       <location filename="app/desk/first_job.py" />
       <source>P AGAIN, PUT STOCK IN, BOTH PALMS; THEN MEASURE IT: F9 CORRECTS WEAR</source>
-      <translation>P OTRA VEZ, PONGA MATERIAL, LOS DOS BOTONES; LUEGO MIDA: F9 CORRIGE EL DESGASTE</translation>
+      <translation>P OTRA VEZ, PONGA MATERIAL, LOS DOS PULSADORES; LUEGO MIDA: F9 CORRIGE EL DESGASTE</translation>
     </message>
     <message>
       <location filename="app/desk/first_job.py" />
@@ -9186,7 +9186,7 @@
     <message>
       <location filename="app/part/part_tables.py" />
       <source>FINDINGS  ·  {name}</source>
-      <translation>AVISOS  ·  {name}</translation>
+      <translation>HALLAZGOS  ·  {name}</translation>
     </message>
     <message>
       <location filename="app/part/part_tables.py" />
@@ -12156,7 +12156,7 @@
     <message>
       <location filename="app/screen/page_table.py" />
       <source>findings of the program, its stock, silenced checks</source>
-      <translation>avisos del programa, su material, comprobaciones silenciadas</translation>
+      <translation>hallazgos del programa, su material, comprobaciones silenciadas</translation>
     </message>
     <message>
       <location filename="app/screen/page_table.py" />
@@ -14066,7 +14066,7 @@
     <message>
       <location filename="app/special/preferences.py" />
       <source>PALMS LATCH WHERE EVERYTHING IS SIMULATED ALONE: HERE SOMETHING REAL WOULD TURN</source>
-      <translation>LOS BOTONES SE ENCLAVAN SOLO DONDE TODO ES SIMULADO: AQUÍ GIRARÍA ALGO REAL</translation>
+      <translation>LOS PULSADORES SE ENCLAVAN SOLO DONDE TODO ES SIMULADO: AQUÍ GIRARÍA ALGO REAL</translation>
     </message>
     <message>
       <location filename="app/special/preferences.py" />
