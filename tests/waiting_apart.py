@@ -25,7 +25,7 @@ WAIT = (
     "tests/drivers/hal/",
     "tests/drivers/transfer/",
 )
-KINDER = 5  # how much less of a core who reckons claims than who has a machine in real time
+KINDER = 3  # how much less of a core who reckons claims than who has a machine in real time
 _MOST = 50  # tests that a worker is given at once
 _SHARES = 8  # at least so many portions for each worker
 

@@ -84,6 +84,7 @@ def prove_out(rig: Rig, chance: Random | None) -> int:
 
 @settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(programs(), st.randoms(use_true_random=False), st.booleans())
+@pytest.mark.long
 def test_a_prove_out_ends_where_the_program_does(
     program: tuple[str, tuple[float, float]], chance: Random, single: bool
 ) -> None:

@@ -66,6 +66,7 @@ def spots_of(width: float, height: float, pitch: float = 1.3) -> Points:
 
 @pytest.mark.parametrize("overlap", [0.7, 1, 1.9])
 @pytest.mark.parametrize("reciprocation", [0, 200])
+@pytest.mark.long
 def test_a_pocket_is_roughed_out_round_its_island(overlap: float, reciprocation: float) -> None:
     ran = milled(22, q2=overlap, q19=reciprocation)
     points = cuts(ran)

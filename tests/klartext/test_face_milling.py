@@ -54,6 +54,7 @@ def rectangle(x: float, y: float, length: float, width: float) -> Points:
 
 @pytest.mark.parametrize("strategy", [0, 1, 2, 3, 4])
 @pytest.mark.parametrize("overlap", [0.5, 1.6, 1.99])
+@pytest.mark.long
 def test_every_spot_of_a_face_is_gone_over_at_every_depth(strategy: int, overlap: float) -> None:
     """From Z2 to Z-2.5 in even infeeds of 2 at most (3 of 1.5), the last half millimetre at Q385."""
     ran = milled(233 if strategy > 2 else 232, q389=strategy, q370=overlap)

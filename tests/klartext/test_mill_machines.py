@@ -67,6 +67,7 @@ def file_of(tmp_path: Path, text: str) -> Path:
 
 
 @pytest.mark.parametrize("name", MACHINES)
+@pytest.mark.long
 def test_a_chamfer_is_cut_on_any_machine(
     turndesk: Turndesk, tmp_path: Path, offsets: Path, name: str
 ) -> None:

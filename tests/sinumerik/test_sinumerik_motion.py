@@ -132,6 +132,7 @@ def test_the_modulo_axis_counts_on_in_the_machine() -> None:
 
 
 @pytest.mark.parametrize("machine", [MODULO, LINEAR], ids=["modulo", "linear"])
+@pytest.mark.long
 def test_it_runs_on_the_simulated_lathe(machine: Machine) -> None:
     around = setup(machine, HOME, ZERO)
     report = prove(program(machine), around, machine)
