@@ -27,7 +27,7 @@ from core.executor.commands import CycleStart, EnableDrives, FeedHold, Jog, Load
 from core.executor.job import Proof, make_job
 from core.interpreter.job_setup import ToolOffset
 from core.language.source import Source
-from core.store.database import FILE_NAME
+from core.store.store_file import FILE_NAME
 from drivers.lookalikes.plant_hands import PlantHands
 
 SHOWN = 0.01  # s between two lines of the child

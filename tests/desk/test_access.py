@@ -46,6 +46,7 @@ from core.store import database
 from core.store.people import PersonRow
 from core.store.store import Store
 from core.store.store_errors import StoreError
+from core.store.store_file import FILE_NAME
 from core.store.store_rows import Kind
 from core.store.tool_lives import insert_changes
 from drivers.clocks import StepClock
@@ -648,7 +649,7 @@ def test_one_of_service_stays(room: Room) -> None:
 
 def test_a_damaged_row_lets_nobody_in_and_switches_nothing_off(room: Room, tmp_path: Path) -> None:
     room.enter_people()
-    with closing(sqlite3.connect(tmp_path / "home" / database.FILE_NAME)) as outside, outside:
+    with closing(sqlite3.connect(tmp_path / "home" / FILE_NAME)) as outside, outside:
         outside.execute("UPDATE people SET level = 3 WHERE name = 'CARLA'")
     room.access.reload()
     assert room.access.people.on
@@ -660,7 +661,7 @@ def test_a_store_of_before_has_no_levels_and_keeps_its_log(tmp_path: Path) -> No
     folder = tmp_path / "older"
     folder.mkdir()
     before = next(n for n, text in enumerate(database.migrations()) if "CREATE TABLE people" in text)
-    with closing(sqlite3.connect(folder / database.FILE_NAME, isolation_level=None)) as connection:
+    with closing(sqlite3.connect(folder / FILE_NAME, isolation_level=None)) as connection:
         connection.execute(f"PRAGMA application_id = {database.APPLICATION_ID}")
         database.migrate(connection, database.migrations()[:before])
         connection.execute("INSERT INTO events (at, kind, text) VALUES ('2026-01-02', 'start', 'pin.nc')")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import pytest
 
 from core.interpreter.dialects import code_book
@@ -10,15 +12,24 @@ from core.language.diagnostics import Severity
 from core.language.source import Dialect
 from tests.dialects.golden_constructs import GROUNDS, Golden, blank, differences, extent, goldens, ran, way
 
-CASES = [
-    pytest.param(dialect, entry, goldens(dialect)[entry.head], id=f"{dialect}-{entry.head}")
+CONSTRUCTS = [
+    (dialect, entry, goldens(dialect)[entry.head])
     for dialect in GROUNDS
     for entry in code_book(dialect).entries
     if entry.head in goldens(dialect)
 ]
 
 
-@pytest.mark.parametrize(("dialect", "entry", "golden"), CASES)
+def cases(chosen: Sequence[tuple[Dialect, Entry, Golden]]) -> pytest.MarkDecorator:
+    """A test for each of them, by its name."""
+    return pytest.mark.parametrize(
+        ("dialect", "entry", "golden"),
+        chosen,
+        ids=[f"{dialect}-{entry.head}" for dialect, entry, _ in chosen],
+    )
+
+
+@cases(CONSTRUCTS)
 def test_a_construct_makes_what_its_golden_says(dialect: Dialect, entry: Entry, golden: Golden) -> None:
     came = ran(dialect, entry, golden.program, golden.machine)
     assert [each.in_one_line("") for each in came.findings if each.severity is Severity.ERROR] == []
@@ -34,7 +45,7 @@ def test_a_construct_makes_what_its_golden_says(dialect: Dialect, entry: Entry, 
     assert sorted(came.told(Severity.WARNING, Severity.NOTE)) == sorted(golden.told)
 
 
-@pytest.mark.parametrize(("dialect", "entry", "golden"), [case for case in CASES if case.values[1].refused])
+@cases([each for each in CONSTRUCTS if each[1].refused])
 def test_its_refusal_is_told_where_it_stands(dialect: Dialect, entry: Entry, golden: Golden) -> None:
     came = ran(dialect, entry, entry.refused, golden.refusing)
     assert came.first_error == golden.refused

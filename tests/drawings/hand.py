@@ -31,7 +31,7 @@ Draw = Callable[[Any], object]
 
 def dxf(path: Path, draw: Draw, unit: int = 4) -> Path:
     """A DXF file; ``draw`` gets its model space. ``unit`` as $INSUNITS: 0 none, 1 inch, 4 mm."""
-    document = ezdxf.new("R2010")
+    document = ezdxf.filemanagement.new("R2010")
     document.units = unit
     draw(document.modelspace())
     document.saveas(path)
@@ -87,4 +87,5 @@ def radii(
     assert not report.errors, [d.text for d in report.diagnostics]
     assert part.last is not None
     points = np.array(part.last.bore if inside else part.last.outside)[::-1]
-    return np.interp(np.array(list(at)), points[:, 0], points[:, 1])
+    found: np.ndarray = np.interp(np.array(list(at)), points[:, 0], points[:, 1])
+    return found

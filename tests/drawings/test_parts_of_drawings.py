@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -27,7 +28,7 @@ SHAFT = (
 
 def shaft(z: float) -> float:
     """Chamfer, cylinder, groove, taper of 45 degrees, fillet of 2, shoulder with a radius of 2."""
-    steps = (
+    steps: tuple[tuple[float, Callable[[], float]], ...] = (
         (-1.0, lambda: 9.0 - z),
         (-10.0, lambda: 10.0),
         (-13.0, lambda: 8.0),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -35,7 +36,7 @@ SHAFT = (
 )
 
 
-def of(chosen: Profile, bar: float, hole: float = 0.0, **typed: float) -> tuple[ProfileProgram, Trial]:
+def of(chosen: Profile, bar: float, hole: float = 0.0, **typed: Any) -> tuple[ProfileProgram, Trial]:
     """The program, and its proof on the shipped lathe."""
     made = program(chosen, dialect=OURS, **typed)
     stock = TrialStock(bar, typed.get("STOCK", 0.5), hole)

@@ -121,9 +121,10 @@ def test_numbers_are_those_of_single_lines(moves: list[str]) -> None:
     for at, text in enumerate(moves):
         if (move := read_move(text)) is not None:
             alone.put(at, move)
-    for many, one in zip(read, alone, strict=True):
-        assert np.array_equal(many[alone.known], one[alone.known], equal_nan=True)
-        assert np.array_equal(np.signbit(many[alone.known]), np.signbit(one[alone.known]))
+    for column, expected in zip(read, alone, strict=True):
+        many, one = np.asarray(column)[alone.known], np.asarray(expected)[alone.known]
+        assert np.array_equal(many, one, equal_nan=True)
+        assert np.array_equal(np.signbit(many), np.signbit(one))
     assert (read.known == alone.known).all()
 
 

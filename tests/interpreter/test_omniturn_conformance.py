@@ -158,7 +158,7 @@ def test_facing_at_constant_surface_speed() -> None:
     assert [block.line for block in result.moves if block.css is not None] == [8, 9, 10]
 
 
-NOSE = {1: (-0.015, -0.015, 0.015)}  # X -.03 as a diameter, Z -.015, R .015
+NOSE: dict[int, tuple[float, ...]] = {1: (-0.015, -0.015, 0.015)}  # X -.03 as a diameter, Z -.015, R .015
 
 
 def test_corners_of_a_contour_with_compensation() -> None:

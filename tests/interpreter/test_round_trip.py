@@ -60,7 +60,7 @@ def _line(block: Block) -> str:
 )
 def test_plain_lines_make_the_same_path(name: str, source: Source) -> None:
     tools, *_ = read_offsets(SAMPLES / "offsets.toml")
-    path = [b for b in moves(source, {n: ToolOffset() for n in range(1, 9)} | tools) if _long_enough(b)]
+    path = [b for b in moves(source, {n: ToolOffset() for n in range(1, 9)} | dict(tools)) if _long_enough(b)]
     if not path or not PLAIN.issuperset(block.kind for block in path):
         pytest.skip(f"{name} has no moves, or moves that plain lines cannot say")
     again = moves(Source(f"{name} again", written(path)), {})

@@ -113,7 +113,8 @@ def in_slot(points: Points) -> Points:
     angle = np.arctan2(here[:, 1], here[:, 0])
     on_arc = (angle >= 0.0) & (angle <= np.pi / 2)
     ends = np.minimum(np.hypot(*(here - (30.0, 0.0)).T), np.hypot(*(here - (0.0, 30.0)).T))
-    return np.where(on_arc, np.abs(np.hypot(*here.T) - 30.0), ends) - 6.0
+    outside: Points = np.where(on_arc, np.abs(np.hypot(*here.T) - 30.0), ends) - 6.0
+    return outside
 
 
 @pytest.mark.parametrize("number", [254, 211])

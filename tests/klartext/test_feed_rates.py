@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import pytest
 
@@ -14,7 +15,7 @@ CUTTER = {1: MillTool(radius=5.0, teeth=4)}
 START = "TOOL CALL 1 Z S1200\nL X+0 Y+0 Z+0 R0 FMAX M3\n"
 
 
-def feeds(text: str, **setup: object) -> list[float]:
+def feeds(text: str, **setup: Any) -> list[float]:
     ran = run(START + text, mill_tools=CUTTER, **setup)
     assert ran.codes == []
     return [block.feed for block in ran.blocks if block.kind in {Kind.FEED, Kind.PLANE_ARC}]
@@ -70,7 +71,7 @@ def test_m103_keeps_the_share_of_z(text: str, per_second: list[float]) -> None:
     assert feeds(f"M103 F20\n{text}") == pytest.approx(per_second)
 
 
-def refused(text: str, **setup: object) -> Ran:
+def refused(text: str, **setup: Any) -> Ran:
     ran = run(START + text, mill_tools=CUTTER, **setup)
     assert len([block for block in ran.blocks if block.kind is Kind.FEED]) == 0
     return ran

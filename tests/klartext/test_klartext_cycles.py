@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import pytest
 
@@ -417,7 +418,7 @@ def test_a_preset_that_is_not_in_the_table_is_refused() -> None:
 
 
 def test_a_tool_is_called_by_its_name_in_the_table() -> None:
-    around = {"tools": {7: ToolOffset(z=80.0)}, "tool_names": {"MILL_D10": 7}}
+    around: dict[str, Any] = {"tools": {7: ToolOffset(z=80.0)}, "tool_names": {"MILL_D10": 7}}
     ran = run('TOOL CALL "Mill_D10" Z S1000\nL X+0 Y+0 Z+0 FMAX', tool="", **around)
     assert ran.codes == []
     assert ran.state.modal.tool == 7

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import pytest
 
@@ -10,7 +11,7 @@ from core.interpreter.klartext.q_functions import MOST_Q
 from tests.klartext.running import Ran, run
 
 
-def q(text: str, number: int = 1, **setup: object) -> float:
+def q(text: str, number: int = 1, **setup: Any) -> float:
     ran = run(text, **setup)
     assert ran.codes == []
     return ran.state.q[number]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import pytest
 
@@ -13,7 +14,7 @@ from tests.klartext.running import Ran, run
 R4 = "TOOL DEF 5 L+0 R+4\nTOOL CALL 5 Z S2000 F500\nL X+0 Y+0 Z+50 R0 FMAX M3\n"
 
 
-def ran_of(text: str, **setup: object) -> Ran:
+def ran_of(text: str, **setup: Any) -> Ran:
     return run(text, tool=R4, **setup)
 
 

@@ -41,7 +41,8 @@ def way(block: Block) -> Points:
     if block.travel is not None and isinstance(block.travel.way, HelixMove):
         return block.travel.way.part(block.travel.way.machine(share))
     start, end = np.array(block.swivel.start), np.array(block.swivel.end)
-    return start + share[:, None] * (end - start)
+    straight: Points = start + share[:, None] * (end - start)
+    return straight
 
 
 def cuts(ran: Ran) -> Points:
@@ -53,7 +54,8 @@ def cuts(ran: Ran) -> Points:
 def rounded(points: Points, a: float, b: float, r: float) -> Points:
     """How far points lie outside a rectangle with round corners; negative inside."""
     beyond = np.abs(points) - (a - r, b - r)
-    return np.hypot(*np.maximum(beyond, 0.0).T) + np.minimum(beyond.max(axis=1), 0.0) - r
+    outside: Points = np.hypot(*np.maximum(beyond, 0.0).T) + np.minimum(beyond.max(axis=1), 0.0) - r
+    return outside
 
 
 def left_standing(path: Points, spots: Points) -> float:

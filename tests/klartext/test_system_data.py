@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import pytest
 
 from core.interpreter.job_setup import MillTool, ToolOffset
@@ -14,11 +16,11 @@ TABLE = {
 TOOLS = {1: ToolOffset(z=100.1, nose_radius=4.98), 7: ToolOffset(z=80.0, nose_radius=3.0)}
 
 
-def with_table(text: str, **setup: object) -> Ran:
+def with_table(text: str, **setup: Any) -> Ran:
     return run(text, tools=TOOLS, mill_tools=TABLE, **setup)
 
 
-def read(place: str, before: str = "", **setup: object) -> float:
+def read(place: str, before: str = "", **setup: Any) -> float:
     ran = with_table(f"{before}\nFN 18: SYSREAD Q1 = {place}", **setup)
     assert ran.codes == []
     return ran.state.q[1]

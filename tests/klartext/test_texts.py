@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import pytest
 
 from core.interpreter.job_setup import ToolOffset
@@ -10,7 +12,7 @@ from core.language.source import Source
 from tests.klartext.running import Ran, run, run_source, whole
 
 
-def texts(text: str, **setup: object) -> dict[int, str | None]:
+def texts(text: str, **setup: Any) -> dict[int, str | None]:
     ran = run(text, **setup)
     assert not ran.errors
     return ran.state.texts

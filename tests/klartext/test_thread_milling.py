@@ -41,7 +41,8 @@ def milled(number: int, **q: float) -> Ran:
 
 
 def radii(block: Block) -> np.ndarray:
-    return np.hypot(*(way(block)[:, :2] - MIDDLE).T)
+    found: np.ndarray = np.hypot(*(way(block)[:, :2] - MIDDLE).T)
+    return found
 
 
 def helices(ran: Ran, ring: float) -> list[Block]:

@@ -238,6 +238,7 @@ def test_a_small_blank_at_the_far_rim_stands_on_the_table() -> None:
 def test_a_head_that_leans_leaves_the_workpiece_where_it_is(chamfers: tuple[Scene, list[Block]]) -> None:
     head = shipped_machine("head-table-mill")
     chain = kinematics_of(head)
+    assert chain is not None
     scene = dataclasses.replace(chamfers[0], kinematics=chain)
     upright, leaning = (
         drawn(scene, Instant({"X": 500.0, "Y": 300.0, "Z": -400.0, "B": b, "C": 0.0}, None))[0]

@@ -59,7 +59,7 @@ def test_a_slow_arc_may_use_nearly_all_the_acceleration() -> None:
 def test_a_rounded_centre_still_meets_the_end_exactly() -> None:
     block = arc((0, 10), (10, 0), (0.0005, -0.0008))
     profile = plan(build_path([block], LIMITS))
-    assert profile.position([0.0, profile.duration])[:, :2] == pytest.approx(
+    assert profile.position(np.array([0.0, profile.duration]))[:, :2] == pytest.approx(
         np.array([[0.0, 10.0], [10.0, 0.0]]), abs=1e-9
     )
 

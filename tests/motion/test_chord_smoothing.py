@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from core.interpreter.elementary_blocks import Block
+from core.interpreter.elementary_blocks import Block, Kind
 from core.motion.axis_limits import FloatArray
 from core.motion.chord_smoothing import SUPPORT
 from core.motion.motion_path import Path, PathBuilder
@@ -118,7 +118,7 @@ def test_runs_of_chords_end_where_something_else_begins(kind: str) -> None:
     here, to = (last.x, last.z), (last.x + 0.4, last.z)
     other = {
         "arc": arc(here, to, (last.x + 0.2, last.z), 60.0, n=301),
-        "rapid": dataclasses.replace(line(here, (last.x + 0.02, last.z), 60.0, n=301), kind="rapid"),
+        "rapid": dataclasses.replace(line(here, (last.x + 0.02, last.z), 60.0, n=301), kind=Kind.RAPID),
         "long": line(here, to, 60.0, n=301),
     }[kind]
     path = build_path([*blocks, other], STEPPED)

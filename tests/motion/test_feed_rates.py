@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 import pytest
@@ -23,7 +24,7 @@ from tests.motion.paths import build_path
 SURFACE = 2000.0  # mm/s
 
 
-def turning(start: Point, end: Point, **words: object) -> Block:
+def turning(start: Point, end: Point, **words: Any) -> Block:
     """A move at 0.1 mm per revolution under constant surface speed, clamped at 3000 rpm."""
     modal = Modal(css_max=3000.0)
     block = replace(line(start, end, 0.1), per_rev=True, rpm=500.0, css=SURFACE, modal=modal)

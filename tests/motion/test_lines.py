@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -45,7 +46,7 @@ def test_the_slower_axis_rules() -> None:
 def test_offsets_lead_to_machine_coordinates() -> None:
     block = replace(line((1, 2), (3, 4)), offset_x=10.0, offset_z=-20.0)
     profile = plan(build_path([block], LIMITS))
-    assert profile.position([0.0, profile.duration]) == pytest.approx(
+    assert profile.position(np.array([0.0, profile.duration])) == pytest.approx(
         np.array([[11.0, -18.0, 0.0], [13.0, -16.0, 0.0]]), abs=1e-12
     )
 
@@ -93,8 +94,9 @@ def test_a_feed_must_be_a_positive_number(feed: float) -> None:
 
 @pytest.mark.parametrize("word", ["x", "z0", "c", "offset_x"])
 def test_a_coordinate_must_be_a_number(word: str) -> None:
+    figures: dict[str, Any] = {word: math.nan}
     with pytest.raises(MotionError, match=f"Block 3: {word} is not a number"):
-        build_path([replace(line((0, 0), (0, 1), n=3), **{word: math.nan})], LIMITS)
+        build_path([replace(line((0, 0), (0, 1), n=3), **figures)], LIMITS)
 
 
 def test_a_kind_without_a_law_is_refused() -> None:
@@ -111,7 +113,7 @@ def test_a_kind_without_a_law_is_refused() -> None:
         ({"interval": 0.0}, "interval"),
     ],
 )
-def test_limits_must_be_positive(figures: dict[str, float], named: str) -> None:
+def test_limits_must_be_positive(figures: dict[str, Any], named: str) -> None:
     with pytest.raises(MotionError, match=named):
         MotionLimits(**figures)
 

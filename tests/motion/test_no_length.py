@@ -181,7 +181,7 @@ def test_a_path_of_no_length_is_braked_planned_and_scaled_like_any_other() -> No
     path = build_path([line((1, 2), (1, 2))], LIMITS)
     for profile in (plan(path), plan(path, stop=True), plan(path, feed_scale=0.0, rapid_scale=0.0)):
         assert (profile.duration, profile.end_v) == (0.0, 0.0)
-        assert profile.position([0.0, 1.0]).tolist() == [[1.0, 2.0, 0.0]] * 2
+        assert profile.position(np.array([0.0, 1.0])).tolist() == [[1.0, 2.0, 0.0]] * 2
         assert profile.segments(0.0, 1.0)[0].size == 0
 
 

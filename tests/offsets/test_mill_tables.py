@@ -137,7 +137,7 @@ def test_a_turned_table_is_reckoned_back_to_zero(room: Room) -> None:
     assert room.store.presets()[1].x == pytest.approx(260.0)
 
 
-def touches(room: Room, page: CellTable, name: str, reads: str = "") -> None:
+def touches(room: Room, page: MillTools | Presets, name: str, reads: str = "") -> None:
     page.choose(0, page.columns.index(name))
     page.look(room.now[0])
     for key in reads:

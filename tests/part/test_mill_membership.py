@@ -28,7 +28,8 @@ def somewhere(part: MilledPart, random: np.random.Generator, count: int) -> tupl
     field = part.field
     column, ray = random.integers(0, len(field.middles), count), random.integers(0, 720, count)
     r = random.uniform(BORE, RADIUS, count)
-    metal = ((field.low[:, column, ray] < r) & (r < field.high[:, column, ray])).any(axis=0)
+    within = (field.low[:, column, ray] < r) & (r < field.high[:, column, ray])
+    metal = np.asarray(within.any(axis=0))
     return np.column_stack([r, field.angles[ray], field.middles[column]]), metal
 
 

@@ -27,7 +27,8 @@ def shaft(radius: float = 5.0) -> Solid:
 
 
 def at(z: float, x: float) -> np.ndarray:
-    return SQUARE + np.array([z, x])
+    moved: np.ndarray = SQUARE + np.array([z, x])
+    return moved
 
 
 def drawn(view: SolidView, tool: ToolBody | None = None, chuck: Solid | None = None) -> Image:

@@ -10,7 +10,8 @@ import pytest
 from core.part.insert_codes import InsertCodeError
 from core.part.tool_outline import ToolOutline, nose_circle, outline
 from core.part.tool_polygons import FloatArray, area
-from core.part.tool_shape import ROUND_TOOLS, TIP_DIRECTIONS, Hand, ToolKind, ToolShape
+from core.part.tool_shape import ROUND_TOOLS, Hand, ToolKind, ToolShape
+from core.tool_edges import TIP_DIRECTIONS
 
 CNMG = ToolShape(tip=3, insert="CNMG 120408", holder="MCLNR 2020K12")
 EVERY = [

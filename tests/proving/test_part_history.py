@@ -23,6 +23,7 @@ from core.proving.part_making import PartMaking
 from core.proving.part_setting import PartSetting
 from core.proving.program_tools import ProgramTools
 from core.proving.prove_program import prove
+from core.proving.tip_moves import LiveStep
 
 INCH = 25.4
 TURNING = ToolShape(ToolKind.TURNING, tip=3, nose_radius=0.0, insert="DCMT11T304")
@@ -73,7 +74,9 @@ def test_any_block_in_any_order_is_as_made_straight_through(
 
 def test_half_of_a_cut_has_taken_half_of_the_metal() -> None:
     seen = history(SHAFT)
-    turning = next(k for k, step in enumerate(seen.steps) if step.line == 6)
+    turning = next(
+        k for k, step in enumerate(seen.steps) if not isinstance(step, LiveStep) and step.line == 6
+    )
     instant = seen.at(turning, 0.5)
     assert instant.near is not None
     assert instant.tool is not None
@@ -184,7 +187,9 @@ def test_a_block_that_is_none_is_done_to_no_share() -> None:
 
 def test_the_share_of_a_block_is_told_by_how_far_its_end_is() -> None:
     seen = history(SHAFT)
-    turning = next(k for k, step in enumerate(seen.steps) if step.line == 6) + 1
+    turning = (
+        next(k for k, step in enumerate(seen.steps) if not isinstance(step, LiveStep) and step.line == 6) + 1
+    )
     assert seen.share_at(turning, (0.0, 0.0)) == pytest.approx(1.0)
     assert seen.share_at(turning, (0.55 * INCH / 4, 0.0)) == pytest.approx(0.75)
     assert seen.share_at(turning, (0.55 * INCH / 4, 0.02)) == pytest.approx(0.75)  # beside its path

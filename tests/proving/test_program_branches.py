@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from itertools import product
 
@@ -142,8 +142,8 @@ def test_the_checks_of_cutting_hold_in_branches() -> None:
 
 def test_an_input_that_changes_between_two_questions_is_a_warning() -> None:
     # if and else of one input: neither or both is possible only when it changes in between
-    lines = ("M97I1C1P1", "M97I1C0P2", "G91Z-4", "G90", "M30", "}1", "Z3", "M99", "}2", "Z4", "M99")
-    assert errors(proved(*lines)) == []
+    twice = ("M97I1C1P1", "M97I1C0P2", "G91Z-4", "G90", "M30", "}1", "Z3", "M99", "}2", "Z4", "M99")
+    assert errors(proved(*twice)) == []
     lines = ("G91Z-4", "G90", "M97I1C1P1", "M97I1C0P2", "G91Z-4", "M30", "}1", "Z3", "M99", "}2", "Z4", "M99")
     found = [d for d in proved(*lines).diagnostics if d.code == "soft-limit"]
     assert [(str(d.severity), d.line) for d in found] == [("warning", 8)]
@@ -238,15 +238,20 @@ def text_of(main: list[str], one: list[str], two: list[str], three: list[str]) -
     return "\n".join((*HEAD, *(("LS2", *main[:2], "LF", *main[2:])), "M30", *sum(subs, ()), ""))
 
 
+def in_turn(answers: Sequence[bool]) -> Callable[[str], bool]:
+    """What the inputs say, whichever is asked."""
+    said = iter(answers)
+    return lambda _terminal: next(said)
+
+
 def by_every_answer(text: str, questions: int) -> Iterator[int]:
     """The lines that leave the travel, with each set of answers to so many questions in turn."""
     reading = ReadProgram(Source("A", text))
     for deleted, answers in product((False, True), product((False, True), repeat=questions)):
         interpreter = reading.begin(replace(circumstances(), block_delete=deleted))
         assert isinstance(interpreter, Interpreter)
-        asked = iter(answers)
         state = interpreter._state
-        state.setup = replace(state.setup, inputs=lambda _terminal, asked=asked: next(asked))
+        state.setup = replace(state.setup, inputs=in_turn(answers))
         moves = [block for block in interpreter.blocks() if block.moves]
         yield from (found.line for found in travel_findings(moves, MACHINE))
 

@@ -21,7 +21,8 @@ def arc(angle: np.ndarray, r: float = R) -> np.ndarray:
 def with_play(demand: np.ndarray, bu: float, bv: float) -> np.ndarray:
     """The slide stays half the play behind, on the side that it comes from."""
     way = np.sign(np.gradient(demand, axis=0))
-    return demand - 0.5 * np.array([bu, bv]) * way
+    actual: np.ndarray = demand - 0.5 * np.array([bu, bv]) * way
+    return actual
 
 
 def test_a_circle_through_points() -> None:

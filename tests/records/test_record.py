@@ -15,7 +15,7 @@ def test_a_rotary_axis_counts_degrees_and_inputs_are_logic() -> None:
 
 
 def test_a_stretch_has_its_ends_and_its_own_time_of_day() -> None:
-    times = np.arange(5) * 0.25 + 100.0
+    times = np.arange(5.0, dtype=np.float64) * 0.25 + 100.0
     record = Record((Channel("queue", "s"),), times, {"queue": np.arange(5.0)}, 1_000.0, 4.0)
     cut = record.between(100.25, 100.75)
     assert cut.columns["queue"].tolist() == [1.0, 2.0, 3.0]

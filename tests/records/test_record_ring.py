@@ -93,7 +93,7 @@ def test_rows_that_are_written_over_while_they_are_copied_are_left_out() -> None
     begun = iter((100, 130))  # before they are copied, and behind
 
     class Overtaken(Rows):
-        begun = property(lambda _: next(begun), lambda _self, _value: None)  # type: ignore[assignment]
+        begun = property(lambda _: next(begun), lambda _self, _value: None)
 
     rows = Overtaken(100, 1)
     rows.write(np.arange(100.0)[:, None])

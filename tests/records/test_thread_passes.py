@@ -18,7 +18,7 @@ def cut(
     drop: float = 0.0,
     ripple: float = 0.0,
     way: float = -1.0,
-) -> tuple[np.ndarray, ...]:
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Passes of 15 turns over the same way, entries in degrees; 20 turns a second."""
     leads = leads or tuple(LEAD for _ in entries)
     t = np.arange(int(2.0 * RATE * len(entries))) / RATE
@@ -93,7 +93,7 @@ def test_the_speed_at_which_a_slide_can_just_follow() -> None:
 
 
 def test_an_even_feed_is_one_long_pass_and_the_lead_is_told() -> None:
-    turns = np.arange(4000) * 0.02
+    turns = np.arange(4000.0, dtype=np.float64) * 0.02
     thread = find_thread(turns, -0.2 * turns, np.zeros(4000), np.full(4000, RPM))
     assert len(thread.passes) == 1
     assert thread.lead == pytest.approx(-0.2)

@@ -22,8 +22,8 @@ def moved(speed: float = 20.0, way: float = 2.0, tau: float = TAU) -> object:
     end = way / speed
 
     def lagged(since: np.ndarray) -> np.ndarray:
-        s = np.maximum(since, 0.0)
-        return speed * (s - tau * (1.0 - np.exp(-s / tau)))
+        s: np.ndarray = np.maximum(since, 0.0)
+        return np.multiply(speed, s - tau * (1.0 - np.exp(-s / tau)))
 
     demand = speed * np.minimum(t, end)
     still = np.full(len(times), 3.0)

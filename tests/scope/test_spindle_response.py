@@ -92,7 +92,7 @@ def test_a_speed_that_nobody_tells_is_none() -> None:
 def test_its_sheet_and_drawing() -> None:
     page = Analyses(SimpleNamespace(metric=False), spindle=MODEL, kind=Kind.SPINDLE)  # type: ignore[arg-type]
     page.found = analysed(Kind.SPINDLE, turned((1.0, 1000.0)), 0, {}, MODEL)
-    rows = dict(row.cells for row in page.sheet().rows)
+    rows = {row.cells[0]: row.cells[1] for row in page.sheet().rows}
     assert rows["SPEED"] == "0 → 1000 rpm"
     assert rows["WITHIN 5 % AFTER"] == "0.600 s"
     drawing = scaled(page.drawing(), 1.0 / 25.4)

@@ -53,7 +53,7 @@ def _needs(name: str) -> set[str]:
                     "extra": "",
                 }
                 if each.marker is None or each.marker.evaluate(place):
-                    found.add(canonicalize_name(each.name))
+                    found.add(str(canonicalize_name(each.name)))
     return found
 
 

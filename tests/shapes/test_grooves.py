@@ -36,7 +36,7 @@ def radii(text: str, tool: ToolShape, stock: str, at: list[float], *, inside: bo
     assert not report.errors, [d.text for d in report.diagnostics]
     assert part.last is not None
     points = np.array(part.last.bore if inside else part.last.outside)[::-1]
-    return np.interp(np.array(at), points[:, 0], points[:, 1]).tolist()
+    return [float(each) for each in np.interp(np.array(at), points[:, 0], points[:, 1])]
 
 
 @pytest.mark.parametrize(("at_face", "at_chuck"), [(20.0, 20.0), (30.0, 0.0), (0.0, 15.0), (60.0, 45.0)])

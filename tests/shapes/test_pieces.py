@@ -126,7 +126,12 @@ def test_every_shape_is_read_and_found_good_and_found_again(name: str) -> None:
 @pytest.mark.parametrize("head", [{"WORDS": "RADIUS"}, {"UNIT": "METRIC"}])
 def test_other_modes_are_found_again(head: dict[str, Value]) -> None:
     scale = 25.4 if "UNIT" in head else 1.0
-    typed = {"FROM": 0.75 * scale, "LONG": 0.8 * scale, "WIDE": 0.08 * scale, "BACK": 0.03 * scale}
+    typed: dict[str, float | str] = {
+        "FROM": 0.75 * scale,
+        "LONG": 0.8 * scale,
+        "WIDE": 0.08 * scale,
+        "BACK": 0.03 * scale,
+    }
     text = written([("P", typed, ())], **head)
     report, _ = proved("\n".join(text) + "\n")
     assert not bad(report)

@@ -86,7 +86,7 @@ def cuts(text: list[str]) -> list[Block]:
 )
 @pytest.mark.parametrize("head", [{}, {"WORDS": "RADIUS"}])
 def test_each_is_proved_and_opened_again_from_its_text(key: str, typed: Typed, head: Typed) -> None:
-    text = written((key, typed), **head)
+    text = written((key, typed), shop=SHOP, **head)
     blocks(text)
     piece = pieces(text, SHOP, NEW)[-1]
     assert (piece.filled.shape.name, piece.foreign, piece.taken) == (SINUMERIK_SHAPES[key].name, -1, ())

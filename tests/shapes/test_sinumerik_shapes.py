@@ -207,7 +207,14 @@ def test_the_same_thread_as_in_omniturn(typed: dict[str, Value]) -> None:
 
 def test_the_program_is_that_of_a_good_programmer() -> None:
     """One move a line, words apart, CYCLE95 on the contour that the finish runs along, G42 to the right."""
-    typed = {"FROM": 30.0, "ROUGH": 2.0, "COMP": 1.0, "FEED": 0.1, "RFEED": 0.2, "RPM": 1200.0}
+    typed: dict[str, float | str] = {
+        "FROM": 30.0,
+        "ROUGH": 2.0,
+        "COMP": 1.0,
+        "FEED": 0.1,
+        "RFEED": 0.2,
+        "RPM": 1200.0,
+    }
     text = written([("T", typed, PROFILE[:4])], OURS, BAR=30.0)
     assert text[0].startswith("G54 G18 G90 G95 G710 DIAMON ; HEAD METRIC UNIT ")
     assert text[2].startswith("T1 D1 ; TURN OUTSIDE SIDE 30 FROM 2 ROUGH ")

@@ -156,5 +156,12 @@ def test_a_lead_that_the_slide_cannot_follow_is_refused() -> None:
 
 
 def test_deeper_than_its_flanks_is_refused() -> None:
-    own = {"SERIES": "OWN", "PITCH": 0.05, "CREST": 0.5, "ROOT": 0.40, "LONG": 0.5, "RPM": 300.0}
+    own: dict[str, float | str] = {
+        "SERIES": "OWN",
+        "PITCH": 0.05,
+        "CREST": 0.5,
+        "ROOT": 0.40,
+        "LONG": 0.5,
+        "RPM": 300.0,
+    }
     assert [each.word for each in thread(own).refusals(Setting())] == ["ROOT"]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
 
@@ -11,7 +12,9 @@ from app.programs import whole_file
 from app.programs.whole_file import FileError
 from app.sharing import sharing as sharing_module
 from app.sharing.sharing import Sharing, TakeError
+from core.sharing.shared_place import Published
 from core.sharing.sharing_errors import SharingError
+from core.sharing.version_record import DeskState
 from core.store.shared_versions import Family, SharedVersion
 from tests.sharing.conftest import MakeDesk
 from tests.sharing.rigs import PowerCut, Rig
@@ -333,8 +336,8 @@ def test_a_restore_in_the_middle_of_a_look_is_told_and_ends_nothing(
     (folder_of(one) / "PART.NC").unlink()
     store, put = one._store(), one.place.put
 
-    def closed_meanwhile(*what: object) -> None:
-        put(*what)
+    def closed_meanwhile(versions: Sequence[Published], state: DeskState) -> None:
+        put(versions, state)
         store.close()
 
     monkeypatch.setattr(one.place, "put", closed_meanwhile)

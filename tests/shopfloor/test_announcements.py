@@ -192,7 +192,9 @@ def mosquitto(tmp_path: Path) -> Iterator[int]:
 def test_a_broker_hears_state_events_and_the_end(mosquitto: int) -> None:
     heard: SimpleQueue[tuple[str, bytes, bool]] = SimpleQueue()
     office = mqtt.Client(CallbackAPIVersion.VERSION2)
-    office.on_message = lambda _c, _d, message: heard.put((message.topic, message.payload, message.retain))
+    office.on_message = lambda _c, _d, message: heard.put(
+        (message.topic, bytes(message.payload), message.retain)
+    )
     office.on_subscribe = lambda *_all: heard.put(("subscribed", b"", False))
     office.connect("127.0.0.1", mosquitto)
     office.subscribe("shop/#", 1)

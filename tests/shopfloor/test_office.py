@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import socket
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from datetime import UTC, datetime
@@ -67,7 +67,14 @@ def get(
 ) -> tuple[str, dict[str, str], str]:
     answer: list[Any] = []
     environ = {"REQUEST_METHOD": method, "PATH_INFO": path, **more}
-    body = b"".join(wsgi(environ, lambda status, headers: answer.extend((status, dict(headers)))))
+
+    def begin(
+        status: str, headers: list[tuple[str, str]], _error: object = None, /
+    ) -> Callable[[bytes], object]:
+        answer.extend((status, dict(headers)))
+        return lambda _written: None
+
+    body = b"".join(wsgi(environ, begin))
     return answer[0], answer[1], body.decode()
 
 

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from typing import cast
 
 import pytest
 
 from app.compose.machine_files import load_machine
 from app.shopfloor.floor_reading import PLACES, FloorReader, Value
+from core.alarms import Code
 from core.executor.raised_alarm import AlarmError, alarm_and_reaction, make_alarm
 from core.executor.snapshot import Alarm, Snapshot, State
 from core.interpreter.modal_state import Modal
@@ -143,7 +145,7 @@ def active(snapshot: Snapshot) -> dict[str, tuple[tuple[str, str, str], ...]]:
     return {key: found for key, found in reading.conditions.items() if found}
 
 
-def alarm(code: str, detail: str = "") -> Alarm:
+def alarm(code: Code, detail: str = "") -> Alarm:
     return alarm_and_reaction(AlarmError(code, detail), 0, 0.0)[0]
 
 
@@ -173,19 +175,20 @@ def test_without_alarms_all_is_normal() -> None:
         ("internal", "KeyError: 'X'", "system"),
     ],
 )
-def test_where_an_alarm_belongs(code: str, detail: str, key: str) -> None:
+def test_where_an_alarm_belongs(code: Code, detail: str, key: str) -> None:
     raised = alarm(code, detail)
     fault = ("FAULT", str(raised.number), f"{raised.text}: {raised.cause}")
     assert active(replace(AT, state=State.FAULT, alarms=(raised,))) == {key: (fault,)}
 
 
 @pytest.mark.parametrize("code", PLACES)
-def test_every_place_is_that_of_an_alarm(code: str) -> None:
+def test_every_place_is_that_of_an_alarm(code: Code) -> None:
     assert alarm(code).code == code
 
 
 def test_an_alarm_that_nobody_has_placed_is_not_lost() -> None:
-    new = Alarm(999, "new", "SOMETHING NEW", "nobody knows", "")
+    unknown = cast("Code", "new")  # no catalogue has it
+    new = Alarm(999, unknown, "SOMETHING NEW", "nobody knows", "")
     assert active(replace(AT, alarms=(new,))) == {
         "system": (("FAULT", "999", "SOMETHING NEW: nobody knows"),)
     }

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -112,11 +113,15 @@ def test_held_while_c_turns_alone_and_gone_on(bench: Bench) -> None:
     assert (end.parts, end.alarms) == (1, ())
 
 
+def stands_behind(line: int, shot: Snapshot) -> bool:
+    return shot.state is State.BLOCK_END and shot.line == line
+
+
 def test_single_block_stops_between_a_move_and_a_turn_of_c(bench: Bench) -> None:
     bench.desk.switch("single_block")
     bench.started()
     for line in (1, 2, 3, 4):
-        bench.until(lambda s, line=line: s.state is State.BLOCK_END and s.line == line)
+        bench.until(partial(stands_behind, line))
         bench.wait(2.0)  # into a cut only with the spindle at speed
         bench.desk.start_button()
     bench.until(lambda s: s.line == 5)
@@ -185,5 +190,7 @@ def test_a_program_of_the_lathes_own_language_runs_in_mm_there_and_is_warned(
     loaded = bench.desk.session.settled(60.0)
     assert [d.code for d in loaded.diagnostics] == ["units-unnamed"]
     assert loaded.job is not None
-    proved = bench.desk.attached(Editor).steps.make_job(loaded.job.source, False)
+    editor = bench.desk.attached(Editor)
+    assert editor is not None
+    proved = editor.steps.make_job(loaded.job.source, False)
     assert proved.digest == loaded.job.digest

@@ -106,9 +106,11 @@ def _along(block: Block, at: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) 
     x, z = at[:, 0] - block.offset_x, at[:, 1] - block.offset_z
     if block.kind == "arc":
         angles = np.unwrap(np.arctan2(x - block.cx, z - block.cz))
-        return (angles - angles[0]) / (angles[-1] - angles[0])
+        turned: np.ndarray = (angles - angles[0]) / (angles[-1] - angles[0])
+        return turned
     way = np.array([block.x - block.x0, block.z - block.z0])
-    return ((x - block.x0) * way[0] + (z - block.z0) * way[1]) / (way @ way)
+    share: np.ndarray = ((x - block.x0) * way[0] + (z - block.z0) * way[1]) / (way @ way)
+    return share
 
 
 @pytest.mark.parametrize("machine", [MODULO, LINEAR], ids=["modulo", "linear"])

@@ -39,7 +39,9 @@ def test_a_hole_in_one_go() -> None:
 @pytest.mark.parametrize(("dwell", "seconds"), [("0.5", 0.5), ("-10", 0.6)])  # 10 turns at 1000 rpm
 def test_a_dwell_at_the_bottom(dwell: str, seconds: float) -> None:
     actions = [b.action for b in run(HOLE + f"CYCLE82(4,0,2,-12,,{dwell})").blocks if b.action]
-    assert actions[-1] == Dwell(pytest.approx(seconds))
+    last = actions[-1]
+    assert isinstance(last, Dwell)
+    assert last.seconds == pytest.approx(seconds)
 
 
 def test_pecks_grow_smaller_and_the_last_two_are_alike() -> None:

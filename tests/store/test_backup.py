@@ -10,8 +10,9 @@ from pathlib import Path
 
 import pytest
 
-from core.store import backup, database, store_export
+from core.store import backup, store_export
 from core.store.store import Store, StoreError
+from core.store.store_file import FILE_NAME
 from core.store.store_rows import SecondaryRow, ToolRow
 
 
@@ -54,7 +55,7 @@ def test_restore_replaces_a_damaged_store_and_keeps_its_bytes(folder: Path, tmp_
     with Store.open(folder) as store:
         fill(store)
     backup.backup(folder, tmp_path / "b.db")
-    (folder / database.FILE_NAME).write_bytes(b"rubbish" * 1000)
+    (folder / FILE_NAME).write_bytes(b"rubbish" * 1000)
     kept = backup.restore(folder, tmp_path / "b.db")
     assert kept is not None
     assert kept.read_bytes() == b"rubbish" * 1000
@@ -75,11 +76,11 @@ def test_restore_of_what_is_no_backup_changes_nothing(
 ) -> None:
     fill(store)
     store.close()
-    before = (folder / database.FILE_NAME).read_bytes()
+    before = (folder / FILE_NAME).read_bytes()
     (tmp_path / "b.db").write_bytes(content)
     with pytest.raises(StoreError):
         backup.restore(folder, tmp_path / "b.db")
-    assert (folder / database.FILE_NAME).read_bytes() == before
+    assert (folder / FILE_NAME).read_bytes() == before
 
 
 def test_restore_of_a_spoilt_backup_is_refused(folder: Path, tmp_path: Path) -> None:
@@ -100,7 +101,7 @@ def test_backup_never_overwrites_what_is_no_backup(store: Store, folder: Path, t
         backup.backup(folder, precious)
     assert precious.read_bytes() == b"G90"
     with pytest.raises(StoreError, match="the store itself"):
-        backup.backup(folder, folder / database.FILE_NAME)
+        backup.backup(folder, folder / FILE_NAME)
 
 
 def test_backup_of_nothing_or_to_nowhere_is_refused(folder: Path, tmp_path: Path) -> None:
@@ -181,7 +182,7 @@ def test_export_into_a_folder_with_something_in_it_is_refused(store: Store, tmp_
 def test_verify_finds_spoilt_text_and_loose_rows(folder: Path) -> None:
     with Store.open(folder) as store:
         fill(store)
-    path = folder / database.FILE_NAME
+    path = folder / FILE_NAME
     assert backup.problems(path) == ()
     with sqlite3.connect(path) as connection:
         connection.execute("UPDATE program_versions SET text = X'58'")

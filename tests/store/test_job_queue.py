@@ -13,6 +13,7 @@ import pytest
 from core.store import database, job_queue
 from core.store.job_queue import JobRow
 from core.store.store import Store, StoreError
+from core.store.store_file import FILE_NAME
 
 
 def added(store: Store, program: str, wanted: int, note: str = "") -> int:
@@ -150,7 +151,7 @@ def test_a_damaged_job_is_left_out_told_and_cleared(folder: Path) -> None:
     with Store.open(folder) as store:
         added(store, "a.nc", 3)
         added(store, "b.nc", 4)
-    with closing(sqlite3.connect(folder / database.FILE_NAME)) as outside:
+    with closing(sqlite3.connect(folder / FILE_NAME)) as outside:
         outside.execute("UPDATE jobs SET wanted = 300 WHERE program = 'a.nc'")
         outside.commit()
     with Store.open(folder) as store:
@@ -163,7 +164,7 @@ def test_a_damaged_job_is_left_out_told_and_cleared(folder: Path) -> None:
 
 
 def test_an_older_store_gets_its_queue(tmp_path: Path) -> None:
-    with closing(sqlite3.connect(tmp_path / database.FILE_NAME, isolation_level=None)) as connection:
+    with closing(sqlite3.connect(tmp_path / FILE_NAME, isolation_level=None)) as connection:
         connection.execute(f"PRAGMA application_id = {database.APPLICATION_ID}")
         database.migrate(connection, database.migrations()[:11])
         connection.execute("INSERT INTO part_counts VALUES ('pin.nc', 4, '2026-11-20T10:00:00.000Z')")

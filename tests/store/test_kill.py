@@ -6,8 +6,9 @@ import subprocess
 import sys
 from pathlib import Path
 
-from core.store import backup, database
+from core.store import backup
 from core.store.store import Store
+from core.store.store_file import FILE_NAME
 
 KILLS = 5
 ACKNOWLEDGED = 25  # of each process before it is killed; the next transactions are then in flight
@@ -50,7 +51,7 @@ def _write_and_kill(folder: Path) -> int:
 def test_killed_writers_lose_nothing_that_was_acknowledged(folder: Path) -> None:
     for _ in range(KILLS):
         last = _write_and_kill(folder)
-        assert backup.problems(folder / database.FILE_NAME) == ()
+        assert backup.problems(folder / FILE_NAME) == ()
         with Store.open(folder, read_only=True) as store:
             versions = store.versions("part")
             assert [row.number for row in versions] == list(range(len(versions), 0, -1))

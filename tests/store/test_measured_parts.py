@@ -18,6 +18,7 @@ from core.store.part_cycles import CycleRow, StopRow
 from core.store.store import Store
 from core.store.store_errors import StoreError
 from core.store.store_export import export
+from core.store.store_file import FILE_NAME
 from core.store.store_rows import utc
 from core.store.tool_lives import LifeRow
 
@@ -209,10 +210,10 @@ def test_an_export_and_a_backup_have_it(store: Store, folder: Path, tmp_path: Pa
 def test_a_reading_without_its_feature_is_found(store: Store, folder: Path) -> None:
     read(store, feature(store), 1, 12.7)
     store.close()
-    with database.connect(folder / database.FILE_NAME, read_only=False) as connection:
+    with database.connect(folder / FILE_NAME, read_only=False) as connection:
         connection.execute("PRAGMA foreign_keys = OFF")
         connection.execute("DELETE FROM part_features")
-    assert any("part_readings" in problem for problem in backup.problems(folder / database.FILE_NAME))
+    assert any("part_readings" in problem for problem in backup.problems(folder / FILE_NAME))
 
 
 def test_a_migration_that_is_put_in_between_is_refused(
@@ -256,7 +257,7 @@ def test_a_kill_loses_no_reading_that_was_acknowledged(folder: Path) -> None:
         process.kill()
         told += process.stdout.read().splitlines(keepends=True)
     last = int([line for line in told if line.endswith(b"\n")][-1])
-    assert backup.problems(folder / database.FILE_NAME) == ()
+    assert backup.problems(folder / FILE_NAME) == ()
     with Store.open(folder, read_only=True) as store:
         kept = readings(store, limit=10**6)
         assert len(kept) in (last, last + 1)

@@ -13,6 +13,7 @@ import pytest
 
 from core.store import database
 from core.store.store import Store, StoreError
+from core.store.store_file import FILE_NAME
 from core.store.store_rows import ToolRow
 
 
@@ -26,7 +27,7 @@ def closed(folder: Path) -> Path:
     with Store.open(folder) as store:
         store.set_tool(1, "x", x=1.0)
         store.save_program("big", b"G90 X1.2345\n" * 20000, "x").result()
-    return folder / database.FILE_NAME
+    return folder / FILE_NAME
 
 
 def test_what_is_stored_is_there_next_time(closed: Path) -> None:

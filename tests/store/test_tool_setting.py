@@ -5,11 +5,13 @@ from __future__ import annotations
 import sqlite3
 from math import nan
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from core.store import database
 from core.store.store import Store, StoreError
+from core.store.store_file import FILE_NAME
 from core.store.store_rows import Kind, SecondaryRow, ToolRow
 from core.store.touch_off import Touch
 
@@ -17,7 +19,7 @@ from core.store.touch_off import Touch
 def old_store(folder: Path) -> None:
     """What the first version wrote, by its own tables and statements."""
     folder.mkdir()
-    connection = sqlite3.connect(folder / database.FILE_NAME, isolation_level=None)
+    connection = sqlite3.connect(folder / FILE_NAME, isolation_level=None)
     connection.execute(f"PRAGMA application_id = {database.APPLICATION_ID}")
     connection.execute("PRAGMA journal_mode = WAL")
     database.migrate(connection, database.migrations()[:1])
@@ -80,9 +82,7 @@ def test_every_field_is_kept_with_its_history(store: Store) -> None:
         ({"x": "1"}, "X '1'"),
     ],
 )
-def test_what_is_no_value_of_a_field_is_refused(
-    store: Store, values: dict[str, float | str], told: str
-) -> None:
+def test_what_is_no_value_of_a_field_is_refused(store: Store, values: dict[str, Any], told: str) -> None:
     with pytest.raises(StoreError, match=told):
         store.set_tool(1, "no", **values).result()
     assert store.tools() == {}

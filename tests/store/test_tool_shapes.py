@@ -10,6 +10,7 @@ import pytest
 
 from core.store import database
 from core.store.store import Store, StoreError
+from core.store.store_file import FILE_NAME
 from core.store.store_rows import Kind, ShapeRow, ToolRow
 
 DRILL = ShapeRow("drill", diameter=6.35, point=118.0, flutes=2)
@@ -95,7 +96,7 @@ def test_nothing_to_take_back(store: Store) -> None:
 
 def test_store_from_before_has_no_shapes_and_takes_them(folder: Path) -> None:
     folder.mkdir()
-    connection = sqlite3.connect(folder / database.FILE_NAME, isolation_level=None)
+    connection = sqlite3.connect(folder / FILE_NAME, isolation_level=None)
     connection.execute(f"PRAGMA application_id = {database.APPLICATION_ID}")
     connection.execute("PRAGMA journal_mode = WAL")
     database.migrate(connection, database.migrations()[:4])

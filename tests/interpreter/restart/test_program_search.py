@@ -279,7 +279,7 @@ def test_work_that_nobody_wants_is_given_up() -> None:
     class GivenUpError(Exception):
         pass
 
-    def watch(_count: int) -> None:
+    def watch(_share: float) -> None:
         raise GivenUpError
 
     long = "G90 G54 G0 X10 Z10\n" + "G0 X20\nG0 X21\n" * 2000 + "M30\n"

@@ -46,7 +46,8 @@ def between(x0: float, z0: float, x: float, z: float) -> Points:
     """Points along a straight way, its ends left out where it is long enough."""
     count = max(2, int(np.hypot(x - x0, z - z0) / STEP) + 1)
     share = np.linspace(0.0, 1.0, count + 1)[1:-1, None]
-    return np.array([[x0, z0]]) + share * np.array([[x - x0, z - z0]])
+    points: Points = np.array([[x0, z0]]) + share * np.array([[x - x0, z - z0]])
+    return points
 
 
 def off(points: Points, cut: CutRecord, rows: npt.NDArray[np.bool_]) -> Points:
