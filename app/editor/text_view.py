@@ -20,6 +20,7 @@ from PySide6.QtWidgets import QPlainTextEdit, QTextEdit, QWidget
 from app.editor.editor import Editor, Stage
 from app.editor.highlight_view import Highlighter
 from app.screen.look import CENTRE, LEFT, RIGHT, Look, Painter, put
+from app.screen.window_layout import FINGER
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import dialect_of
 
@@ -122,7 +123,7 @@ class TextField(QPlainTextEdit):
             f"QPlainTextEdit {{ background: {colours.panel}; color: {colours.text};"
             f" border: {max(1, round(0.16 * self.look.u))}px solid {colours.frame};"
             f" selection-background-color: {colours.lit}; selection-color: {colours.on_lit}; }}"
-            f"QScrollBar:vertical {{ width: {round(3.4 * self.look.u)}px; }}"
+            f"QScrollBar:vertical {{ width: {max(FINGER, round(3.4 * self.look.u))}px; }}"
             f"QScrollBar:horizontal {{ height: {round(2.4 * self.look.u)}px; }}"
         )
         self.setCursorWidth(max(2, round(0.3 * self.look.u)))

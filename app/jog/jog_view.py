@@ -53,7 +53,7 @@ class JogPage(HeldKeysPage):
             raise RuntimeError("the desk was put together without a machine to move by hand")
         super().__init__(host, JogModel(host.desk, machine), parent)
         self.pad: JogPad = JogPad(self.look, self.model, self)
-        self.numbers = KeyPad(self.look, self.touched, own=("L", tr("ALONE")), parent=self)
+        self.numbers = KeyPad(self.look, self.touched, own=None, parent=self)
         self.mill = MillJogPanel(self.look, self.model, self._to_tools, self._to_presets, self)
         self.tool = ToolPanel(self.look, self.model, self)
         self.asked = EntryPanel(self.look, self)
@@ -116,6 +116,7 @@ class JogPage(HeldKeysPage):
         entering, hand = self.model.asked, self.model.hand
         self.pad.setVisible(not entering)
         self.numbers.setVisible(entering)
+        self.numbers.own = ("L", tr("ALONE")) if self.model.tool.masters else None
         self.pad.show_jog(snapshot)
         self.hand.setVisible(hand.shown)
         self.mill.setVisible(self.model.on_mill and not hand.shown)

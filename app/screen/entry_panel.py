@@ -99,12 +99,14 @@ _FREE = "C"  # the place that a page gives its own meaning
 class KeyPad(Panel):
     """Every key does what the key of the keyboard does."""
 
+    own: Shown[tuple[str, str] | None] = Shown(None)  # a key that the page gives, and the word on it
+
     def __init__(
         self, look: Look, press: Callable[[str], None], *, own: tuple[str, str] | None, parent: QWidget
     ) -> None:
         """``own``: a key of this page and the word on it; None leaves its place empty."""
         super().__init__(look, parent)
-        self._press, self._own = press, own
+        self._press, self.own = press, own
 
     @property
     def least(self) -> int:
@@ -121,8 +123,8 @@ class KeyPad(Panel):
                 box = QRectF(column * wide, row * high, wide - gap, high - gap)
                 if key != _FREE:
                     self._key(painter, box, key, _SHOWN.get(key, key.upper()))
-                elif self._own is not None:
-                    self._key(painter, box, *self._own)
+                elif self.own is not None:
+                    self._key(painter, box, *self.own)
         foot = QRectF(0, len(_KEYS) * high, self.width(), high - gap)
         self._key(painter, foot, "Enter", _SHOWN["Enter"])
 

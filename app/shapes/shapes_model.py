@@ -463,6 +463,8 @@ class Shapes:
         """What the keys do here."""
         if self.notice:
             return self.notice
+        if self.form is None and not self.of_shapes:
+            return tr("A LETTER OPENS A CALCULATOR OR A TEMPLATE; F10: TO THE TEXT")
         if self.form is None:
             return tr("A LETTER OPENS A SHAPE, RIGHT LEADS TO THOSE OF THIS PROGRAM; F10: TO THE TEXT")
         return tr(WAITS if self.form.waits else self.form.trouble or _keys_of(self.form))

@@ -234,6 +234,8 @@ class ShapesView(QWidget):
         form = model.form
         now: tuple[object, ...] = (
             form is None,
+            model.of_shapes,
+            tuple(model.listed),
             model.marked,
             model.number,
             model.written,

@@ -12930,6 +12930,11 @@
     </message>
     <message>
       <location filename="app/shapes/shapes_model.py" />
+      <source>A LETTER OPENS A CALCULATOR OR A TEMPLATE; F10: TO THE TEXT</source>
+      <translation>UNA LETRA ABRE UNA CALCULADORA O UNA PLANTILLA; F10: AL TEXTO</translation>
+    </message>
+    <message>
+      <location filename="app/shapes/shapes_model.py" />
       <source>A LETTER OPENS A SHAPE, RIGHT LEADS TO THOSE OF THIS PROGRAM; F10: TO THE TEXT</source>
       <translation>UNA LETRA ABRE UNA FORMA, DERECHA LLEVA A LAS DE ESTE PROGRAMA; F10: AL TEXTO</translation>
     </message>

@@ -186,10 +186,16 @@ def test_the_places_over_the_text_open_what_stands_on_them(writer: Writer) -> No
     assert len({box.x() for box, _ in head._places}) == len(head._places) == 3
     touch(writer, head, shapes)
     assert (writer.editor.mode, writer.editor.shapes.model.of_shapes) == (Mode.SHAPES, True)
+    writer.editor.shapes.refresh()
+    assert writer.editor.shapes.rows.heading.startswith("SHAPES")
     touch(writer, head, shapes)
     assert writer.editor.mode is Mode.TEXT
     touch(writer, head, sums)
     assert (writer.editor.mode, writer.editor.shapes.model.of_shapes) == (Mode.SHAPES, False)
+    writer.editor.shapes.refresh()  # the list of before stood there, and another form was opened by a touch
+    assert writer.editor.shapes.rows.heading == "CALCULATORS AND TEMPLATES"
+    assert "TRIANGLE" in writer.editor.shapes.rows.rows[0].label
+    assert writer.editor.shapes.model.prompt().startswith("A LETTER OPENS A CALCULATOR")
     touch(writer, head, shapes)
     touch(writer, head, keyboard)
     assert writer.editor.lettered
