@@ -265,8 +265,8 @@ def table_of(batch: Sequence[Part], rpm_max: float) -> BlockTable:
     """The table of all blocks of a batch; see ``read_blocks``."""
     unlike = [block for part in batch for block in (part if isinstance(part, list) else [part.pattern])]
     table = read_blocks(unlike, rpm_max)
-    if len(unlike) == sum(map(len, batch)):
-        return table
+    if all(isinstance(part, list) for part in batch):
+        return table  # a row of a single block is like its pattern, but for where it goes
     counts = [n for part in batch for n in ([1] * len(part) if isinstance(part, list) else [len(part)])]
     table = BlockTable(*[_repeated(getattr(table, name), counts) for name in _FIELDS])
     first = 0

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import pytest
 
 from core.interpreter.elementary_blocks import Block, Kind
-from core.motion.axis_limits import MotionError, MotionLimits
+from core.motion.axis_limits import FloatArray, IntArray, MotionError, MotionLimits
 from core.motion.block_table import table_of
 from core.motion.chord_smoothing import unrounded
 from core.motion.motion_path import PathBuilder
@@ -207,12 +207,14 @@ class Columns:
     """Two straight moves as columns."""
 
     pattern: Block
-    n = np.array([4, 5])
-    x0, z0 = np.array([1.0, 2.0]), np.array([3.0, 4.0])
-    x, z = np.array([2.0, 5.0]), np.array([4.0, 8.0])
+    n: IntArray = field(default_factory=lambda: np.array([4, 5]))
+    x0: FloatArray = field(default_factory=lambda: np.array([1.0, 2.0]))
+    z0: FloatArray = field(default_factory=lambda: np.array([3.0, 4.0]))
+    x: FloatArray = field(default_factory=lambda: np.array([2.0, 5.0]))
+    z: FloatArray = field(default_factory=lambda: np.array([4.0, 8.0]))
 
     def __len__(self) -> int:
-        return 2
+        return len(self.n)
 
     def __getitem__(self, at: slice) -> Columns:
         raise NotImplementedError
@@ -226,6 +228,14 @@ def test_a_row_of_moves_stands_in_the_table_with_its_offsets() -> None:
     assert table.start[:, :2].tolist() == [[11.0, 23.0], [12.0, 24.0]]
     assert table.end[:, :2].tolist() == [[12.0, 24.0], [15.0, 28.0]]
     assert table.feed.tolist() == [20.0, 20.0]
+
+
+def test_a_row_of_one_move_goes_where_it_says_and_not_where_its_pattern_does() -> None:
+    row = Columns(line((7.0, 7.0), (8.0, 8.0), 20.0))
+    single = Columns(row.pattern, row.n[:1], row.x0[:1], row.z0[:1], row.x[:1], row.z[:1])
+    table = table_of([single], 3500.0)
+    assert (table.n.tolist(), table.start[:, :2].tolist()) == ([4.0], [[1.0, 3.0]])
+    assert table.end[:, :2].tolist() == [[2.0, 4.0]]
 
 
 def test_blocks_before_and_behind_a_row_stand_in_their_places() -> None:
