@@ -176,9 +176,10 @@ def _mutants(result: Result, folder: Path) -> Iterator[str]:
             if name not in since:
                 living.append(f"- `{name}`: {known.get(name, {}).get('why', 'no fast test tells')}")
     yield (
-        "`bench_mutants`: small changes of functions by a seed, each against the fast tests of its room that "
-        f"come by its line; wanted are {TOLD:.0f} % of those that change what the program does. Told "
-        "since is what new tests tell, or such as the quick part leaves out for their time.\n"
+        "`bench_mutants`: small changes of functions by a seed, each against the tests of its room below 2 s "
+        f"that come by its line; wanted are {TOLD:.0f} % of those that change what the program does. Told "
+        "since is what new tests tell, or such as the quick part leaves out for their time; from motion's "
+        "seed 5 on those are played at first too.\n"
     )
     yield _table(
         ["room", "mutants", "told", "at first", "told since", "the same", "told of the others"], rows
