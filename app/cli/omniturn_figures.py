@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
-import numpy as np
-
+from app.cli.decimal_columns import decimals, rounded
 from app.cli.figures import (
     MM_PER_INCH,
     MM_S_PER_FT_MIN,
@@ -19,10 +19,9 @@ from app.cli.figures import (
 )
 
 if TYPE_CHECKING:
-    from core.interpreter.elementary_blocks import Block, Floats, TimedSeries
+    from core.interpreter.elementary_blocks import Block, TimedSeries
 
-_SURE = 1e12  # a number of steps up to which it is a whole one, with digits to spare
-_HALF = 1e-3  # nearer than that to the half of a step it is rounded by its decimals
+_VARIES = "\0"  # no text in JSON holds it
 HEAD = "    n  line  kind        X radius          Z         feed      rpm       t  block\n"
 
 
@@ -75,51 +74,48 @@ def series_rows(moves: TimedSeries) -> str:
     line = f"%5d %5d  {like.kind:10s}%11.5f%11.5f{_feed(like)}%8.2f  %s\n"
     lines = series.line.tolist()
     texts = (series.texts[each - 1] for each in lines)
-    columns = (series.n.tolist(), lines, _inches(series.x), _inches(series.z), moves.t0.tolist(), texts)
+    x, z = (rounded(mm / MM_PER_INCH, 9).tolist() for mm in (series.x, series.z))
+    columns = (series.n.tolist(), lines, x, z, moves.t0.tolist(), texts)
     return "".join([line % each for each in zip(*columns, strict=True)])
 
 
 def series_json(moves: TimedSeries) -> str:
     """The objects, a line each."""
     series, like, lines = moves.series, moves.series.pattern, moves.series.line.tolist()
-    texts = [json.dumps(series.texts[each - 1]) for each in lines]  # a plain move's text is its line
+    texts = _texts_json([series.texts[each - 1] for each in lines])  # a plain move's text is its line
     columns = {
-        "n": series.n.tolist(),
-        "line": lines,
+        "n": map(str, series.n.tolist()),
+        "line": map(str, lines),
         "source": texts,
         "text": texts,
-        "x": _inches(series.x),
-        "z": _inches(series.z),
-        "mx": _inches(series.x + like.offset_x),
-        "mz": _inches(series.z + like.offset_z),
-        "t0": rounded(moves.t0, 6),
-        "t1": rounded(moves.t1, 6),
+        "x": decimals(series.x / MM_PER_INCH, 9),
+        "z": decimals(series.z / MM_PER_INCH, 9),
+        "mx": decimals((series.x + like.offset_x) / MM_PER_INCH, 9),
+        "mz": decimals((series.z + like.offset_z) / MM_PER_INCH, 9),
+        "t0": decimals(moves.t0, 6),
+        "t1": decimals(moves.t1, 6),
     }
-    same = {
-        key: json.dumps(value).replace("%", "%%") for key, value in block_json(like, "", 0.0, 0.0).items()
-    }
-    each = ", ".join(f'"{key}": {"%s" if key in columns else value}' for key, value in same.items())
-    line = f"{{{each}}}\n"
-    return "".join(
-        [line % row for row in zip(*(columns[key] for key in same if key in columns), strict=True)]
-    )
+    cells = {key: json.dumps(value) for key, value in block_json(like, "", 0.0, 0.0).items()}
+    cells |= dict.fromkeys(columns, _VARIES)
+    line = ", ".join(f'"{key}": {cell}' for key, cell in cells.items())
+    varying = [columns[key] for key in cells if key in columns]
+    return _woven(f"{{{line}}}\n".split(_VARIES), varying, len(series))
 
 
-def _inches(mm: Floats) -> list[float]:
-    return rounded(mm / MM_PER_INCH, 9)
+def _texts_json(texts: list[str]) -> list[str]:
+    """Each text as JSON has it; all at once, for a call costs more than the text. None has a line end."""
+    return json.dumps(texts, separators=("\n", ": "))[1:-1].split("\n")
 
 
-def rounded(values: Floats, places: int) -> list[float]:
-    """As ``round(value, places) + 0.0`` rounds each of them, (m,)."""
-    steps = values * 10.0**places
-    whole = np.rint(steps)
-    found = whole / 10.0**places + 0.0
-    for at in np.flatnonzero(
-        (np.abs(np.abs(steps - whole) - 0.5) < _HALF) | ~(np.abs(steps) < _SURE)
-    ).tolist():
-        found[at] = round(float(values[at]), places) + 0.0
-    as_list: list[float] = found.tolist()
-    return as_list
+def _woven(between: Sequence[str], columns: Sequence[Iterable[str]], count: int) -> str:
+    """So many lines of columns with the same text before, ``between`` and after them in each."""
+    width = len(between) + len(columns)
+    woven = [""] * (count * width)
+    for at, text in enumerate(between):
+        woven[2 * at :: width] = [text] * count
+    for at, column in enumerate(columns):
+        woven[2 * at + 1 :: width] = column
+    return "".join(woven)
 
 
 def _plane_json(block: Block) -> Json:

@@ -6,7 +6,6 @@ import argparse
 import json
 import sys
 from collections.abc import Callable
-from operator import truediv
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -21,6 +20,7 @@ if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
     from core.machine.machine_model import Machine
     from core.proving.program_timeline import Timeline
+    from core.proving.setpoint_trace import Rows
 
 
 def _interval(text: str) -> float:
@@ -93,9 +93,10 @@ class _Table:
         places = (5 if axis.rotary else 7 if inch else 6 for axis in machine.axes)
         self._row = ",".join(("%.6f", *(f"%.{count}f" for count in places), "%.4f", "%d")) + "\n"
 
-    def row(self, t: float, at: tuple[float, ...], turned: float, line: int) -> str:
-        """One setpoint."""
-        return self._row % (t, *map(truediv, at, self._scales), turned, line)
+    def lines(self, rows: Rows) -> str:
+        """Setpoints, a line each."""
+        columns = (rows.t, *(rows.at / self._scales).T, rows.turned, rows.line)
+        return "".join([self._row % row for row in zip(*(c.tolist() for c in columns), strict=True)])
 
 
 def _write_file(timeline: Timeline, table: _Table, args: argparse.Namespace, source: Source) -> None:
@@ -123,7 +124,6 @@ def _write(
     furthest = 0
     with Progress(f"tracing {source.name}", len(source.lines)) as progress:
         for chunk in setpoints(timeline, dt):
-            write("".join(table.row(*row) for row in chunk))
-            if chunk:
-                furthest = max(furthest, chunk[-1][3])  # a loop goes back
-                progress.reach(furthest)
+            write(table.lines(chunk))
+            furthest = max(furthest, int(chunk.line.max(initial=0)))  # a loop goes back
+            progress.reach(furthest)

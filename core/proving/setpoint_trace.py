@@ -3,40 +3,45 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from typing import NamedTuple
 
 import numpy as np
 
 from core.geometry.surface_speed import surface_rpm
-from core.interpreter.elementary_blocks import Block
+from core.interpreter.elementary_blocks import Block, Floats, Ints, Series
 from core.motion.window_planner import sample_positions
-from core.proving.program_timeline import MotionSpan, RestSpan, Timeline
-
-Row = tuple[float, tuple[float, ...], float, int]  # t, all axes, spindle degrees, line
+from core.proving.program_timeline import MotionSpan, Part, RestSpan, Timeline
 
 BATCH = 10_000  # rows handed out at a time while the machine rests
 
 
-def setpoints(timeline: Timeline, dt: float) -> Iterator[list[Row]]:
-    """Rows every ``dt`` seconds from 0 to the first one at which the program has ended.
+class Rows(NamedTuple):
+    """k rows: time, s; machine positions (k, axes) in the machine's order, mm (X of a lathe a radius) and
+    degrees; the angle of the spindle, degrees, which counts on from the start; the source line."""
 
-    Machine coordinates in the machine's order, mm (X of a lathe a radius), degrees; the spindle angle counts
-    on from the start.
-    """
+    t: Floats
+    at: Floats
+    turned: Floats
+    line: Ints
+
+
+def setpoints(timeline: Timeline, dt: float) -> Iterator[Rows]:
+    """Rows every ``dt`` seconds from 0 to the first one at which the program has ended."""
     sampler = _Sampler(timeline, dt)
     for span in timeline.spans():
         if isinstance(span, MotionSpan):
             yield sampler.moved(span)
         else:
             yield from sampler.rested(span)
-    yield sampler.last()
+    yield sampler.standing(1)
 
 
 class _Sampler:
     """Walks the grid of sampling times along the spans of a timeline."""
 
     def __init__(self, timeline: Timeline, dt: float) -> None:
-        self._timeline = timeline
+        self._spindle = timeline.spindle
         self._dt = dt
         self._row = 0  # number of the next row; its time is row times dt, so that no error adds up
         self._at: tuple[float, ...] = timeline.start
@@ -44,51 +49,76 @@ class _Sampler:
         self._angle = 0.0
         self._rpm = 0.0  # at the last row
 
-    def moved(self, span: MotionSpan) -> list[Row]:
-        _, positions, numbers = sample_positions(
-            span.chunk.profile, self._dt, max(0.0, self._row * self._dt - span.t0)
-        )
-        blocks = span.blocks
-        owners = np.searchsorted([block.n for block in blocks], numbers).tolist()
-        rows = []
-        for at, owner in zip(positions.tolist(), owners, strict=True):
-            block = blocks[owner]
-            self._line = block.line
-            rows.append(self._emit(tuple(at), block))
+    def moved(self, span: MotionSpan) -> Rows:
+        """Rows of a motion."""
         profile = span.chunk.profile
+        _, positions, numbers = sample_positions(profile, self._dt, max(0.0, self._row * self._dt - span.t0))
+        owners = np.searchsorted(span.chunk.n, numbers)
+        lines = np.concatenate([np.empty(0, np.int64), *map(_lines, span.parts)])[owners]
+        led = _leading_spindle(span.parts)
+        by_radius = {row: led[n] for row, n in enumerate(numbers.tolist()) if n in led} if led else {}
+        self._line = int(lines[-1]) if len(lines) else self._line
         self._at = tuple(profile.position(profile.duration)[0].tolist())
-        return rows
+        return self._rows(positions, lines, by_radius)
 
-    def rested(self, span: RestSpan) -> Iterator[list[Row]]:
+    def rested(self, span: RestSpan) -> Iterator[Rows]:
+        """Rows of a rest."""
         if span.block is not None:
             self._line = span.block.line
         count = max(0, math.ceil((span.t1 - self._row * self._dt) / self._dt - 1e-9))
         for done in range(0, count, BATCH):
-            yield [self._emit(self._at, span.block) for _ in range(min(BATCH, count - done))]
+            yield self.standing(min(BATCH, count - done), span.block)
 
-    def last(self) -> list[Row]:
-        """The row at rest with which the table ends."""
-        return [self._emit(self._at, None)]
+    def standing(self, count: int, block: Block | None = None) -> Rows:
+        """So many rows where the slides stand."""
+        by_radius = dict.fromkeys(range(count), block) if block is not None and _leads(block) else {}
+        return self._rows(np.tile(self._at, (count, 1)), np.full(count, self._line), by_radius)
 
-    def _emit(self, at: tuple[float, ...], block: Block | None) -> Row:
-        t = self._row * self._dt
-        self._turn(t, at[0], block)
-        self._row += 1
-        return (t, at, self._angle, self._line)
+    def _rows(self, at: Floats, lines: Ints, by_radius: Mapping[int, Block]) -> Rows:
+        t: Floats = self._dt * np.arange(self._row, self._row + len(at), dtype=np.float64)
+        turned = self._turned(self._speeds(t, at[:, 0], by_radius))
+        self._row += len(at)
+        return Rows(t, at, turned, lines)
 
-    def _turn(self, t: float, machine_x: float, block: Block | None) -> None:
-        """Turn the spindle on by one interval: the mean of the speeds at its two ends.
+    def _turned(self, speeds: Floats) -> Floats:
+        """The angles: an interval turns on by the mean of the speeds at its two ends."""
+        before = np.concatenate([[self._rpm], speeds])
+        steps = (before[:-1] + speeds) / 2 * self._dt * 6  # 1 rpm is 6 degrees a second
+        if not self._row:
+            steps[:1] = 0.0
+        angles = np.cumsum(np.concatenate([[self._angle], steps]))
+        self._angle, self._rpm = float(angles[-1]), float(before[-1])
+        return angles[1:]
+
+    def _speeds(self, t: Floats, machine_x: Floats, by_radius: Mapping[int, Block]) -> Floats:
+        """Signed rpm of the rows; ``by_radius`` has the blocks of those with a constant surface speed.
 
         The timeline's forecast is only asked: what it waits for must not depend on who looks.
         """
-        spindle = self._timeline.spindle
-        speed = spindle.speed(t)
-        if block is not None and block.css is not None and block.modal.spindle:
-            modal = block.modal
-            rpm = surface_rpm(
-                block.css, machine_x - block.offset_x, modal.css_min, modal.css_max or spindle.rpm_max
-            )
-            speed = spindle.towards(self._rpm, math.copysign(rpm, modal.spindle), self._dt)
-        if self._row:
-            self._angle += (self._rpm + speed) / 2 * self._dt * 6  # 1 rpm is 6 degrees a second
-        self._rpm = speed
+        speeds = self._spindle.speeds(t)
+        for row, block in by_radius.items():
+            before = float(speeds[row - 1]) if row else self._rpm
+            wanted = self._by_radius(block, float(machine_x[row]))
+            speeds[row] = self._spindle.towards(before, wanted, self._dt)
+        return speeds
+
+    def _by_radius(self, block: Block, machine_x: float) -> float:
+        """Signed rpm that gives the block its surface speed where the slide stands."""
+        modal, most = block.modal, self._spindle.rpm_max
+        rpm = surface_rpm(block.css or 0.0, machine_x - block.offset_x, modal.css_min, modal.css_max or most)
+        return math.copysign(rpm, modal.spindle)
+
+
+def _lines(part: Part) -> Ints:
+    return part.line if isinstance(part, Series) else np.array([block.line for block in part], np.int64)
+
+
+def _leads(block: Block) -> bool:
+    """Whether the spindle follows the radius in it."""
+    return block.css is not None and bool(block.modal.spindle)
+
+
+def _leading_spindle(parts: tuple[Part, ...]) -> dict[int, Block]:
+    """The blocks, by number, in which the spindle follows the radius; in a series it never does."""
+    alone = (block for part in parts if not isinstance(part, Series) for block in part)
+    return {block.n: block for block in alone if _leads(block)}

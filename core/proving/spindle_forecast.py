@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from itertools import pairwise
 
+import numpy as np
+import numpy.typing as npt
+
 from core.machine.machine_model import Machine, SpindleModel
 
 # Seconds before a drive follows a new command; inverters need 50 to 100 ms.
@@ -88,6 +91,14 @@ class SpindleForecast:
             left -= need
             rpm = goal
         return self._to
+
+    def speeds(self, t: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+        """``speed`` at the times ``t`` (k,): only those within the ramp are asked for one by one."""
+        ends = self._since + (abs(self._from) + abs(self._to)) / min(self._model.accel, self._model.decel)
+        found = np.full(len(t), self._to)
+        for at in np.flatnonzero(t <= ends).tolist():
+            found[at] = self.speed(float(t[at]))
+        return found
 
     def _legs(self) -> list[tuple[float, float]]:
         """The ramp as (rpm to reach, rpm/s): a reversal slows to rest first."""

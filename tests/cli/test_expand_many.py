@@ -10,7 +10,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.cli.omniturn_figures import block_json, rounded, row, series_json, series_rows
+from app.cli.decimal_columns import decimals, rounded
+from app.cli.omniturn_figures import block_json, row, series_json, series_rows
 from app.compose.machine_files import load_machine
 from app.compose.machine_setup import setup_for
 from core.interpreter.elementary_blocks import Series, TimedSeries
@@ -57,18 +58,44 @@ def test_the_objects_are_the_same(head: str) -> None:
     assert series_json(together) == "".join(told)
 
 
-FIGURES = st.floats(-1e7, 1e7) | st.integers(-(10**10), 10**10).map(lambda n: n / 2e9)
+FIGURES = (
+    st.floats(-1e7, 1e7)
+    | st.integers(-(10**10), 10**10).map(lambda n: n / 2e9)
+    | st.integers(-(10**13), 10**13).map(lambda n: n / 1e6)
+)
+
+
+def same(values: list[float], places: int) -> bool:
+    """Whether a column is rounded and written as each value by itself."""
+    alone = [repr(round(value, places) + 0.0) for value in values]
+    column = np.array(values)
+    return list(map(repr, rounded(column, places).tolist())) == decimals(column, places) == alone
 
 
 @given(st.lists(FIGURES, min_size=1, max_size=20), st.sampled_from([6, 9]))
 def test_figures_are_rounded_as_python_rounds_them(values: list[float], places: int) -> None:
-    assert list(map(repr, rounded(np.array(values), places))) == [
-        repr(round(v, places) + 0.0) for v in values
-    ]
+    assert same(values, places)
 
 
 @pytest.mark.parametrize("value", [0.5e-9, 1.5e-9, 2.5e-9, -0.5e-9, -1e-12, 0.1234567885, 1e5 + 2.5e-9, 1e15])
 def test_halves_and_what_is_near_them(value: float) -> None:
     """A half of a step is no binary number: its decimals say where it goes, and no product with 1e9."""
-    near = [value, math.nextafter(value, math.inf), math.nextafter(value, -math.inf)]
-    assert list(map(repr, rounded(np.array(near), 9))) == [repr(round(each, 9) + 0.0) for each in near]
+    assert same([value, math.nextafter(value, math.inf), math.nextafter(value, -math.inf)], 9)
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (0.0, "0.0"), (-0.0, "0.0"), (1.0, "1.0"), (-100.0, "-100.0"), (0.0001, "0.0001"),
+        (-0.00009, "-9e-05"),
+        (12.3, "12.3"),
+        (999.999999999, "999.999999999"), (1000.0, "1000.0"), (-0.500000001, "-0.500000001"),
+        (1e16, "1e+16"),
+    ],
+)  # fmt: skip
+def test_noughts_at_both_ends_are_left_out(value: float, text: str) -> None:
+    assert decimals(np.array([value, value]), 9) == [text, text]
+
+
+def test_no_numbers_are_no_texts() -> None:
+    assert decimals(np.empty(0), 6) == []

@@ -34,7 +34,7 @@ def ends(source: Source, setup: Setup) -> tuple[float, float, float]:
         pass
     last = 0.0
     for rows in setpoints(Timeline.of(source, setup, MACHINE), DT):
-        last = rows[-1][0] if rows else last
+        last = float(rows.t[-1]) if len(rows.t) else last
     return prove(source, setup, MACHINE).times.cycle, last, shown.t
 
 

@@ -38,7 +38,7 @@ def test_starts_a_third_of_the_lead_apart_make_helices_120_degrees_apart(rpm: in
     crossed: list[tuple[int, float]] = []
     before: tuple[float, float, int] | None = None
     for rows in setpoints(laid, 0.001):
-        for _, (_, z, _), degrees, line in rows:
+        for z, degrees, line in zip(rows.at[:, 1], rows.turned, rows.line, strict=True):
             fed = before and line == before[2] and 0.0 < before[0] - z < 2.2 * 25.4 * 0.15 * rpm / 60 * 0.001
             if before and fed and before[0] > 0.0 >= z and before[0] - z < 0.08:
                 share = before[0] / (before[0] - z)

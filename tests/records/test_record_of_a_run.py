@@ -38,7 +38,7 @@ def traced(program: str) -> np.ndarray[tuple[int, int], np.dtype[np.float64]]:
     timeline = Timeline.of(
         Source("part.nc", HEAD + program), setup_for(machine, tools={1: ToolOffset()}, secondary={}), machine
     )
-    return np.array([row[1][:2] for rows in setpoints(timeline, 0.001) for row in rows])
+    return np.concatenate([rows.at[:, :2] for rows in setpoints(timeline, 0.001)])
 
 
 def first_move(path: np.ndarray[tuple[int, int], np.dtype[np.float64]]) -> int:
