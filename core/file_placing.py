@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 from contextlib import suppress
 from pathlib import Path
@@ -10,8 +11,11 @@ from pathlib import Path
 def put_in_place(finished: Path, path: Path) -> None:
     """``finished`` gets the name ``path`` in one step that survives a power cut.
 
-    Its bytes are on the disk before it has the name, and the name before this is back. Raises OSError.
+    Its bytes are on the disk before it has the name, and the name before this is back. Raises OSError, also
+    where the name is that of a device or a pipe: a file would take its place.
     """
+    if path.exists() and not path.is_file() and not path.is_dir():
+        raise OSError(errno.EINVAL, "it is a device or a pipe, not a file", str(path))
     _bytes_to_disk(finished)
     finished.replace(path)
     folder_to_disk(path.parent)

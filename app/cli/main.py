@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import errno
 import gc
 import importlib
 import os
@@ -44,6 +45,7 @@ turndesk: no display here (neither DISPLAY nor WAYLAND_DISPLAY is set), so no op
   turndesk trace FILE --out CSV    the setpoints that the drives would get
   turndesk run FILE --headless     runs it on the simulated lathe
 """
+_FULL = (errno.ENOSPC, errno.EDQUOT)
 WITHOUT = "prove, expand, trace and run --headless need none"
 
 
@@ -75,7 +77,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     try:
         with dropped_interrupt.kept():
             check_data_folder()
-            status = _dispatch(settled(args))
+            status = _flushed(_dispatch(settled(args)))
             dropped_interrupt.look()
             return status
     except (CommandError, DataFolderError) as error:
@@ -87,8 +89,25 @@ def main(argv: Sequence[str] | None = None) -> int:
         return EXIT_INTERRUPTED
     except BrokenPipeError:
         # The reader of our output has gone, as `| head` does; closing quietly is what it expects.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        _write_no_more()
         return EXIT_OK
+    except OSError as error:
+        if error.errno not in _FULL or error.filename is not None:  # of a file: whoever writes it tells it
+            raise
+        sys.stderr.write(f"turndesk: stdout cannot be written: {error.strerror}\n")
+        _write_no_more()
+        return EXIT_USAGE
+
+
+def _flushed(status: int) -> int:
+    """The status, once stdout has taken all: behind this a full disk could not be told any more."""
+    sys.stdout.flush()
+    return status
+
+
+def _write_no_more() -> None:
+    """What is still to be written when Python ends goes nowhere."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _forget_interrupt() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import json
 import sys
 from collections.abc import Callable
@@ -111,6 +112,8 @@ def _write_file(timeline: Timeline, table: _Table, args: argparse.Namespace, sou
         else:
             put_in_place(partial, out)
     except OSError as error:
+        with contextlib.suppress(OSError):
+            partial.unlink(missing_ok=True)
         raise CommandError(f"{out}: cannot be written: {error.strerror}") from error
 
 

@@ -1,0 +1,33 @@
+"""Where output cannot go: a full disk behind stdout, a name that is a pipe's or a device's."""
+
+from __future__ import annotations
+
+import os
+import sys
+from pathlib import Path
+
+import pytest
+
+from app.cli.main import main
+from core.file_placing import put_in_place
+
+
+@pytest.mark.skipif(not Path("/dev/full").is_char_device(), reason="no device here that is always full")
+def test_a_full_disk_behind_stdout_is_one_sentence(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with Path("/dev/full").open("w") as full, monkeypatch.context() as patch:
+        patch.setattr(sys, "stdout", full)
+        status = main(["--version"])
+    words = "turndesk: stdout cannot be written: No space left on device\n"
+    assert (status, capsys.readouterr().err) == (2, words)
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no pipes with names here")
+def test_no_file_takes_the_place_of_a_pipe_or_a_device(tmp_path: Path) -> None:
+    pipe, finished = tmp_path / "pipe", tmp_path / "finished"
+    os.mkfifo(pipe)
+    finished.write_bytes(b"t,x\n")
+    with pytest.raises(OSError, match="it is a device or a pipe, not a file"):
+        put_in_place(finished, pipe)
+    assert (pipe.is_fifo(), finished.read_bytes()) == (True, b"t,x\n")
