@@ -7,6 +7,7 @@ import json
 import shutil
 import tempfile
 import zipfile
+from contextlib import suppress
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path, PurePosixPath
@@ -40,15 +41,17 @@ def save_setup(target: Path, machine_file: str | None) -> SetupTold:
     """Write the setup of this desk. Raises CommandError; then nothing is left under the name."""
     folder, machine = data_folder(), _machine_members(machine_file)
     with tempfile.TemporaryDirectory(prefix="turndesk-") as name:
-        part = Path(name) / "setup"
+        made, part = Path(name) / "setup", target.with_name(target.name + ".part")
         members = {STORE: _copy_of_store(folder, Path(name))}
         members |= {f"{PROGRAMS}/{path}": folder / PROGRAMS / path for path in _programs(folder)}
         members |= machine
         try:
-            _write(part, members)
-            shutil.copyfile(part, target.with_name(target.name + ".part"))
-            put_in_place(target.with_name(target.name + ".part"), target)
+            _write(made, members)
+            shutil.copyfile(made, part)
+            put_in_place(part, target)
         except OSError as error:
+            with suppress(OSError):
+                part.unlink(missing_ok=True)
             raise CommandError(f"{target} cannot be written: {error.strerror}") from error
     return _told(list(members))
 
@@ -135,7 +138,9 @@ def _unpacked(source: Path, folder: Path) -> list[str]:
     try:
         with zipfile.ZipFile(source) as file:
             names = _checked(source, file, folder)
-    except (OSError, zipfile.BadZipFile, KeyError, ValueError) as error:
+    except OSError as error:
+        raise CommandError(f"{source} cannot be read: {error.strerror or error}") from error
+    except (zipfile.BadZipFile, KeyError, ValueError) as error:
         raise CommandError(f"{source} is no setup file that can be read: {error}") from error
     try:
         found = backup.problems(folder / STORE)

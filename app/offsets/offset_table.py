@@ -137,11 +137,10 @@ class OffsetTable(ABC):
         self.text = edited(self.text, key, longest)
 
     def undo(self) -> None:
-        """Take the last change of this table back."""
+        """Take back what is being entered; where nothing is, the last change of this table."""
         why = self.undo_barred()
-        if not why:
-            self.drop()
-        self.history.undo(why)
+        if why or not self.take_back():
+            self.history.undo(why)
 
     def clear(self) -> None:
         """C: clear the whole table, after asking."""

@@ -45,6 +45,12 @@ def checked_name(name: str, like: Path) -> str:
     return name
 
 
+def without_ending(name: str) -> str:
+    """The name to type on, as ``checked_name`` takes it; whole where what is left has an ending too."""
+    left = Path(name).stem
+    return name if Path(left).suffix.lower() in ENDINGS - {""} else left
+
+
 def same_name_in(folder: Path, name: str) -> str:
     """The file of this name, in any case of letters; empty when there is none."""
     try:
@@ -127,7 +133,7 @@ class CopyRenameDelete:
             self.desk.say(self._fixed(here))
         else:
             self.desk.clear()
-            self.question, self.entry.text = question, here.name
+            self.question, self.entry.text = question, without_ending(here.name)
 
     def _fixed(self, program: Program) -> str:
         """Why a program stays as it is; empty when it may be changed."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import errno
+import os
 import subprocess
 import zipfile
 from pathlib import Path
@@ -85,6 +87,26 @@ def test_a_bad_machine_file_makes_no_setup(turndesk: Turndesk, tmp_path: Path) -
     bad.write_text("[axes]\n")
     assert turndesk("setup", "save", tmp_path / "a.setup", "--machine", bad).status == 2
     assert not (tmp_path / "a.setup").exists()
+
+
+def test_a_setup_that_cannot_be_written_leaves_nothing(
+    saved: Path, turndesk: Turndesk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(_source: Path, target: Path) -> None:
+        target.write_bytes(b"P")
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr("app.compose.setup_file.shutil.copyfile", full)
+    before = sorted(tmp_path.iterdir())
+    told = turndesk("setup", "save", tmp_path / "b.setup")
+    assert (told.status, "b.setup cannot be written: No space left" in told.err) == (2, True)
+    assert sorted(tmp_path.iterdir()) == before
+    assert saved in before
+
+
+def test_a_setup_that_is_not_there_is_told_as_such(turndesk: Turndesk, tmp_path: Path) -> None:
+    told = turndesk("setup", "load", tmp_path / "none.setup")
+    assert told.err == f"turndesk: {tmp_path / 'none.setup'} cannot be read: No such file or directory\n"
 
 
 def test_without_a_store_there_is_nothing_to_save(turndesk: Turndesk, tmp_path: Path) -> None:

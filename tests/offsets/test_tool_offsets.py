@@ -270,6 +270,18 @@ def test_undo_and_history(room: Room) -> None:
     assert grid.escape()
 
 
+def test_undo_of_half_a_tool_takes_that_back_and_no_older_change(room: Room) -> None:
+    set_tools(room)
+    before = room.store.tools()
+    grid = at(room, 5, "x")
+    room.enter(grid, "1")
+    assert grid.fields.new.number == 5
+    grid.undo()
+    room.settle(grid)
+    assert (grid.fields.new.number, room.store.tools()) == (0, before)
+    assert "TAKEN BACK" not in room.desk.notice
+
+
 def test_c_and_letters_are_not_taken(room: Room) -> None:
     grid = room.grid()
     assert not grid.typed("C")

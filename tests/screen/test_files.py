@@ -13,6 +13,7 @@ from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
 from app.compose.journal import Journal
+from app.programs.copy_rename_delete import checked_name, without_ending
 from app.programs.program_list import ProgramList
 from app.programs.programs_view import ProgramsPage
 from app.programs.removable_media import Stick, sticks
@@ -121,6 +122,22 @@ def test_a_copy_gets_a_name_and_the_ending(shop: Shop) -> None:
     shop.key(Key.Key_Return)
     shop.sees(lambda: "gamma.nc" in shop.rows())
     assert (shop.own / "gamma.nc").read_bytes() == (shop.own / "alpha.nc").read_bytes()
+
+
+def test_what_is_typed_goes_before_the_ending(shop: Shop) -> None:
+    shop.open_list()
+    shop.key(Key.Key_F4)
+    shop.type("2")
+    shop.key(Key.Key_Return)
+    shop.sees(lambda: "alpha2.nc" in shop.rows())
+
+
+@pytest.mark.parametrize(
+    ("name", "offered"), [("a.nc", "a"), ("1.5 pin.NC", "1.5 pin"), ("bare", "bare"), ("a.h.nc", "a.h.nc")]
+)
+def test_the_name_that_is_offered_becomes_the_same_again(name: str, offered: str) -> None:
+    assert without_ending(name) == offered
+    assert checked_name(offered, Path(name)) == name
 
 
 @pytest.mark.parametrize(
