@@ -70,8 +70,9 @@ class Cycle:
 
     @property
     def next_block(self) -> Block | None:
-        """The block after the one that is being executed."""
-        return self._motion.following or self._feed.next_block
+        """The block after the one that is being executed; none while a standstill is awaited."""
+        following = self._motion.following or self._feed.next_block
+        return None if following is self.current else following
 
     @property
     def at_rest(self) -> bool:

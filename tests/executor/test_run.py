@@ -251,3 +251,14 @@ def test_the_run_obeys_the_law_of_the_whole_path() -> None:
         furthest = max(furthest, *(abs(a - b) for a, b in zip(there, wanted, strict=True)))
     assert rig.shot.parts == 1
     assert furthest < 1e-4
+
+
+def test_the_next_block_is_never_the_one_that_is_carried_out() -> None:
+    rig = Rig()
+    rig.start("G90G94F300\nX1\nG04F1\nX0\nX1\nM30\n")
+    rig.until_true(lambda shot: shot.line == 2 and shot.state is State.RUN)
+    assert rig.shot.next_text == "G04F1"
+    rig.until_true(lambda shot: shot.waiting_for == "DWELL")
+    assert (rig.shot.block_text, rig.shot.next_text) == ("G04F1", "")  # read once the dwell is over
+    rig.until_true(lambda shot: shot.line == 4)
+    assert rig.shot.next_text == "X1"
