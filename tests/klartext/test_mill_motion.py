@@ -30,9 +30,9 @@ def traced(text: str, machine: Machine = MILL) -> tuple[Array, Array]:
     """Axes (n, 5) and lines (n,) of a program's setpoints."""
     setup = setup_for(machine, tools={1: ToolOffset()}, secondary={})
     timeline = Timeline.of(Source("T.H", text, Dialect.KLARTEXT), setup, machine)
-    rows = [row for chunk in setpoints(timeline, DT) for row in chunk]
+    chunks = list(setpoints(timeline, DT))
     assert not timeline.errors, timeline.diagnostics
-    return np.array([row[1] for row in rows]), np.array([row[3] for row in rows])
+    return np.concatenate([chunk.at for chunk in chunks]), np.concatenate([chunk.line for chunk in chunks])
 
 
 def speeds(axes: Array) -> Array:

@@ -142,7 +142,7 @@ def test_a_limit_switch_brakes_and_takes_the_power(homed: LiveLathe) -> None:
     homed.until(lambda shot: bool(shot.alarms))
     assert homed.codes[0] == "limit-switch"
     assert "X" in homed.shot.alarms[0].cause
-    assert homed.pin("x-motor.sel") == 0.0
+    homed.until(lambda _: homed.pin("x-motor.sel") == 0.0)  # once it has braked
     homed.set("x-high", 0)
 
 
