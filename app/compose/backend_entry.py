@@ -23,6 +23,7 @@ BACKENDS = {
 }
 """By the word in machine.backend the module of this room with its ``BACKEND``."""
 
+NO_PRIORITY = "without real-time priority"  # begins what drives lose that want each setpoint at its time
 STATION = ("start", "hold")  # a machine whose file has neither has no operator station of its own
 Play = Callable[
     [Machine, Callable[[], bool], Callable[[str], None], Callable[[], Iterable[str]]], None

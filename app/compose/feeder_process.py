@@ -9,7 +9,7 @@ import subprocess
 import sys
 from dataclasses import replace
 
-from app.compose.backend_entry import backend_of, has_inverter
+from app.compose.backend_entry import NO_PRIORITY, backend_of, has_inverter
 from app.compose.inverter_backend import with_inverter
 from core.machine.machine_model import Machine
 from core.ports import Clock, DriverError
@@ -130,9 +130,6 @@ class FeederProcess:
         return Message(
             {"error": "the feeder's process has ended at its start; see its message above"}, NOTHING
         )
-
-
-NO_PRIORITY = "without real-time priority"  # begins what drives lose that want each setpoint at its time
 
 
 def beat(machine: Machine) -> float:

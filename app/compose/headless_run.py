@@ -10,8 +10,8 @@ from app.compose.backend_entry import Connected, played
 from app.compose.backends import connect, real_time
 from app.compose.headless_lives import HeadlessLives
 from app.compose.journal import Journal
+from app.compose.machine_status import AGENTS
 from app.compose.run_log import EventLog
-from app.compose.shop_floor import open_shop_floor, told_to_agents
 from app.desk.command_errors import CommandError
 from app.desk.data_folder import RECORDS, data_folder
 from app.desk.run_without_screen import HeadlessRun
@@ -149,6 +149,10 @@ def _shop_floor(
     machine: Machine, executor: Executor, say: Callable[[str], None], *, paced: bool
 ) -> Callable[[], None]:
     """A run that takes less than its time would tell the shop floor of parts that nobody has made."""
+
+    if AGENTS not in machine.hardware.tables:
+        return lambda: None
+    from app.compose.shop_floor import open_shop_floor, told_to_agents
 
     def tell(why: str) -> None:
         say(f"no shop-floor data: {why}")

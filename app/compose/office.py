@@ -5,13 +5,14 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from datetime import UTC, datetime
 from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from app.compose.machine_status import conditions_of_device, device_of
 from app.compose.page_server import PageServer, listening_at
-from app.compose.shop_floor import conditions_of_device, device_of
 from app.compose.stored_offsets import shapes_at_hand
 from app.compose.workshop import office_pictures
 from app.desk.kept_part import kept_part
@@ -21,7 +22,6 @@ from app.shopfloor.floor_reading import FloorReader
 from app.shopfloor.office_status import OfficeLook
 from core.machine.shop_network_tables import AnnounceTable, StatusPageTable
 from core.ports import DriverError
-from drivers.mtconnect.mtconnect_adapter import utc_now
 
 if TYPE_CHECKING:
     from app.compose.journal import Journal
@@ -68,7 +68,7 @@ def _look(desk: Desk, machine: Machine) -> OfficeLook:
         watch = desk.attached(PartsWatch)
         return watch.book.now.stops if watch is not None else ()
 
-    return OfficeLook(machine.name, reader, desk.snapshot, left, stops, utc_now)
+    return OfficeLook(machine.name, reader, desk.snapshot, left, stops, partial(datetime.now, UTC))
 
 
 def _announcer(

@@ -4,17 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Collection
 from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING
 
 from app.desk.data_folder import RECORDS, data_folder
 from app.desk.desk import Desk
-from app.jog.drive_test_model import DriveTests
-from app.scope.analyses import Analyses
-from app.scope.record_shelf import RecordShelf
-from app.scope.scope_curves import LiveSamples
-from app.scope.scope_model import Scope
 from core.executor.recorder import Recorder
+from core.machine.machine_model import Machine
 from core.records.record import Channel, Record
-from core.records.record_file import open_record, save_record, write_csv
+
+if TYPE_CHECKING:
+    from app.jog.drive_test_model import DriveTests
+    from app.scope.analyses import Analyses
+    from app.scope.scope_curves import LiveSamples
+    from app.scope.scope_model import Scope
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,14 +47,43 @@ class RecordedSamples:
 
 
 def give_scope(desk: Desk, live: LiveSamples | None = None) -> None:
-    """The page SCOPE on ``live``, or on what the desk's recorder samples; with neither it has files alone."""
+    """The page SCOPE on ``live``, or on what the desk's recorder samples; with neither it has files alone.
+
+    Scope, analyses and drive tests are made when somebody first looks at them.
+    """
+    desk.attach_later("app.scope.scope_model.Scope", partial(_scope, desk, live))
+    desk.attach_later("app.scope.analyses.Analyses", partial(_analyses, desk))
+    if desk.lathe is not None:
+        desk.attach_later("app.jog.drive_test_model.DriveTests", partial(_drive_tests, desk, desk.lathe))
+    desk.open_record = lambda name: _scope_of(desk).open_alarm(name)
+
+
+def _scope(desk: Desk, live: LiveSamples | None) -> Scope:
+    from app.scope.record_shelf import RecordShelf
+    from app.scope.scope_model import Scope
+    from core.records.record_file import open_record, save_record, write_csv
+
     if live is None and desk.recorder is not None:
         live = RecordedSamples(desk.recorder)
-    shelf = RecordShelf(data_folder() / RECORDS, save_record, open_record, write_csv)
-    scope = Scope(desk, live, shelf)
-    desk.attach(scope)
-    desk.open_record = scope.open_alarm
+    return Scope(desk, live, RecordShelf(data_folder() / RECORDS, save_record, open_record, write_csv))
+
+
+def _scope_of(desk: Desk) -> Scope:
+    from app.scope.scope_model import Scope
+
+    scope = desk.attached(Scope)
+    assert scope is not None
+    return scope
+
+
+def _analyses(desk: Desk) -> Analyses:
+    from app.scope.analyses import Analyses
+
     slides = {axis.name: axis for axis in desk.lathe.axes} if desk.lathe is not None else {}
-    desk.attach(Analyses(scope, slides, desk.lathe.spindle if desk.lathe is not None else None))
-    if desk.lathe is not None:
-        desk.attach(DriveTests(desk, scope, desk.lathe))
+    return Analyses(_scope_of(desk), slides, desk.lathe.spindle if desk.lathe is not None else None)
+
+
+def _drive_tests(desk: Desk, machine: Machine) -> DriveTests:
+    from app.jog.drive_test_model import DriveTests
+
+    return DriveTests(desk, _scope_of(desk), machine)

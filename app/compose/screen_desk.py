@@ -10,20 +10,19 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from app.compose.accepted_machine import file_changes, guarded
-from app.compose.backend_entry import Connected, has_inverter, played
+from app.compose.backend_entry import NO_PRIORITY, Connected, has_inverter, played
 from app.compose.backends import connect
 from app.compose.desk_functions import furnish
 from app.compose.desk_quality import give_quality
 from app.compose.error_log import Log
-from app.compose.feeder_process import NO_PRIORITY
 from app.compose.jobs_desk import give_jobs
 from app.compose.journal import Journal
 from app.compose.kinematics_chain import kinematics_of
 from app.compose.machine_setup import read_machine
+from app.compose.machine_status import AGENTS, keep_status
 from app.compose.office import open_office
 from app.compose.scope_desk import give_scope
 from app.compose.sharing_desk import give_sharing, open_sharing
-from app.compose.shop_floor import keep_status, open_shop_floor
 from app.compose.stored_offsets import Offsets, book_of, shapes_at_hand, stored_offsets
 from app.compose.workshop import (
     drawer,
@@ -46,8 +45,6 @@ from app.desk.program_folder import ProgramFile, ProgramFolders
 from app.desk.program_loading import LoadingSteps, ProgramLoader
 from app.desk.prompt_line import UNDER_WAY
 from app.desk.translation import tr
-from app.editor.editor import Editor
-from app.editor.versions import NoArchive
 from app.offsets.mill_touch import MillTouch
 from app.offsets.offset_effect import Effect
 from core.access.access_table import Act
@@ -68,6 +65,7 @@ from core.store.store_rows import EventRow
 from drivers.clocks import RealClock
 
 if TYPE_CHECKING:
+    from app.editor.editor import Editor
     from app.shapes.shapes_model import Shapes
 
 # Threads beside the executor, and what an operator misses when they end.
@@ -152,7 +150,11 @@ def _shop_floor(desk: Desk, executor: Executor, journal: Journal) -> Callable[[]
         return executor.snapshot
 
     assert desk.lathe is not None
-    open_ones = [open_shop_floor(desk.lathe, snapshot, tell)]
+    open_ones = list[Callable[[], None]]()
+    if AGENTS in desk.lathe.hardware.tables:
+        from app.compose.shop_floor import open_shop_floor
+
+        open_ones.append(open_shop_floor(desk.lathe, snapshot, tell))
     if not journal.trouble or journal.waiting:
         open_ones.append(keep_status(desk.lathe, snapshot, data_folder()))
         open_ones.append(_daily_backup(desk, desk.lathe, journal))
@@ -297,9 +299,7 @@ def _desk(
     )
     desk.attach(Effect(drawer(machine), part_comparer(machine, shapes_at_hand, kept)))
     beside = workshop(machine, offsets, left=left, shapes=shapes_at_hand, kept=kept)
-    editor = _editor(beside, journal, machine)
-    editor.may_save = lambda: desk.access.refusal(Act.PROGRAMS)
-    desk.attach(editor)
+    desk.attach_later("app.editor.editor.Editor", partial(_editor, desk, beside, journal, machine))
     small = thumbnails(machine, shapes_at_hand, kept)
     furnish(desk, machine, keep, workshop(machine, offsets, left=left), thumbnail=small)
     give_mdi(desk, machine, offsets, keep)
@@ -347,7 +347,12 @@ def _drives(machine: Machine) -> str:
     return "SIMULATED SLIDES · REAL SPINDLE" if has_inverter(machine) else "SIMULATED"
 
 
-def _editor(work: LoadingSteps, journal: Journal | None, machine: Machine) -> Editor:
+def _editor(desk: Desk, work: LoadingSteps, journal: Journal | None, machine: Machine) -> Editor:
     """The editor proves what is being typed without keeping a version of every key."""
+    from app.editor.editor import Editor
+    from app.editor.versions import NoArchive
+
     ending = usual_ending(Dialect(machine.language))
-    return Editor(work, journal or NoArchive(), data_folder() / "programs", samples(), usual_ending=ending)
+    editor = Editor(work, journal or NoArchive(), data_folder() / "programs", samples(), usual_ending=ending)
+    editor.may_save = lambda: desk.access.refusal(Act.PROGRAMS)
+    return editor

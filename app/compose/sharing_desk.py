@@ -5,23 +5,24 @@ from __future__ import annotations
 import secrets
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from app.compose.journal import Journal
 from app.desk.command_errors import CommandError
 from app.desk.data_folder import data_folder
 from app.desk.desk import Desk
 from app.desk.translation import tr
-from app.sharing.sharing import Shared, Sharing
-from app.sharing.sharing_model import SharingModel
-from app.sharing.sharing_thread import SharingThread
 from core.executor.snapshot import Event
 from core.machine.machine_model import Machine
 from core.machine.sharing_table import SharingTable
-from core.sharing.shared_place import SharedPlace
-from core.sharing.version_record import is_home
-from core.store.shared_versions import Family, key_of
 from core.store.store import Store
+
+if TYPE_CHECKING:
+    from app.sharing.sharing import Shared, Sharing
+    from app.sharing.sharing_model import SharingModel
+    from core.sharing.shared_place import SharedPlace
 
 HOME_FILE = "sharing-id"  # beside the store and not in it: a setup or a backup of another desk has another
 COPY = "sharing.git"  # of the repository
@@ -32,6 +33,8 @@ def sharing_of(machine: Machine, store: Callable[[], Store]) -> Sharing | None:
     table = machine.hardware.table(SharingTable)
     if table is None:
         return None
+    from app.sharing.sharing import Sharing
+
     folder = data_folder()
     return Sharing(
         place_of(table, folder), table.desk or machine.name, home_of(folder), folder / "programs", store
@@ -46,16 +49,26 @@ def give_sharing(desk: Desk, machine: Machine, journal: Journal | None) -> None:
             sharing = sharing_of(machine, journal.opened)
         except CommandError as error:
             desk.say(tr("NOTHING IS SHARED: {why}").format(why=error))
-    desk.attach(SharingModel(desk, sharing))
+    desk.attach_later("app.sharing.sharing_model.SharingModel", partial(_model, desk, sharing))
+
+
+def _model(desk: Desk, sharing: Sharing | None) -> SharingModel:
+    from app.sharing.sharing_model import SharingModel
+
+    return SharingModel(desk, sharing)
 
 
 def open_sharing(desk: Desk, journal: Journal) -> Callable[[], None]:
     """Begin to publish and to look; returns how to end it."""
-    model, machine = desk.attached(SharingModel), desk.lathe
-    if model is None or model.sharing is None or machine is None:
+    table = desk.lathe.hardware.table(SharingTable) if desk.lathe is not None else None
+    if table is None:
         return lambda: None
-    table = machine.hardware.table(SharingTable)
-    assert table is not None
+    from app.sharing.sharing_model import SharingModel
+    from app.sharing.sharing_thread import SharingThread
+
+    model = desk.attached(SharingModel)
+    if model is None or model.sharing is None:
+        return lambda: None
     heard = Heard(desk, journal)
     thread = SharingThread(model.sharing, table.look, heard.hear)
     model.look_now, model.silent_for = thread.look_now, thread.silent_for
@@ -77,6 +90,8 @@ class Heard:
         if shared.trouble and shared.trouble != self._trouble:
             self.journal.hear(Event(self.desk.snapshot().t, "warning", shared.trouble))
         self._trouble = shared.trouble
+        from core.store.shared_versions import Family, key_of
+
         name = self.desk.session.now.name
         family = shared.families.get(key_of(name), Family())
         fresh = frozenset(each.id for each in family.elsewhere) - self._told if family.here else frozenset()
@@ -104,6 +119,8 @@ def place_of(table: SharingTable, folder: Path) -> SharedPlace:
 
 def home_of(folder: Path) -> str:
     """What tells this desk from all others; made once. Raises CommandError."""
+    from core.sharing.version_record import is_home
+
     path = folder / HOME_FILE
     try:
         text = path.read_text(encoding="ascii").strip() if path.exists() else ""

@@ -1,14 +1,13 @@
-"""The shop floor's view of a machine: its MTConnect adapter and the device model that fits it."""
+"""The MTConnect adapter of a machine, and the device model that fits it."""
 
 from __future__ import annotations
 
 import time
 from collections.abc import Callable
 from datetime import datetime
-from pathlib import Path
 
-from app.shopfloor.floor_reading import UNKNOWN, FloorReader, Reading
-from app.shopfloor.status_file import NAME, StatusFile, StatusKeeper, status_of
+from app.compose.machine_status import conditions_of_device, device_of
+from app.shopfloor.floor_reading import FloorReader, Reading
 from core.executor.snapshot import Snapshot
 from core.machine.machine_model import Machine
 from core.ports import DriverError
@@ -16,9 +15,8 @@ from drivers.clocks import RealClock
 from drivers.mtconnect.agent_links import listening
 from drivers.mtconnect.devices_xml import devices_xml
 from drivers.mtconnect.mtconnect_adapter import Adapter, AdapterThread, utc_now
-from drivers.mtconnect.mtconnect_items import Category, Component, Layout, machine_items
 from drivers.mtconnect.mtconnect_table import MtconnectTable
-from drivers.mtconnect.shdr_lines import Active, Report, stamp
+from drivers.mtconnect.shdr_lines import Active, Report
 
 
 def open_shop_floor(
@@ -52,36 +50,11 @@ def try_shop_floor(machine: Machine, model: MtconnectTable) -> None:
     device_model(machine, utc_now())
 
 
-def keep_status(machine: Machine, snapshot: Callable[[], Snapshot], folder: Path) -> Callable[[], None]:
-    """Begin to keep the status file in this folder; returns how to end it."""
-    reader = FloorReader(machine, conditions_of_device(device_of(machine, machine.name)), time.monotonic)
-    keeper = StatusKeeper(
-        StatusFile(folder / NAME, lambda: stamp(utc_now())),
-        lambda: status_of(machine.name, reader.look(snapshot())),
-        status_of(machine.name, UNKNOWN),
-    )
-    keeper.start()
-    return keeper.close
-
-
 def adapter_of(machine: Machine, model: MtconnectTable, snapshot: Callable[[], Snapshot]) -> Adapter:
     """The adapter on real time; it looks at snapshots and at nothing else."""
     device = device_of(machine, model.device)
     reader = FloorReader(machine, conditions_of_device(device), time.monotonic)
     return Adapter(model, tuple(device.all_items()), lambda: _report(reader.look(snapshot())), RealClock())
-
-
-def device_of(machine: Machine, name: str) -> Component:
-    """What is told of this machine under a name.
-
-    On a lathe the spindle is the C axis too, unless C has its own drive.
-    """
-    lathe = machine.kind == "lathe"
-    one = lathe and machine.spindle_is_c
-    linear = tuple(axis.name for axis in machine.axes if not axis.rotary)
-    rotary = tuple(axis.name for axis in machine.axes if axis.rotary and not (one and axis.name == "C"))
-    layout = Layout(linear, rotary, "C" if one else "S", one, lathe)
-    return machine_items(layout, name)
 
 
 def device_model(machine: Machine, at: datetime) -> str:
@@ -93,11 +66,6 @@ def device_model(machine: Machine, at: datetime) -> str:
             "this machine tells the shop floor about itself"
         )
     return devices_xml(device_of(machine, model.device), f"{machine.name}, {machine.kind}", at)
-
-
-def conditions_of_device(device: Component) -> frozenset[str]:
-    """The keys of its conditions."""
-    return frozenset(item.key for item in device.all_items() if item.category is Category.CONDITION)
 
 
 def _report(reading: Reading) -> Report:

@@ -19,9 +19,9 @@ from PySide6.QtGui import QImage
 
 from app.compose.machine_answers import check_ports
 from app.compose.machine_files import load_machine, parse_machine
+from app.compose.machine_status import conditions_of_device, device_of
 from app.compose.office import AlarmDrawing, PartPicture
 from app.compose.page_server import PageServer, listening_at
-from app.compose.shop_floor import conditions_of_device, device_of
 from app.programs.preview import Thumbnail
 from app.shopfloor.alarm_drawing import HIGH, alarm_drawing
 from app.shopfloor.floor_reading import FloorReader

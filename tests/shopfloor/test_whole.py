@@ -16,8 +16,9 @@ import pytest
 
 import resources
 from app.compose.machine_files import load_machine, named_machine
+from app.compose.machine_status import device_of
 from app.compose.screen_desk import build_desk
-from app.compose.shop_floor import adapter_of, device_model, device_of
+from app.compose.shop_floor import adapter_of, device_model
 from core.executor.commands import CycleStart, FeedHold, Reset, SetSwitch
 from core.executor.snapshot import Snapshot, State
 from core.machine.machine_model import Machine

@@ -11,7 +11,8 @@ from collections.abc import Iterator
 import pytest
 
 import resources
-from app.compose.feeder_process import NO_PRIORITY, FeederProcess, beat, without_priority
+from app.compose.backend_entry import NO_PRIORITY
+from app.compose.feeder_process import FeederProcess, beat, without_priority
 from app.compose.machine_files import parse_machine
 from core.ports import DriverError, MachinePorts
 from drivers.clocks import RealClock, StepClock

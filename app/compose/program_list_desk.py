@@ -1,0 +1,32 @@
+"""The list of programs of a desk, with its preview and what comes in and goes out: put together."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from app.desk.desk import Desk
+from app.desk.latest import Latest
+from app.desk.persistence import Persistence
+from app.desk.program_loading import LoadingSteps
+from app.programs.folder_chooser import FolderChooser
+from app.programs.import_export import ImportExport
+from app.programs.preview import DrawThumbnail, Preview
+from app.programs.program_list import ProgramList
+
+
+def program_list(
+    desk: Desk, persistence: Persistence, workshop: LoadingSteps, own: Path, thumbnail: DrawThumbnail | None
+) -> ProgramList:
+    """Of the programs in the folder ``own``; what comes in is proved with the offsets of that moment."""
+
+    def check(path: Path) -> str:
+        job = workshop.make_job(workshop.read(path), False)
+        proved = workshop.prove(job, lambda _count: None)
+        errors = proved.proof.errors
+        result = f"{len(errors)} ERRORS: {errors[0]}" if errors else "PROVED"
+        persistence.program_proved(path.name, result, None if errors else proved.proof.cycle_time)
+        return errors[0] if errors else ""
+
+    worker = Latest("editing-programs")
+    transfer = ImportExport(desk, own, persistence, worker, check, FolderChooser(Path.home()))
+    return ProgramList(desk, own, persistence, worker, Preview(workshop, thumbnail), transfer)

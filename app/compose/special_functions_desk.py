@@ -1,0 +1,97 @@
+"""The special functions, F10, of a desk: one line for each."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+from app.compose.serial_lines import PLAIN, SerialLines, proving
+from app.desk.data_folder import BACKUPS, data_folder
+from app.desk.desk import Desk
+from app.desk.latest import Latest
+from app.desk.persistence import Persistence
+from app.desk.program_loading import LoadingSteps
+from app.jobs.jobs_function import JobsFunction
+from app.quality.parts_function import MeasuredPartsFunction
+from app.quality.shift_function import ShiftReport
+from app.scope.scope_function import ScopeFunction
+from app.special.access_levels import AccessLevels
+from app.special.backup_and_restore import BackupAndRestore
+from app.special.drive_status import DriveStatus
+from app.special.inputs_outputs import InputsOutputs
+from app.special.lamps_and_sound import DeskSounds, LampsAndSound
+from app.special.logged_events import LoggedEvents
+from app.special.machine_file_acceptance import MachineFileAcceptance
+from app.special.parts_counter import PartsCounterFunction
+from app.special.preferences import ScreenPreferences
+from app.special.setup_sheet_function import SetupSheetFunction
+from app.special.special_functions import SpecialFunction, SpecialFunctions
+from app.special.spindle_limit import SpindleSpeedLimit
+from app.transfer.serial_transfer import SerialTransfer
+from core.language.source import Dialect, usual_ending
+from core.machine.backup_table import BackupTable
+from core.machine.machine_model import Machine
+from core.machine.serial_table import DncModel
+
+MakeFunction = Callable[[Desk, Machine, Persistence, Latest], SpecialFunction]
+
+
+def _backup(desk: Desk, machine: Machine, persistence: Persistence, worker: Latest) -> SpecialFunction:
+    table = machine.hardware.table(BackupTable)
+    daily = Path(table.folder) if table is not None and table.folder else None
+    backup = BackupAndRestore(desk, persistence, worker, data_folder() / BACKUPS, daily=daily)
+
+    def restored() -> None:
+        desk.settings.reload()
+        desk.counter.reload()
+        desk.access.reload()
+
+    backup.restored = restored
+    return backup
+
+
+def _setup_sheet(desk: Desk, machine: Machine, persistence: Persistence, worker: Latest) -> SpecialFunction:
+    return SetupSheetFunction(desk, machine, persistence, worker, data_folder() / "sheets")
+
+
+def _transfer(
+    desk: Desk, machine: Machine, persistence: Persistence, workshop: LoadingSteps, own: Path
+) -> SpecialFunction:
+    """RS-232, at first as [dnc] of the machine file says. What comes in is proved as an import is."""
+    lines = SerialLines(proving(workshop), usual_ending(Dialect(machine.language)))
+    return SerialTransfer(desk, persistence, lines, machine.hardware.table(DncModel) or PLAIN, own)
+
+
+# One line for each special function, in the order of the list; one whose hardware is not there has none.
+ITEMS: tuple[MakeFunction, ...] = (
+    lambda desk, machine, _keep, _worker: SpindleSpeedLimit(desk, machine.spindle),
+    lambda desk, _machine, _keep, _worker: PartsCounterFunction(desk),
+    lambda desk, machine, _keep, _worker: InputsOutputs(desk, machine),
+    lambda desk, machine, _keep, _worker: DriveStatus(desk, machine),
+    lambda desk, _machine, persistence, worker: LoggedEvents(desk, persistence, worker),
+    _backup,
+    lambda desk, _machine, _keep, _worker: ScreenPreferences(desk),
+    lambda desk, _machine, _keep, _worker: MachineFileAcceptance(desk, desk.changes),
+)
+
+
+def special_functions(
+    desk: Desk,
+    machine: Machine,
+    persistence: Persistence,
+    workshop: LoadingSteps,
+    own: Path,
+    sounds: DeskSounds,
+) -> SpecialFunctions:
+    """All of them; ``workshop`` proves what comes in over RS-232, ``own`` is the operator's folder."""
+    worker = Latest("editing-special")
+    functions = [make(desk, machine, persistence, worker) for make in ITEMS]
+    functions.append(_transfer(desk, machine, persistence, workshop, own))
+    functions.append(_setup_sheet(desk, machine, persistence, worker))
+    functions.append(ScopeFunction(desk))
+    functions.append(MeasuredPartsFunction(desk))
+    functions.append(JobsFunction(desk))
+    functions.append(ShiftReport(desk, machine.name, worker, data_folder() / "sheets"))
+    functions.append(LampsAndSound(desk, machine, sounds))
+    functions.append(AccessLevels(desk, persistence))
+    return SpecialFunctions(functions, worker)
