@@ -123,7 +123,7 @@ def _ports() -> int:
 def _settings(args: argparse.Namespace, machine: Machine) -> DncModel:
     from dataclasses import replace
 
-    from app.compose.serial_lines import PLAIN
+    from app.compose.program_transfer import PLAIN
     from core.machine.serial_table import DncModel
 
     model = machine.hardware.table(DncModel) or PLAIN
@@ -142,7 +142,7 @@ def _settings(args: argparse.Namespace, machine: Machine) -> DncModel:
 
 
 def _send(args: argparse.Namespace, settings: DncModel) -> int:
-    from app.compose.serial_lines import SerialLines
+    from app.compose.program_transfer import SerialLines
 
     path = Path(args.file)
     lines = SerialLines(lambda _source: ((), 0.0))
@@ -154,7 +154,7 @@ def _send(args: argparse.Namespace, settings: DncModel) -> int:
 
 
 def _receive(args: argparse.Namespace, machine: Machine, settings: DncModel) -> int:
-    from app.compose.serial_lines import SerialLines, proving
+    from app.compose.program_transfer import SerialLines, proving
     from app.compose.stored_offsets import chosen_offsets
     from app.compose.workshop import workshop
     from core.language.source import Dialect, usual_ending

@@ -1,21 +1,46 @@
-"""A program over a serial line: out of a file, and in as a program that was looked at."""
+"""Programs over the serial line of a machine file: out of a file, and in as a program that was looked at."""
 
 from __future__ import annotations
 
 import tempfile
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from app.compose.serial_lines import Check
-from app.compose.serial_ports import open_wire
+from app.compose.serial_ports import open_wire, serial_ports
+from app.desk.program_loading import LoadingSteps
 from app.programs.whole_file import FileError
 from app.transfer.line_transfer import Received
 from core.language.source import Source, SourceError, load_source
 from core.machine.serial_table import DncModel
 from core.ports import Clock, DriverError
+from drivers.clocks import RealClock
 from drivers.serial_line import LineSettings
 from drivers.transfer.program_framing import Program, outgoing
 from drivers.transfer.transfer_session import Reach, Receiving, Sending
 from drivers.transfer.transfer_settings import TransferSettings
+
+# A line as most controls have it; the port is for the operator to choose.
+PLAIN = DncModel("", 9600, 8, "N", 1, "xonxoff", "%", "\r\n")
+Check = Callable[[Source], tuple[tuple[str, ...], float]]  # errors, cycle time in s
+
+
+class SerialLines:
+    """``app.transfer.line_transfer.Lines``. ``check`` looks at what has come in; ``ending`` of its file."""
+
+    def __init__(self, check: Check, ending: str = ".nc", clock: Clock | None = None) -> None:
+        self._check, self._ending, self._clock = check, ending, clock or RealClock()
+
+    def ports(self) -> Sequence[tuple[str, str]]:
+        """Those of this computer."""
+        return serial_ports()
+
+    def send(self, settings: DncModel, path: Path) -> SendingFile:
+        """The program in a file."""
+        return SendingFile(settings_of(settings), path, self._clock)
+
+    def receive(self, settings: DncModel) -> ReceivingProgram:
+        """Whatever program comes."""
+        return ReceivingProgram(settings_of(settings), self._clock, self._check, self._ending)
 
 
 class _Carried:
@@ -96,6 +121,16 @@ def settings_of(model: DncModel) -> TransferSettings:
     """The line and the frame."""
     line = LineSettings(model.port, model.baud, model.bits, model.parity, model.stop, model.flow)
     return TransferSettings(line, model.wrap, model.eol, model.dc_codes, model.wait, model.leader)
+
+
+def proving(workshop: LoadingSteps) -> Check:
+    """The check of the desk: its machine, its offsets of that moment."""
+
+    def check(source: Source) -> tuple[tuple[str, ...], float]:
+        proved = workshop.prove(workshop.make_job(source, False), lambda _count: None)
+        return proved.proof.errors, proved.proof.cycle_time
+
+    return check
 
 
 def _read(text: bytes, name: str) -> Source:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-from app.compose.serial_lines import PLAIN, SerialLines, proving
+from app.compose.program_transfer import PLAIN, SerialLines, proving
 from app.desk.data_folder import BACKUPS, data_folder
 from app.desk.desk import Desk
 from app.desk.latest import Latest

@@ -10,7 +10,7 @@ from app.desk.latest import Latest, Watch
 from app.desk.program_loading import Proved
 from core.executor.job import Job
 from core.interpreter.restart.cut_record import CutRecord
-from core.interpreter.restart.restart_lines import Interruption, NoRestart, RestartPoint
+from core.interpreter.restart.restart_point import Interruption, NoRestart, RestartPoint
 
 if TYPE_CHECKING:
     from core.interpreter.restart.program_search import ProgramSearch

@@ -18,7 +18,7 @@ from core.executor.job import Job, make_job
 from core.executor.snapshot import CYCLE, Snapshot, Starts, State
 from core.interpreter.restart.cut_record import CutRecord
 from core.interpreter.restart.restart_approach import Choices
-from core.interpreter.restart.restart_lines import NoRestart, RestartPoint
+from core.interpreter.restart.restart_point import NoRestart, RestartPoint
 from core.language.source import Source
 
 if TYPE_CHECKING:

@@ -28,7 +28,7 @@ from core.interpreter.restart.restart_approach import (
     starting,
     way_out,
 )
-from core.interpreter.restart.restart_lines import Called, Interruption, LoopPass, RestartPoint
+from core.interpreter.restart.restart_point import Called, Interruption, LoopPass, RestartPoint
 from core.interpreter.restart.restart_retract import Retract, ToolPlace
 
 # --- the way out of the part --------------------------------------------------------------------------

@@ -14,7 +14,7 @@ from core.executor.snapshot import Starts, State
 from core.interpreter.checkpoint import Begin, Checkpoint
 from core.interpreter.job_setup import Setup, ToolOffset
 from core.interpreter.restart.restart_approach import Choices, begin_at
-from core.interpreter.restart.restart_lines import RestartPoint
+from core.interpreter.restart.restart_point import RestartPoint
 from core.interpreter.restart.state_rebuild import StateRebuild
 from core.language.source import Dialect, Source
 from core.proving.prove_program import prove

@@ -11,7 +11,7 @@ from app.desk.program_loading import Proved
 from app.searchto.searchto_cursor import LineCursor
 from app.searchto.searchto_finder import LineFinder
 from core.executor.job import Job, Proof, make_job
-from core.interpreter.restart.restart_lines import NoRestart, RestartPoint
+from core.interpreter.restart.restart_point import NoRestart, RestartPoint
 from core.language.source import Source
 from tests.interpreter.programs import setup
 

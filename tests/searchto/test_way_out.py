@@ -12,7 +12,7 @@ from core.executor.job import make_job
 from core.executor.snapshot import Snapshot
 from core.interpreter.modal_state import Modal
 from core.interpreter.restart.restart_approach import Choices, MachineNow, retract_from_work
-from core.interpreter.restart.restart_lines import Interruption
+from core.interpreter.restart.restart_point import Interruption
 from core.interpreter.restart.restart_retract import Retract, RetractLeg, ToolPlace
 from core.interpreter.restart.state_rebuild import StateRebuild
 from core.language.source import Source

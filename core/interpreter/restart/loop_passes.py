@@ -13,7 +13,7 @@ from core.interpreter.omniturn.loops_and_subroutines import call_target
 from core.interpreter.omniturn.omniturn_interpreter import PassToLine
 from core.interpreter.omniturn.omniturn_program import Program
 from core.interpreter.omniturn.omniturn_statement import Statement
-from core.interpreter.restart.restart_lines import Called, LineVisit, LoopPass
+from core.interpreter.restart.restart_point import Called, LineVisit, LoopPass
 
 MOST = 20_000
 """Visits that are told apart; more are made by nobody who wants to go on in one of them."""

@@ -15,7 +15,7 @@ from core.geometry.rotation_frames import Vector, plus, scaled
 from core.interpreter.actions import ProgramStop, SpindleStop, ToolChange
 from core.interpreter.checkpoint import ApproachStep, AxesLeg, Begin, FunctionStep
 from core.interpreter.restart.restart_approach import Choices, MachineNow, starting, stopping
-from core.interpreter.restart.restart_lines import RestartPoint
+from core.interpreter.restart.restart_point import RestartPoint
 
 SHORT_OF_LIMIT = 0.01  # mm that the way stays away from the software limits
 _SLOWLY_OUT = 50.0  # mm along the tool that a tool may stand in the work

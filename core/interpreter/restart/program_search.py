@@ -19,7 +19,7 @@ from core.interpreter.elementary_blocks import Block
 from core.interpreter.interpretation import Interpretation
 from core.interpreter.job_setup import Setup
 from core.interpreter.restart.cut_record import CutRecord, record_cuts
-from core.interpreter.restart.restart_lines import Interruption, LineVisit, NoRestart, RestartPoint
+from core.interpreter.restart.restart_point import Interruption, LineVisit, NoRestart, RestartPoint
 from core.interpreter.restart.restart_retract import Retract, ToolPlace
 from core.interpreter.restart.state_rebuild import found_on_lathe
 

@@ -14,7 +14,7 @@ from core.interpreter.actions import Coolant, Output, SpindleLock, SpindleOrient
 from core.interpreter.checkpoint import ApproachStep, Begin, CTurn, FunctionStep, Leg
 from core.interpreter.modal_state import Modal
 from core.interpreter.restart.cut_record import CutRecord
-from core.interpreter.restart.restart_lines import Interruption, RestartPoint
+from core.interpreter.restart.restart_point import Interruption, RestartPoint
 from core.interpreter.restart.restart_retract import (
     NEAR,
     Place,

@@ -1,19 +1,15 @@
-"""Lines from which a program can be restarted: what its text says of each, and what the search answers."""
+"""Lines from which a program can be restarted: what its text says of each."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
 from operator import attrgetter
 from typing import NamedTuple
 
-from core.interpreter.checkpoint import Checkpoint
 from core.interpreter.omniturn.loops_and_subroutines import call_target
 from core.interpreter.omniturn.omniturn_program import Program
 from core.interpreter.omniturn.omniturn_statement import PLANE, Statement
 from core.interpreter.omniturn.plain_moves import ReadyLines
-from core.interpreter.restart.cut_record import CutRecord
-from core.interpreter.restart.restart_retract import Retract, ToolPlace
 
 _NOSE_ON, _NOSE_OFF = frozenset({41, 42}), 40
 
@@ -156,75 +152,3 @@ def _plane(step: Statement, number: int, begun: int) -> tuple[int, int]:
 
 def _corner(begun: int, ends: int) -> LineRange:
     return LineRange(begun + 1, ends, f"is in the corner of line {begun}.")
-
-
-# --- what the search for a line answers
-
-
-class LoopPass(NamedTuple):
-    """One pass of a loop; ``first`` and ``last`` are its lines, LS and LF."""
-
-    first: int
-    last: int
-    number: int
-    of: int
-
-
-class Called(NamedTuple):
-    """A call under way: the line that calls, and the number of the subroutine."""
-
-    line: int
-    subroutine: int
-
-
-class LineVisit(NamedTuple):
-    """The ``number``-th time, of ``of`` in the whole run, that the program comes to a line, and in what."""
-
-    number: int = 1
-    of: int = 1
-    within: tuple[LoopPass | Called, ...] = ()
-
-
-class Interruption(NamedTuple):
-    """Where the program was interrupted: elementary block, machine point, mm; blocks begun without a gap.
-
-    ``stale``: the control was cut off, so that the tool may have gone on for a second behind that.
-    """
-
-    block: int
-    tool: int
-    at: tuple[float, ...]
-    begun: int
-    stale: bool = False
-
-    @property
-    def done(self) -> int:
-        """Up to this block the material is known to be cut."""
-        return max(self.begun, self.block) if self.block <= self.begun + 1 else self.begun
-
-
-@dataclass(frozen=True, slots=True)
-class RestartPoint:
-    """A good line in one of its passes, what it inherits, and the way back from its place out of the work.
-
-    ``left_out``: lines that were not cut and would be left out, as (first, last); (0, 0): none.
-    """
-
-    line: int
-    checkpoint: Checkpoint
-    back: Retract = field(default_factory=lambda: Retract(ToolPlace.CLEAR))
-    cut: CutRecord | None = None
-    visit: LineVisit = field(default_factory=LineVisit)
-    was: LineVisit | None = None  # the pass that was interrupted, where the line is run more than once
-    left_out: tuple[int, int] = (0, 0)
-    axes: tuple[float | None, ...] = ()  # of a mill: where its axes stand there; None: one that never moved
-
-
-@dataclass(frozen=True, slots=True)
-class NoRestart:
-    """Why a program cannot go on from a line, and the nearest lines from which it can; 0: there is none."""
-
-    line: int
-    why: str
-    before: int = 0
-    after: int = 0

@@ -18,13 +18,8 @@ from core.interpreter.omniturn.omniturn_program import Program, read_program
 from core.interpreter.omniturn.omniturn_statement import Statement
 from core.interpreter.restart.cut_record import CutRecord, record_cuts
 from core.interpreter.restart.loop_passes import Visits, visits_of
-from core.interpreter.restart.restart_lines import (
-    Interruption,
-    LineVisit,
-    NoRestart,
-    RestartLines,
-    RestartPoint,
-)
+from core.interpreter.restart.restart_lines import RestartLines
+from core.interpreter.restart.restart_point import Interruption, LineVisit, NoRestart, RestartPoint
 from core.interpreter.restart.restart_retract import Place, Retract, ToolPlace, retract
 from core.language.source import Source
 

@@ -10,7 +10,7 @@ from core.interpreter.elementary_blocks import Block
 from core.interpreter.job_setup import Setup
 from core.interpreter.modal_state import Modal
 from core.interpreter.restart.restart_approach import Choices, MachineNow, begin_at
-from core.interpreter.restart.restart_lines import NoRestart, RestartPoint
+from core.interpreter.restart.restart_point import NoRestart, RestartPoint
 from core.interpreter.restart.state_rebuild import StateRebuild
 from core.language.diagnostics import Severity
 from core.language.source import Source

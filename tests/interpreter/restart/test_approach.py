@@ -19,7 +19,7 @@ from core.interpreter.restart.restart_approach import (
     starting,
     way_out,
 )
-from core.interpreter.restart.restart_lines import Interruption, RestartPoint
+from core.interpreter.restart.restart_point import Interruption, RestartPoint
 from core.interpreter.restart.restart_retract import Retract, RetractLeg, ToolPlace
 from core.interpreter.restart.state_rebuild import StateRebuild
 from core.language.source import Source

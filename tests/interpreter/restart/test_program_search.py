@@ -17,7 +17,7 @@ from core.interpreter.modal_state import Modal
 from core.interpreter.restart.mill_approach import begin_on_mill
 from core.interpreter.restart.program_search import ProgramSearch
 from core.interpreter.restart.restart_approach import Choices, MachineNow, begin_at
-from core.interpreter.restart.restart_lines import Interruption, NoRestart, RestartPoint
+from core.interpreter.restart.restart_point import Interruption, NoRestart, RestartPoint
 from core.language.source import Source
 from core.tool_edges import edge_key
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from core.interpreter.job_setup import ToolOffset
-from core.interpreter.restart.restart_lines import Interruption, NoRestart, RestartPoint
+from core.interpreter.restart.restart_point import Interruption, NoRestart, RestartPoint
 from core.interpreter.restart.state_rebuild import StateRebuild
 from core.language.source import Source
 from tests.interpreter.programs import INCH, setup
