@@ -31,10 +31,9 @@ from core.executor.machine_context import MachineContext
 from core.executor.machine_control import MachineControl
 from core.executor.raised_alarm import AlarmError, log_alarm, log_line, make_alarm
 from core.executor.read_ahead import ProgramPass
-from core.executor.recorder import Tick
 from core.executor.rest import RESTS, Rest
 from core.executor.signal_lamps import SignalLamps
-from core.executor.snapshot import ACTIVE, CYCLE, Event, Snapshot, State
+from core.executor.snapshot import ACTIVE, CYCLE, Event, Snapshot, State, Tick
 from core.executor.snapshot_publisher import Publisher
 from core.executor.spindle_control import SpindleControl
 from core.executor.start_conditions import guard_open

@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 
 from core.executor.attempt import Attempt
-from core.executor.snapshot import Event, Snapshot, State
+from core.executor.snapshot import Event, Snapshot, State, Tick
 from core.machine.machine_model import Machine
 from core.ports import FloatArray, MachinePorts, Unknown
 from core.records.record import Record
@@ -41,17 +41,6 @@ _FROZEN = frozenset({"alarm", "estop"})  # kinds of events
 _STATES = {state: float(i) for i, state in enumerate(State)}
 _STANDS = 0.01  # mm/s
 _TURNS = 1.0  # rpm
-
-
-class Tick(NamedTuple):
-    """What the executor hands out. ``samples`` are the driver's own, None where it has none."""
-
-    snapshot: Snapshot
-    late: float  # s by which the tick came later than planned
-    queue: float  # s of motion queued, nan where the samples say it
-    turns: float  # of the spindle, nan where it has no encoder
-    samples: FloatArray | None
-    rests: bool = False  # nothing has happened for a while
 
 
 class _Frozen(NamedTuple):

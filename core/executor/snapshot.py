@@ -17,7 +17,7 @@ from core.executor.interrupted_job import InterruptedJob
 from core.interpreter.kept_pass import KeptPass
 from core.interpreter.modal_state import Modal
 from core.interpreter.working_plane import Swivel
-from core.ports import Unknown
+from core.ports import FloatArray, Unknown
 
 
 class State(StrEnum):
@@ -217,6 +217,20 @@ class Event:
     record: str = ""  # file of the scope's record of the seconds before it, in the folder records
     part: int = 0  # of a part: its number among those of the program
     load: float | None = None  # of a part: mean load of the spindle at feed, per cent
+
+
+class Tick(NamedTuple):
+    """What the executor hands to the recorder at each of its ticks.
+
+    ``samples`` are the driver's own, None where it has none.
+    """
+
+    snapshot: Snapshot
+    late: float  # s by which the tick came later than planned
+    queue: float  # s of motion queued, nan where the samples say it
+    turns: float  # of the spindle, nan where it has no encoder
+    samples: FloatArray | None
+    rests: bool = False  # nothing has happened for a while
 
 
 # --- which state may follow which -----------------------------------------------------------------------

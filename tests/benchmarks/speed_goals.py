@@ -1,6 +1,6 @@
 """How fast TurnDesk should be, by the rows of docs/speed.md, and why it is not where it is not.
 
-A reason is what a profile showed (docs/decisions/0096, 0102 and 0103), not an excuse:
+A reason is what a profile showed (docs/decisions/0096, 0102, 0103 and 0114), not an excuse:
 who gets rid of it takes it out here. Goals are seconds of processor time, MiB, or ms where the row says ms.
 """
 
@@ -30,7 +30,7 @@ GOALS: Mapping[str, Goal] = {
     "headless, to the first setpoint": Goal(0.2, f"{_IMPORTS}; executor and drivers come on top"),
     "window usable": Goal(
         0.5,
-        "Qt is .13 s of it, 390 dataclasses .15 to .2, numpy .05, our other modules and the window the rest",
+        "Qt is .1 s of it, 270 dataclasses .13, numpy .03, our other modules .12, desk and window .08",
     ),
     "prove 1,000,000 blocks": Goal(
         1.2,

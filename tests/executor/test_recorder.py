@@ -13,8 +13,8 @@ import pytest
 from app.compose.machine_files import load_machine
 from core.executor.commands import CycleStart, EnableDrives
 from core.executor.executor import Executor
-from core.executor.recorder import KEPT, Recorder, Tick, recorded_of, rotate
-from core.executor.snapshot import Event, State
+from core.executor.recorder import KEPT, Recorder, recorded_of, rotate
+from core.executor.snapshot import Event, State, Tick
 from core.machine.hardware_model import AnalogModel
 from core.ports import ALL_UNKNOWN, DriverError, FloatArray, SampleSource, Unknown
 from core.records.record_errors import RecordError

@@ -20,8 +20,11 @@ print(*read)
 desk.close()
 """
 OF_LATER = (
-    *("app.editor.editor_view", "app.scope.scope_view", "app.shapes", "app.special.setup_sheet", "pyqtgraph"),
+    *("app.editor", "app.programs.program_list", "app.quality.shift_page", "app.scope", "app.shapes"),
+    *("app.sharing", "app.special.setup_sheet", "app.transfer", "core.sharing", "pyqtgraph"),
     *("core.drawings.profile_program", "core.interpreter.klartext", "core.interpreter.sinumerik"),
+    *("core.interpreter.omniturn.loops_and_subroutines", "drivers.canopen", "drivers.feeder", "drivers.hal"),
+    *("drivers.inverter", "drivers.mtconnect.mtconnect_adapter", "drivers.pendant", "drivers.transfer"),
     *("core.part.milled_part", "core.part.solid_picture", "core.proving.part_proof", "core.shapes"),
     *("ezdxf", "svgelements"),
 )
