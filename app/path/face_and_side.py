@@ -17,7 +17,6 @@ import numpy as np
 
 from app.path.polyline import Floats, Polyline, PolylineBuilder, Stroke, bounds_of, mill_way, turn_pieces
 from core.geometry.virtual_mill import Face, Side
-from core.interpreter.elementary_blocks import Kind
 
 if TYPE_CHECKING:
     from core.geometry.virtual_mill import PlaneMove, Spot
@@ -145,11 +144,6 @@ class FaceAndSideBuilder:
             face.polyline() if face.wanted or divides else None,
             side.polyline() if side.wanted else None,
         )
-
-
-def turns(block: Block) -> bool:
-    """Whether a block moves something while C is locked."""
-    return block.modal.c_locked and (block.moves or block.kind is Kind.ROTATE)
 
 
 def way_of(block: Block) -> list[Spot]:

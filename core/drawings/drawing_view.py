@@ -221,9 +221,3 @@ def _along(each: Element, far: float) -> Element:
     if isinstance(each, Arc):
         return Arc(points[0], points[1], (each.centre[0], each.centre[1] + far), each.clockwise)
     return Line(points[0], points[1])
-
-
-def extent(elements: Iterable[Element]) -> tuple[float, float]:
-    """Least and greatest Z."""
-    boxes = [each.box for each in elements]
-    return min((b[2] for b in boxes), default=0.0), max((b[3] for b in boxes), default=0.0)

@@ -41,8 +41,7 @@ class MotionLimits:
     """Limits of the axes, slides first, on a lathe X, Z, C: mm/s and mm/s², degrees/s and degrees/s².
 
     ``interval`` (s) is the time between two setpoints: within it an axis changes its velocity by
-    ``amax * interval`` at most, so a corner may ask for as much and no more. ``jerk`` is the named place
-    of a limit that the law does not have yet; docs/decisions/0003-time-law.md says where it will act.
+    ``amax * interval`` at most, so a corner may ask for as much and no more.
     ``grain`` (mm) is the step to which words are rounded, and by which joints of short chords may be moved
     on each slide; 0 leaves every joint where it is written.
 
@@ -52,7 +51,6 @@ class MotionLimits:
     vmax: tuple[float, ...] = (127.0, 127.0, 1200.0)
     amax: tuple[float, ...] = (3048.0, 3048.0, 12000.0)
     interval: float = 0.001
-    jerk: None = None
     grain: float = 0.0
 
     def __post_init__(self) -> None:

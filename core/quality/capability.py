@@ -22,7 +22,6 @@ class Capability:
     count: int
     mean: float
     within: float  # standard deviation within samples
-    overall: float  # of all values, n − 1
     cp: float | None
     cpk: float | None
     pp: float | None
@@ -51,10 +50,10 @@ def capability(
     if len(values) < LEAST:
         raise QualityError(f"{len(values)} of {LEAST} readings that a Cpk needs at least")
     within = charts_of(values, size).within
-    mean, overall = float(np.mean(values)), float(np.std(values, ddof=1))
+    mean, overall = float(np.mean(values)), float(np.std(values, ddof=1))  # of all values, n − 1
     cp, cpk = _indices(mean, within, lower, upper)
     pp, ppk = _indices(mean, overall, lower, upper)
-    return Capability(len(values), mean, within, overall, cp, cpk, pp, ppk)
+    return Capability(len(values), mean, within, cp, cpk, pp, ppk)
 
 
 def _indices(

@@ -25,7 +25,7 @@ from core.records.ring_file import is_ring, read_ring
 ENDING = ".scope"
 _VERSION = 1
 _ABOUT = "about"
-_OFF, _ON, _UNKNOWN = 0, 1, 255  # a logic channel in a byte
+_UNKNOWN = 255  # of a logic channel in a byte, beside 0 and 1
 # What numpy and zipfile raise for a file that is not as they wrote it.
 _DAMAGE = (
     ValueError,

@@ -26,7 +26,6 @@ YES, NO = "YES", "NO"
 _MOST_RPM = 1000.0  # of a thread on a small lathe: the slide has to follow
 _COARSE = (0.2, 1.0, 2.0)  # in/rev: without G35, under G35, under G35F2
 _TURNS_BEFORE = 3.0  # of run-up, where nobody knows the slide's acceleration
-_REACH = 0.04  # in/rev: pitch by which passes are counted
 _TAPER = 1.0 / 16.0
 
 
@@ -84,10 +83,6 @@ def class_choices(values: Values) -> tuple[str, ...]:
 
 def _named(values: Values) -> bool:
     return series_of(values) is not Series.OWN
-
-
-def _own(values: Values) -> bool:
-    return not _named(values)
 
 
 def _taper(values: Values, _setting: Setting) -> Value | None:

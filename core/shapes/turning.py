@@ -129,10 +129,6 @@ def _cutting_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
         yield Refusal("LEAVE", f"{leave:g} left for finishing is more than a pass of {rough:g}: type less.")
 
 
-def _rows(filled: Filled) -> tuple[Row, ...]:
-    return filled.rows
-
-
 def _turn(filled: Filled, setting: Setting, code: Code) -> None:
     cut_contour(filled, setting, code, filled.rows, inside=filled.t("SIDE") == INSIDE)
 

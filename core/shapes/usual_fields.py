@@ -8,7 +8,7 @@ from core.part.tool_shape import ToolKind
 from core.shapes import cutting_data
 from core.shapes.cutting_data import Work
 from core.shapes.shape import Filled
-from core.shapes.shape_fields import Field, Kind, Proposal, Refusal, Value, Values, number
+from core.shapes.shape_fields import Field, Kind, Refusal, Value, Values, number
 from core.shapes.shape_setting import Setting
 
 _MOST_TOOL = 32
@@ -68,11 +68,6 @@ def feed_field(work: Work, word: str = "FEED", label: str = "FEED", **more: obje
 def surface_field() -> Field:
     """Constant surface speed; 0: the same rpm all the way."""
     return Field("SURF", "SURFACE SPEED", Kind.SURFACE, 0.0, zero=True)
-
-
-def proposal(work: Work, across: Callable[[Values], float]) -> Proposal:
-    """A speed as a proposal."""
-    return lambda values, setting: cutting_data.rpm(work, across(values), setting)
 
 
 def too_fast(filled: Filled, setting: Setting) -> Iterator[Refusal]:

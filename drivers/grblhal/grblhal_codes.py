@@ -19,7 +19,7 @@ SILENT = frozenset(("G97",))  # modes that a controller without a variable spind
 CURES = {"G96": "G97", "G51": "G50", "G43": "G49", "G92": "G92.1", "M50": "M48", "M51": "M48", "M53": "M53P1"}
 
 DOOR = "the controller's safety door is open"
-ESTOP, HOMING_REQUIRED = 10, 11
+HOMING_REQUIRED = 11
 LOCKED = 255  # ours: it is locked and tells no number
 LOST = frozenset((1, 3))  # alarms behind which nobody knows where the slides are
 TORN = frozenset((10, 17))  # and those that end the steps of a moving slide at once, and do not say so

@@ -28,7 +28,7 @@ _LOADRT = re.compile(r"^\s*loadrt\s+(\S+)\s*(.*?)\s*(?:#.*)?$")
 class Link:
     """A pin or signal of the machine's HAL file, and what of ours hangs on it.
 
-    ``path`` is its key in the machine file. ``drives``: ours is the source. ``both``: an I/O pin.
+    ``path`` is its key in the machine file. ``drives``: ours is the source.
     """
 
     path: str
@@ -36,7 +36,6 @@ class Link:
     kind: str
     drives: bool
     ours: tuple[str, ...]
-    both: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -267,7 +266,7 @@ def _without_leap(border: Border, signal: str, path: str, pin: str, own: str) ->
     name, index = signal.replace("td-", "td.", 1), f"{signal}-index"
     border.own(own, BIT, "io", index)
     border.own(f"{own}-at", FLOAT, "in", f"{signal}-shift")
-    border.links.append(Link(path, pin, BIT, False, (index,), both=True))
+    border.links.append(Link(path, pin, BIT, False, (index,)))
     border.add("not", f"{name}.no-index", in_=index, out=f"{signal}-no-index")
     border.add(
         "and2", f"{name}.fell", in0=f"{signal}-no-index", in1=f"{signal}-index-was", out=f"{signal}-fell"

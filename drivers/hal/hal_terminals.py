@@ -11,8 +11,6 @@ from drivers.hal.hal_index import SpindleIndex
 from drivers.hal.hal_link import HalLink
 from drivers.station_inputs import station_of
 
-_STANDS = 5.0  # rpm
-
 
 class HalSpindle:
     """``core.ports.Spindle``. What E-stop has switched off does not come back by itself."""

@@ -62,7 +62,6 @@ def check_cam(cam: Cam, servos: Sequence[Servo], rpm: float) -> None:
 
 
 _NEVER = float("inf")
-_NAN = float("nan")
 Motion = tuple[tuple[float, ...], tuple[float, ...], tuple[float, ...]]
 _PAST = 0.1  # s of setpoints that may still be asked for
 _HALT = 0.2  # s

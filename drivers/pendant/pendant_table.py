@@ -15,7 +15,6 @@ _FIELDS = (
     Field("serial", Kind.TEXT, default=""),
     Field("counts", Kind.CHOICE, choices=("steps", "place"), default="steps"),
 )
-NUMBERS = re.compile(r"([0-9a-fA-F]{4}):([0-9a-fA-F]{4})")
 STOPS = ("hold", "start_inhibit")  # what must not be believed to be there when it is gone
 _MAY = re.compile(r"hold|start_inhibit|wheel_\w+|jog_rapid|jog_[xyzabc]_(plus|minus)")
 _STARTS = re.compile(r"(cycle_?)?start.*|.*palms?.*|spindle_auto", re.IGNORECASE)

@@ -31,7 +31,6 @@ ROOMS = {
         )),  # their tables of the machine file
     ),
 }  # fmt: skip
-WANTED = 92.0  # per cent of the branches of executor, motion and drivers
 SHOWN = 12  # files
 _HOW = """\
 [run]

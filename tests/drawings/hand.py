@@ -9,7 +9,6 @@ from typing import Any
 import ezdxf
 import numpy as np
 
-from app.compose.profile_trial import Trial, TrialStock, tried
 from core.drawings.drawing_file import read_drawing
 from core.drawings.drawing_view import Profile, Side, View, axis_named, contours, profile
 from core.drawings.profile_job import proposed_fields
@@ -18,7 +17,7 @@ from core.interpreter.job_setup import SecondaryOffset
 from core.language.source import Dialect
 from core.part.tool_shape import ToolKind, ToolShape
 from core.shapes.shape_setting import Setting, Shop
-from tests.shapes.hand import machine, proved
+from tests.shapes.hand import proved
 
 RIGHT = ToolShape(ToolKind.TURNING, tip=3, insert="DNMG150404", nose_radius=0.4)
 SLIM = ToolShape(ToolKind.TURNING, tip=3, insert="VNMG160402", nose_radius=0.2)
@@ -69,11 +68,6 @@ def text_of(made: ProfileProgram) -> str:
     """The whole program."""
     assert not made.refusals, made.refusals
     return "\n".join([*made.lines, "M30"]) + "\n"
-
-
-def trial_of(made: ProfileProgram, chosen: Profile, stock: TrialStock, **more: Any) -> Trial:
-    """As the desk and the command try it."""
-    return tried(text_of(made), chosen, stock, made.nose, machine(), more.get("tools", TOOLS))
 
 
 def radii(

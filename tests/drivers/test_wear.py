@@ -13,7 +13,6 @@ from drivers.lookalikes.plant_config import PlannedFault
 from drivers.simulated.simulated_machine import Simulation
 from tests.drivers.machines import CONFIG, play, ramp, simulation
 
-ZERO = (0.0, 0.0, 0.0)
 WN = 2.0 * math.pi * 40.0
 COUNT = 0.00127
 T, DEMAND, ACTUAL, SPEED, TURNS = 0, 1, 4, 10, 11

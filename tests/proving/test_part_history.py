@@ -32,7 +32,6 @@ SETTING = PartSetting(bar(INCH, 0.0, -2.0 * INCH), {1: TURNING, 2: BLADE})
 HEAD = "G90G94F300\nM03S1500\nT1\n"
 SHAFT = HEAD + "X.6Z.05\nX.4\nG95F.004Z-.5\nX.45Z-.6\nX.55\nG94F300Z.05\nX.3\nG95F.004Z-.3\nX.55\nM30\n"
 RAPID = SHAFT.replace("G95F.004Z-.3", "G00Z-.3")
-SLOT = HEAD + "X.6Z.1\nM05\nC0\nM30\n"
 
 
 def moves(text: str, setting: PartSetting = SETTING) -> PartMoves | None:

@@ -35,7 +35,6 @@ def move(start: tuple[float, float], end: tuple[float, float], kind: Kind = Kind
 SHAPES = {4: TAP, 5: V}
 ROD = bar(12.7, 0.0, -60.0)
 DRILLED = tube(25.4, 5.1, 0.0, -60.0)
-WEAK = Drives(slide_accel=100.0, spindle_decel=2500.0)
 
 
 def findings(

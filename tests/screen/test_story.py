@@ -16,8 +16,6 @@ from core.executor.snapshot import Alarm, State
 from tests.screen.hands import Hands, Key
 from tests.screen.yes import twist_out, yes
 
-SHIFT = Qt.KeyboardModifier.ShiftModifier
-
 
 def test_pick_start_hold_resume_single_block_estop_recover(hands: Hands) -> None:
     hands.load("bushing")

@@ -58,7 +58,7 @@ def test_what_is_no_program_is_refused(entry: Entry) -> None:
 def test_every_construct_has_its_entry() -> None:
     """What the reader knows, by its own tables."""
     heads = {entry.head for entry in BOOK.entries}
-    codes = {f"G{number}" for number in sinumerik_words.G_GROUPS} | {f"M{n}" for n in sinumerik_words.M_CODES}
+    codes = {f"G{n}" for n in sinumerik_words.G_GROUPS} | {f"M{n}" for n in sinumerik_words.M_FUNCTIONS}
     words = sinumerik_words.VOCABULARY - {"G", "M"}
     assert (codes | words | {str(each) for each in Steering} | set(CYCLES)) - heads == set()
     assert len(heads) == len(BOOK.entries)

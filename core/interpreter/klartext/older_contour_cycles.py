@@ -15,7 +15,6 @@ from core.interpreter.klartext.cycle_moves import CycleTool
 from core.interpreter.klartext.klartext_state import State
 from core.interpreter.klartext.older_cycles import Lines, Told
 
-_RAMP = 200.0  # Q19: any feed but 0 goes down by a ramp; the feed of plunging is told beside it
 Area = Sequence[Loop]
 
 

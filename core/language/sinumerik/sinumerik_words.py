@@ -10,7 +10,7 @@ from core.language.formulas import Formula
 from core.language.sinumerik.array_values import Values
 from core.language.sinumerik.call_arguments import Argument
 from core.language.sinumerik.program_jumps import Jump
-from core.language.sinumerik.word_table import FUNCTIONS, M_FUNCTIONS, OUTSIDE, WORDS
+from core.language.sinumerik.word_table import FUNCTIONS, OUTSIDE, WORDS
 
 LONGEST_LINE = 512
 
@@ -92,11 +92,9 @@ NAMED_GROUPS: dict[str, str] = {
 }
 """Functions that have a name, by their group."""
 
-M_CODES = frozenset(M_FUNCTIONS)
 MOST_M = 5
 
 ARC = frozenset({"I", "J", "K", "CR", "AR", "I1", "K1"})
-SPINDLE = frozenset({"S", "LIMS"})
 CORNERS = frozenset({"CHF", "CHR", "RND"})
 LETTERS = frozenset({"G", "M", "X", "Y", "Z", "C", "I", "J", "K", "F", "S", "T", "D"})
 """Words that may stand without =."""

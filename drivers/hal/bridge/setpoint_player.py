@@ -9,7 +9,6 @@ from typing import NamedTuple
 from drivers.setpoint_pieces import INF, Piece, PieceQueue
 
 _WINDOW = 0.06  # s of turns from which the speed is taken
-_STANDS = 1e-6  # turns/s
 Row = tuple[float, ...]
 State = tuple[tuple[float, ...], tuple[float, ...]]
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import threading
 from collections.abc import Iterator
 
@@ -17,7 +16,6 @@ from drivers.clocks import RealClock
 from drivers.lookalikes.canopen_devices import CanopenDevices
 from tests.drivers.canopen.bench import can_machine
 
-_numbers = itertools.count()
 PATIENT = (
     "TIMEOUT_SWITCH_STATE_FINAL",
     "TIMEOUT_SWITCH_STATE_SINGLE",

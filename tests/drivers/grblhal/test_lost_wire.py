@@ -11,13 +11,6 @@ from tests.drivers.contract.grbl import HOMING
 from tests.drivers.grblhal.bench import GrblBench, grbl_machine, quirky
 
 CUT = "G90G94F300\nM03S600\nM08\nX.1\nG01F30Z-2\nM30\n"
-_HOMING = (
-    (
-        "absolute = true                 # false",
-        "home = { order = 2, speed = 60 }\nabsolute = false  # false",
-    ),
-    ("absolute = true\n\n[axis.C]", "absolute = false\nhome = { order = 1, speed = 60 }\n\n[axis.C]"),
-)
 
 
 def pulled(bench: GrblBench) -> GrblBench:

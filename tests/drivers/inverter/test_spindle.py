@@ -4,10 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from drivers.inverter.inverter_attendant import LOST
 from tests.drivers.inverter.benches import Bench, bench
-
-BOUND = LOST + 1.1  # s: two answers of half a second that do not come, each waited for once more
 
 
 def test_a_surface_speed_changes_the_setpoint_all_the_time(turning: Bench) -> None:
