@@ -32,7 +32,7 @@ class Worker:
             return False
         place = self.given.pop(0)
         self.ran.append(self.nodeids[place])
-        scheduler.mark_test_complete(self, place)  # type: ignore[arg-type]
+        scheduler.mark_test_complete(self, place)
         return True
 
 
@@ -43,8 +43,8 @@ def begun(pytestconfig: pytest.Config, monkeypatch: pytest.MonkeyPatch, workers:
     scheduler = WaitingApart(pytestconfig)
     made = [Worker(number, nodeids) for number in range(workers)]
     for each in made:
-        scheduler.add_node(each)  # type: ignore[arg-type]
-        scheduler.add_node_collection(each, nodeids)  # type: ignore[arg-type]
+        scheduler.add_node(each)
+        scheduler.add_node_collection(each, nodeids)
     scheduler.schedule()
     return scheduler, made
 

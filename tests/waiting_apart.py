@@ -81,7 +81,8 @@ class WaitingApart(LoadScopeScheduling):
     def _next_for(self, node: WorkerController) -> str:
         """The next portion of its kind; of the other kind where none is left."""
         own = waits_first(node.gateway.id)
-        return next((each for each in self.workqueue if waits(each) is own), next(iter(self.workqueue)))
+        left: list[str] = list(self.workqueue)
+        return next((each for each in left if waits(each) is own), left[0])
 
 
 def portions(nodeids: Sequence[str], workers: int) -> dict[str, str]:

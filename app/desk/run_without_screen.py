@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Protocol
 
 from core.executor.commands import Command, CycleStart, EnableDrives, FeedHold, Home, LoadJob, SetSwitch
-from core.executor.executor import Executor
 from core.executor.job import Job, Proof
 from core.executor.snapshot import Snapshot, State
 from core.ports import Clock
@@ -16,6 +16,23 @@ PATIENCE = 60.0  # s of machine time after which a wait for an input is given up
 HOMING = 120.0  # s of machine time for all axes; ten inches at a slow 6 in/min are 100
 _PRESSES = 10  # of Cycle Start at one stop, .2 s apart
 UNDER_WAY = frozenset(State) - {State.IDLE, State.DISABLED, State.ESTOP, State.FAULT}
+
+
+class Control(Protocol):
+    """What the run needs of the executor."""
+
+    @property
+    def snapshot(self) -> Snapshot:
+        """The machine of this tick."""
+        ...
+
+    def post(self, command: Command) -> None:
+        """Hand a command in."""
+        ...
+
+    def tick(self) -> None:
+        """One step of its clock."""
+        ...
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,7 +50,7 @@ class HeadlessRun:
 
     def __init__(
         self,
-        executor: Executor,
+        executor: Control,
         clock: Clock,
         say: Callable[[str], None],
         progress: Callable[[float], None],

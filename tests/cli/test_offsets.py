@@ -30,10 +30,11 @@ def refused(capsys: Captured, *argv: str) -> str:
     return told.err
 
 
-def shown(capsys: Captured) -> object:
+def shown(capsys: Captured) -> dict[str, object]:
     capsys.readouterr()
     assert main(["offsets", "show", "--json"]) == 0
-    return json.loads(capsys.readouterr().out)
+    tables: dict[str, object] = json.loads(capsys.readouterr().out)
+    return tables
 
 
 def tool(**fields: float | str) -> dict[str, object]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import json
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -27,10 +28,10 @@ def made(home: Path) -> Path:
             made = CycleRow(
                 f"c{part}", "peg.nc", part, "2026-01-01T00:00:00Z", "2026-01-01T00:01:00Z", 60.0 + part
             )
-            store.write(lambda c, made=made: part_cycles.save_cycle(c, made)).result(5)
+            store.write(partial(part_cycles.save_cycle, row=made)).result(5)
             store.count_part("peg.nc")
             reading = ReadingRow(0, of, part, 12.69 if part % 2 else 12.71, "in", "2026", "gauge", "mic")
-            store.write(lambda c, reading=reading: measured_parts.add_reading(c, reading)).result(5)
+            store.write(partial(measured_parts.add_reading, row=reading)).result(5)
         stop = StopRow("s", "c1", "peg.nc", "2026-01-01T00:00:30Z", 4.0, "FEED HOLD", 7)
         store.write(lambda c: part_cycles.save_stop(c, stop)).result(5)
         store.write(lambda c: tool_lives.set_limits(c, LifeRow(1, 50))).result(5)

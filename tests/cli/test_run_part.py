@@ -74,8 +74,10 @@ def test_a_tool_that_runs_into_the_chuck_is_refused_without_a_stock(
     turndesk: Turndesk, tmp_path: Path, offsets: Path, tools: Path
 ) -> None:
     machine = chuck(tmp_path, "diameter = 4.0")
-    given = ("run", written(tmp_path, PART), "--headless", "--json", "--offsets", offsets)
-    given += ("--machine", machine, "--tools", tools)
+    given = [
+        *("run", written(tmp_path, PART), "--headless", "--json"),
+        *("--offsets", offsets, "--machine", machine, "--tools", tools),
+    ]
     assert state(turndesk(*given, "--stick-out", ".7")) == (0, "complete")
     told = turndesk(*given, "--stick-out", ".4")
     assert state(told) == (1, "refused")

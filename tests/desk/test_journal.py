@@ -91,9 +91,10 @@ def test_without_a_store_nothing_is_backed_up_or_restored(tmp_path: Path) -> Non
     (tmp_path / "home").write_text("a file where the folder should be")
     journal = Journal(tmp_path / "home")
     assert journal.trouble
-    for call in (lambda: journal.backup(tmp_path / "x.db"), lambda: journal.restore(tmp_path / "x.db")):
-        with pytest.raises(StoreError):
-            call()
+    with pytest.raises(StoreError):
+        journal.backup(tmp_path / "x.db")
+    with pytest.raises(StoreError):
+        journal.restore(tmp_path / "x.db")
     journal.save_setting("a", 1)
     assert journal.setting("a") is None
     assert journal.parts("pin.nc") == 0

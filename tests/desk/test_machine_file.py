@@ -45,9 +45,9 @@ class Room:
 
     @property
     def section(self) -> MachineFileAcceptance:
-        (found,) = [
-            s for s in self.desk.attached(SpecialFunctions).functions if isinstance(s, MachineFileAcceptance)
-        ]
+        special = self.desk.attached(SpecialFunctions)
+        assert special is not None
+        (found,) = [each for each in special.functions if isinstance(each, MachineFileAcceptance)]
         return found
 
     def cells(self) -> list[tuple[str, ...]]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import shutil
 import threading
 import wave
 from dataclasses import replace
@@ -136,7 +137,7 @@ def test_a_tune_is_a_wave_of_its_pitch_and_loudness() -> None:
 
 
 def test_without_a_player_that_is_the_reason(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(sounds.shutil, "which", lambda _name: None)
+    monkeypatch.setattr(shutil, "which", lambda _name: None)
     with pytest.raises(ValueError, match="none of pw-play, paplay and aplay"):
         play_aloud(b"")
 

@@ -6,9 +6,9 @@ import random
 import shutil
 import sqlite3
 import tempfile
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import closing, suppress
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 
 from app.quality.parts_book import parts_data
@@ -85,9 +85,9 @@ def _read(data: bytes) -> Iterator[str]:
     with Store.open(home) as store:
         yield from store.repaired
         yield from store.damaged()
-        readers = (
-            *(lambda kind=kind: store.offsets(kind) for kind in Kind),
-            *(lambda kind=kind: store.history(kind, 50) for kind in Kind),
+        readers: tuple[Callable[[], object], ...] = (
+            *(partial(store.offsets, kind) for kind in Kind),
+            *(partial(store.history, kind, 50) for kind in Kind),
             store.programs, lambda: store.versions("part.nc"), lambda: store.load_program("part.nc"),
             store.events, store.runs, store.jobs, lambda: store.parts("part.nc"),
             lambda: store.setting("target:part.nc"), lambda: store.setting("under_way"),

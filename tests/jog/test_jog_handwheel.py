@@ -23,6 +23,11 @@ FRAME = 0.016
 LEASE = 0.2
 
 
+def clicks(command: Wheel, axis: str, step: float) -> bool:
+    """Whether the wheel moves the axis by so much a click, mm or degrees."""
+    return command == Wheel(axis, command.step, LEASE) and command.step == pytest.approx(step)
+
+
 @dataclass
 class Scene:
     """A wheel, a clock, and a control that obeys."""
@@ -112,7 +117,7 @@ def test_a_click_is_the_step_of_the_page(
     scene = Scene(modal=Modal(metric=metric, diameter=diameter))
     scene.hold.speeds.step = step
     chosen(scene, axis)
-    assert scene.wheels[-1] == Wheel(axis, pytest.approx(way), LEASE)
+    assert clicks(scene.wheels[-1], axis, way)
 
 
 def test_another_step_lets_go_first() -> None:
@@ -120,7 +125,7 @@ def test_another_step_lets_go_first() -> None:
     scene.hold.speeds.step = 3
     scene.frames(0.1)
     off = scene.posted.index(WheelOff())
-    assert all(command == Wheel("X", pytest.approx(0.1 * THOU), LEASE) for command in scene.posted[off + 1 :])
+    assert all(isinstance(c, Wheel) and clicks(c, "X", 0.1 * THOU) for c in scene.posted[off + 1 :])
     assert len(scene.posted) > off + 1
 
 
@@ -197,10 +202,10 @@ def switched(*on: str) -> Scene:
 
 def test_switches_choose_axis_and_step() -> None:
     scene = switched("wheel_z", "wheel_x100")
-    assert scene.wheels[-1] == Wheel("Z", pytest.approx(10 * THOU), LEASE)
+    assert clicks(scene.wheels[-1], "Z", 10 * THOU)
     scene.on = frozenset({"wheel_x", "wheel_x1"})
     scene.frames(0.1)
-    assert scene.wheels[-1] == Wheel("X", pytest.approx(0.1 * THOU), LEASE)
+    assert clicks(scene.wheels[-1], "X", 0.1 * THOU)
     assert WheelOff() in scene.posted
 
 

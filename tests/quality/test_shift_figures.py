@@ -6,6 +6,7 @@ import json
 import time
 from collections.abc import Iterator
 from datetime import UTC, datetime
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -68,9 +69,9 @@ def store(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Store]:
     monkeypatch.setenv("TURNDESK_HOME", str(tmp_path))
     with Store.open(tmp_path) as store:
         for row in ROWS:
-            store.write(lambda c, row=row: part_cycles.save_cycle(c, row)).result()
+            store.write(partial(part_cycles.save_cycle, row=row)).result()
         for stop in STOPS:
-            store.write(lambda c, stop=stop: part_cycles.save_stop(c, stop)).result()
+            store.write(partial(part_cycles.save_stop, row=stop)).result()
         events = [
             EventRow(f"{DAY}08:15:00.000Z", "alarm", "102 following error: X", 9),
             EventRow(f"{DAY}14:00:00.000Z", "alarm", "of the next shift"),
@@ -81,7 +82,7 @@ def store(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Store]:
         number = store.write(lambda c: measured_parts.save_feature(c, feature)).result()
         for at, size in (("06:30", 10.05), ("07:00", 10.051), ("15:00", 11.0)):
             reading = ReadingRow(0, number, 8, size, "mm", f"{DAY}{at}:00.000Z", "typed", "")
-            store.write(lambda c, reading=reading: measured_parts.add_reading(c, reading)).result()
+            store.write(partial(measured_parts.add_reading, row=reading)).result()
         store.write(lambda c: tool_lives.set_limits(c, LifeRow(1, 50))).result()
         store.write(lambda c: tool_lives.set_use(c, 1, 20, 60.0)).result()
         yield store

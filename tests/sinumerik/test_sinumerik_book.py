@@ -16,6 +16,7 @@ from core.language.sinumerik import sinumerik_words
 from core.language.sinumerik.cycle_names import CYCLES, CYCLES_OUTSIDE
 from core.language.sinumerik.program_jumps import Steering
 from core.language.sinumerik.sinumerik_book import BOOK
+from core.language.sinumerik.word_table import M_FUNCTIONS
 from core.language.source import Dialect, Source
 from core.machine.machine_model import Machine
 from core.proving.prove_program import prove
@@ -58,7 +59,7 @@ def test_what_is_no_program_is_refused(entry: Entry) -> None:
 def test_every_construct_has_its_entry() -> None:
     """What the reader knows, by its own tables."""
     heads = {entry.head for entry in BOOK.entries}
-    codes = {f"G{n}" for n in sinumerik_words.G_GROUPS} | {f"M{n}" for n in sinumerik_words.M_FUNCTIONS}
+    codes = {f"G{n}" for n in sinumerik_words.G_GROUPS} | {f"M{n}" for n in M_FUNCTIONS}
     words = sinumerik_words.VOCABULARY - {"G", "M"}
     assert (codes | words | {str(each) for each in Steering} | set(CYCLES)) - heads == set()
     assert len(heads) == len(BOOK.entries)

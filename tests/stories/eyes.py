@@ -245,12 +245,11 @@ _FORGOTTEN = [0]  # presses that the screen has said to have forgotten
 def _machine(desk: Desk) -> Told:
     """The machine of now: as the control has it, and where the simulated slides really stand (mm)."""
     shot = desk.snapshot()
-    station = desk.station
-    played = isinstance(station, PlantHands)
-    true = station.true_position() if played else shot.actual
-    outputs = station.outputs() if played else dict.fromkeys(shot.outputs, True)
+    hands = desk.station if isinstance(desk.station, PlantHands) else None
+    true = hands.true_position() if hands is not None else shot.actual
+    outputs = hands.outputs() if hands is not None else dict.fromkeys(shot.outputs, True)
     return {
-        "turning": round(station.spindle_rpm() if played else shot.rpm_actual),
+        "turning": round(hands.spindle_rpm() if hands is not None else shot.rpm_actual),
         "lit": sorted(name for name, on in outputs.items() if on),
         "state": shot.state.value,
         "line": shot.line,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 
 from core.store.store import Store
 from tests.stories.conftest import Story
@@ -22,6 +23,10 @@ def on_the_shelf(story: Story, name: str, text: str) -> None:
     programs = story.home / "programs"
     programs.mkdir(parents=True)
     (programs / name).write_text(text)
+
+
+def preset_is(axis: str, wanted: float, store: Store) -> bool:
+    return bool(getattr(store.presets().get(1), axis, 0.0) == wanted)
 
 
 def kept(operator: Operator, what: Callable[[Store], bool]) -> None:
@@ -128,10 +133,7 @@ def test_on_a_mill(story: Story) -> None:
     for axis, wanted in (("x", -1.0), ("y", -1.0), ("z", -81.0)):
         operator.writes("1")  # what the part shall read where the tip stands
         operator.key("F2")
-        kept(
-            operator,
-            lambda store, axis=axis, wanted=wanted: getattr(store.presets().get(1), axis, 0.0) == wanted,
-        )
+        kept(operator, partial(preset_is, axis, wanted))
         operator.key("Right")
     operator.key("F3")
     operator.sees("in force: 1")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 from tests.stories.conftest import Story
 from tests.stories.operator import Operator
 
@@ -48,6 +50,10 @@ def test_off_and_auto_in_feed_hold_turn_nothing_and_the_palms_do(story: Story) -
     finished(operator)
 
 
+def ended_at(operator: Operator, line: int) -> bool:
+    return (operator.state, operator.machine["line"]) == ("SINGLE BLOCK", line)
+
+
 def test_single_block_gets_past_every_block(story: Story) -> None:
     operator = story.begins("G90G94T1\nG00X.3Z.3\nX.3\nX.3\nG01X.4F20\nX0Z0\nM30\n", tools=TOOLS)
     operator.drives_on()
@@ -55,10 +61,7 @@ def test_single_block_gets_past_every_block(story: Story) -> None:
     operator.until(lambda: "TO START" in operator.prompt, "ready to start")
     operator.cycle_start()
     for line in range(1, 7):  # T1 is a step of its own
-        operator.until(
-            lambda line=line: (operator.state, operator.machine["line"]) == ("SINGLE BLOCK", line),
-            f"line {line}",
-        )
+        operator.until(partial(ended_at, operator, line), f"line {line}")
         operator.during(0.5)
         operator.cycle_start()
     operator.reaches("READY")

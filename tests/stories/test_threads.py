@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import pytest
 
 from tests.stories.conftest import INCH, Story
@@ -59,6 +61,10 @@ def test_the_spindle_stops_in_a_pass_and_the_tool_is_drawn_out(story: Story, how
     operator.until(lambda: "205" in str(operator.status), "status.json")
 
 
+def stands_at(operator: Operator, line: int) -> bool:
+    return bool(operator.machine["line"] == line)
+
+
 def pressed(operator: Operator) -> None:
     """Both palms, when they are offered; what moves then may be over in a blink."""
     operator.until(lambda: "PALM" in operator.prompt, "the palms")
@@ -74,7 +80,7 @@ def test_a_program_that_begins_where_the_machine_stands_is_proved_out(story: Sto
     operator.until(lambda: operator.machine["single_block"], "single block")
     for line in (2, 3):
         pressed(operator)
-        operator.until(lambda line=line: operator.machine["line"] == line, "the next block")
+        operator.until(partial(stands_at, operator, line), "the next block")
         operator.reaches("SINGLE BLOCK")
         operator.during(0.5)
     operator.key("s")
