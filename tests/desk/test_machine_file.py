@@ -23,6 +23,7 @@ from core.executor.executor import Executor
 from core.executor.snapshot import State
 from core.machine.machine_model import Machine
 from drivers.clocks import StepClock
+from tests.attached import attached
 
 SHIPPED = resources.machine_file("gt75.toml")
 
@@ -45,9 +46,8 @@ class Room:
 
     @property
     def section(self) -> MachineFileAcceptance:
-        special = self.desk.attached(SpecialFunctions)
-        assert special is not None
-        (found,) = [each for each in special.functions if isinstance(each, MachineFileAcceptance)]
+        functions = attached(self.desk, SpecialFunctions).functions
+        (found,) = [each for each in functions if isinstance(each, MachineFileAcceptance)]
         return found
 
     def cells(self) -> list[tuple[str, ...]]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 from core.executor.commands import (
     Command,
@@ -66,7 +67,8 @@ class FakeMachine:
             case GiveProof(proof):
                 self.proof = proof
             case SetSwitch(name, on):
-                self.now = replace(self.now, **{name: on})
+                switched: dict[str, Any] = {name: on}
+                self.now = replace(self.now, **switched)
             case SpindleLimit(rpm):
                 self.now = replace(self.now, spindle_limit=rpm or 0.0)
             case ForceOutput(name, on):
@@ -196,6 +198,9 @@ class FakeMachine:
 
     def set_feed_pot(self, fraction: float) -> None:
         self.now = replace(self.now, feed_override=fraction)
+
+    def turn_handwheel(self, counts: int) -> None:
+        """It has none."""
 
     def idle(self) -> None:
         """Whatever was, the machine is at rest now, so that the window lets itself be closed."""

@@ -12,6 +12,7 @@ from app.mdi.mdi_model import MdiModel
 from app.screen.main_window import MainWindow
 from app.screen.window_frame import Frame
 from core.executor.snapshot import Snapshot, State
+from tests.attached import attached
 from tests.screen.pictures import Stage
 
 Key = Qt.Key
@@ -36,7 +37,7 @@ class Operator:
 
     @property
     def mdi(self) -> MdiModel:
-        return self.stage.desk.attached(MdiModel)
+        return attached(self.stage.desk, MdiModel)
 
     def key(self, *keys: Key, shift: bool = False) -> None:
         modifier = Qt.KeyboardModifier.ShiftModifier if shift else Qt.KeyboardModifier.NoModifier

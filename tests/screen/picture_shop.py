@@ -25,7 +25,7 @@ SHARED = ("bushing.nc", "grooves.nc", "knob.nc")
 def put_drawing(folder: Path) -> None:
     """A DXF of one closed outline into the program folder."""
     folder.mkdir(parents=True, exist_ok=True)
-    drawing = ezdxf.new()
+    drawing = ezdxf.filemanagement.new()
     drawing.header["$INSUNITS"] = INCH
     drawing.modelspace().add_lwpolyline(OUTLINE)
     drawing.saveas(folder / DRAWING)

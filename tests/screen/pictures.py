@@ -11,6 +11,7 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import NamedTuple
@@ -172,23 +173,23 @@ def _fill_parts(store: Store) -> None:
         FeatureRow(0, name, "OUTSIDE", "diameter", 22.225, -0.0254, 0.0254, "tool", 1, 1, 5, 1),
         FeatureRow(0, name, "LENGTH", "length", 19.05, -0.0508, 0.0508, "tool", 1, -1, 10, 1),
     )
-    features = [store.write(lambda c, row=row: measured_parts.save_feature(c, row)).result() for row in rows]
+    features = [store.write(partial(measured_parts.save_feature, row=row)).result() for row in rows]
     for part, off in enumerate(SIZES_MEASURED, start=1):
         at = f"2026-03-02T08:{part:02d}:00.000Z"
         made = CycleRow(f"{part}", name, part, at, at, 41.0 + off % 3, "COMPLETE")
-        store.write(lambda c, made=made: part_cycles.save_cycle(c, made)).result()
+        store.write(partial(part_cycles.save_cycle, row=made)).result()
         size = 22.225 + off * 0.00254
         reading = ReadingRow(0, features[0], part, size, "in", at, "gauge", "micrometer")
-        store.write(lambda c, reading=reading: measured_parts.add_reading(c, reading)).result()
+        store.write(partial(measured_parts.add_reading, row=reading)).result()
     for number, (reason, seconds) in enumerate(STOPS):
         row = StopRow(f"{number}", "", name, f"2026-03-02T09:{number:02d}:00.000Z", seconds, reason)
-        store.write(lambda c, row=row: part_cycles.save_stop(c, row)).result()
+        store.write(partial(part_cycles.save_stop, row=row)).result()
     for life in (LifeRow(1, 200, 0.0, 0.9, True), LifeRow(3, 0, 1800.0)):
-        store.write(lambda c, life=life: tool_lives.set_limits(c, life)).result()
+        store.write(partial(tool_lives.set_limits, row=life)).result()
     store.write(lambda c: tool_lives.set_use(c, 1, 184, 4020.0)).result()
     store.write(lambda c: tool_lives.set_use(c, 3, 61, 732.0)).result()
     for program, wanted, note in JOBS:
-        store.write(lambda c, job=(program, wanted, note): job_queue.add(c, *job)).result()
+        store.write(partial(job_queue.add, program=program, wanted=wanted, note=note)).result()
     store.write(lambda c: job_queue.begin(c, 1)).result()
     store.correct_parts(name, len(SIZES_MEASURED)).result()
 

@@ -13,6 +13,7 @@ from app.mdi.mdi_view import MdiPage
 from app.screen import page_table
 from app.searchto.searchto_model import SearchtoModel
 from core.executor.snapshot import State
+from tests.attached import attached
 from tests.screen.chapters import (
     ENDS,
     NAME,
@@ -53,7 +54,9 @@ def turning(day: Day) -> float:
 def made(day: Day) -> str:
     """The count on the screen."""
     day.window.refresh()
-    return dict(day.frame.times.value)["PARTS"]
+    times = day.frame.times.value
+    assert isinstance(times, tuple)
+    return str(dict(times)["PARTS"])
 
 
 def target(day: Day, sum_: str) -> None:
@@ -231,7 +234,7 @@ def mdi(day: Day, line: str) -> None:
     assert isinstance(page, MdiPage)
     day.type(line)
     day.key(Key.Key_Return)
-    day.desk.attached(MdiModel).line.worker.settle(60.0)
+    attached(day.desk, MdiModel).line.worker.settle(60.0)
     day.run(0.05)
     day.palms()
     day.reaches(State.IDLE)

@@ -15,6 +15,7 @@ from app.editor.editor_view import EditorPage
 from app.mdi.mdi_model import MdiModel
 from app.screen import page_table
 from core.executor.snapshot import State
+from tests.attached import attached
 from tests.screen.chapters import drives_on
 from tests.screen.day import Day, Key, begun
 from tests.screen.yes import twist_out, yes
@@ -71,7 +72,7 @@ def test_mdi_first_takes_the_text_back(day: Day, switched_on: bool) -> None:
         day.type("X1")
         day.key(Key.Key_Escape)
         assert day.page == page_table.MDI
-        assert day.desk.attached(MdiModel).typing.text == ""
+        assert attached(day.desk, MdiModel).typing.text == ""
     day.key(Key.Key_Escape)
     assert day.page == page_table.AUTOMATIC
 
@@ -81,7 +82,7 @@ def test_a_line_of_mdi_under_way_is_held_and_the_page_stays(day: Day) -> None:
     opened(day, Key.Key_F4, page_table.MDI)
     day.type("G90G94F5X1")
     day.key(Key.Key_Return)
-    day.desk.attached(MdiModel).line.worker.settle(60.0)
+    attached(day.desk, MdiModel).line.worker.settle(60.0)
     day.run(0.05)
     day.palms()
     day.reaches(State.RUN)
@@ -99,7 +100,7 @@ def test_no_list_and_no_answer_comes_before_the_hold(day: Day) -> None:
     """The codes are open over a line that runs, and a message has come that nobody asked for."""
     drives_on(day)
     opened(day, Key.Key_F4, page_table.MDI)
-    model = day.desk.attached(MdiModel)
+    model = attached(day.desk, MdiModel)
     assert model is not None
     day.type("G90G94F5X1")
     day.key(Key.Key_Return)

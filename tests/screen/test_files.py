@@ -5,6 +5,7 @@ from __future__ import annotations
 import shutil
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -21,6 +22,7 @@ from app.screen import page_table
 from app.screen.window_layout import FINGER
 from core.executor.commands import LoadJob
 from core.executor.snapshot import State
+from tests.attached import attached
 from tests.screen.desks import SAMPLES, desk_on
 from tests.screen.fake import FakeMachine
 from tests.screen.hands import Hands, Key, window_on
@@ -36,7 +38,7 @@ class Shop(Hands):
     journal: Journal | None = None
 
     @property
-    def list(self) -> ProgramsPage:
+    def programs(self) -> ProgramsPage:
         page = self.frame.page
         assert isinstance(page, ProgramsPage)
         return page
@@ -44,13 +46,13 @@ class Shop(Hands):
     def open_list(self) -> None:
         self.key(Key.Key_F1)
         self.key(Key.Key_F6)
-        self.sees(lambda: bool(self.list.model.all) and not self.list.model.worker.busy)
+        self.sees(lambda: bool(self.programs.model.all) and not self.programs.model.worker.busy)
 
     def rows(self) -> list[str]:
-        return [row.cells[0] for row in self.list.table.sheet.rows]
+        return [row.cells[0] for row in self.programs.table.sheet.rows]
 
     def settle(self) -> None:
-        self.sees(lambda: not self.list.model.worker.busy)
+        self.sees(lambda: not self.programs.model.worker.busy)
 
     def open_stick(self) -> None:
         self.settle()
@@ -68,7 +70,7 @@ def shop(qtbot: QtBot, machine: FakeMachine, journal: Journal, tmp_path: Path) -
     shutil.copy(SAMPLES / "pin.nc", own / "alpha.nc")
     shutil.copy(SAMPLES / "bushing.nc", own / "beta.nc")
     desk = desk_on(machine, own, SAMPLES, keep=journal)
-    desk.attached(ProgramList).transfer.chooser.plugged = lambda: (Stick("STICK", stick, 1_000_000),)
+    attached(desk, ProgramList).transfer.chooser.plugged = lambda: (Stick("STICK", stick, 1_000_000),)
     with window_on(qtbot, desk, machine) as window:
         yield Shop(qtbot, window, desk, machine, own, stick, journal)
 
@@ -78,23 +80,25 @@ def test_a_name_is_found_by_typing_and_loaded_by_return(shop: Shop) -> None:
     assert shop.frame.title.page == page_table.PROGRAMS
     shop.type("alp")
     shop.sees(lambda: shop.rows() == ["alpha.nc"])
-    shop.sees(lambda: shop.list.path.picture is not None)
+    shop.sees(lambda: shop.programs.path.picture is not None)
     shop.key(Key.Key_Return)
     assert shop.frame.page is shop.page
     shop.sees(lambda: shop.prompt().startswith("TO START"))
     assert any(isinstance(command, LoadJob) for command in shop.machine.posted)
     shop.sees(lambda: shop.journal is not None and any(row.proof for row in shop.journal.runs()))
     shop.open_list()
-    shop.sees(lambda: shop.list.model.program is not None and shop.list.model.program.run.proof == "PROVED")
+    shop.sees(
+        lambda: shop.programs.model.program is not None and shop.programs.model.program.run.proof == "PROVED"
+    )
 
 
 def test_no_other_program_while_one_is_under_way_and_h_holds(shop: Shop) -> None:
     shop.open_list()
     shop.machine.now = replace(shop.machine.now, state=State.HOLD)
-    assert not shop.list.takes("h")
+    assert not shop.programs.takes("h")
     shop.key(Key.Key_Return)
     assert "UNDER WAY" in shop.desk.notice
-    assert shop.list.model.find.text == ""
+    assert shop.programs.model.find.text == ""
 
 
 def test_it_is_sorted_by_name_date_run_parts_and_size(shop: Shop) -> None:
@@ -106,17 +110,17 @@ def test_it_is_sorted_by_name_date_run_parts_and_size(shop: Shop) -> None:
     shop.key(Key.Key_F2)
     shop.key(Key.Key_F2)
     shop.sees(lambda: shop.rows()[0] == "pin.nc")
-    assert shop.list.table.sheet.title.endswith("BY LAST RUN")
+    assert shop.programs.table.sheet.title.endswith("BY LAST RUN")
     shop.key(Key.Key_F2)
     shop.key(Key.Key_F2)
-    largest = max(shop.list.model.all, key=lambda program: program.size).name
+    largest = max(shop.programs.model.all, key=lambda program: program.size).name
     shop.sees(lambda: shop.rows()[0] == largest)
 
 
 def test_a_copy_gets_a_name_and_the_ending(shop: Shop) -> None:
     shop.open_list()
     shop.key(Key.Key_F4)
-    shop.sees(lambda: shop.list.table.sheet.question == "NAME OF THE COPY?")
+    shop.sees(lambda: shop.programs.table.sheet.question == "NAME OF THE COPY?")
     shop.key(Key.Key_Delete)
     shop.type("gamma")
     shop.key(Key.Key_Return)
@@ -315,7 +319,7 @@ def test_f2_twice_leads_from_the_question_to_the_list(shop: Shop) -> None:
 def test_a_finger_alone_names_a_copy(shop: Shop) -> None:
     shop.open_list()
     shop.key(Key.Key_F4)
-    pad = shop.list.letters
+    pad = shop.programs.letters
     shop.sees(lambda: pad.isVisible() and len(pad._places) == 43)
     for _ in range(8):
         touch(shop, 10)  # DEL
@@ -330,7 +334,7 @@ def test_a_finger_alone_begins_a_program(shop: Shop) -> None:
     """Letters came only behind the first letter of a keyboard, and a name that nobody has led nowhere."""
     shop.window.resize(1024, 600)
     shop.open_list()
-    table, pad = shop.list.table, shop.list.letters
+    table, pad = shop.programs.table, shop.programs.letters
     assert not pad.isVisible()
     table.grab()
     entry, _press = table._places[-1]
@@ -352,18 +356,22 @@ def test_a_finger_alone_begins_a_program(shop: Shop) -> None:
     shop.sees(lambda: shop.frame.keys.labels[0] == "CREATE")
 
 
+def letters_are(shop: Shop, shown: bool) -> bool:
+    return shop.programs.letters.isVisible() is shown
+
+
 def test_a_finger_takes_the_letters_away_again(shop: Shop) -> None:
     shop.open_list()
-    table = shop.list.table
+    table = shop.programs.table
     for shown in (True, False):
         table.grab()
         entry, _press = table._places[-1]
         QTest.mouseClick(table, Qt.MouseButton.LeftButton, pos=entry.center().toPoint())
-        shop.sees(lambda shown=shown: shop.list.letters.isVisible() is shown)
-    assert shop.list.record.isVisible()
+        shop.sees(partial(letters_are, shop, shown))
+    assert shop.programs.record.isVisible()
 
 
 def touch(shop: Shop, place: int) -> None:
-    pad = shop.list.letters
+    pad = shop.programs.letters
     box, _press = pad._places[place]
     QTest.mouseClick(pad, Qt.MouseButton.LeftButton, pos=QPoint(*map(int, box.center().toTuple())))

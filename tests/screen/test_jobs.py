@@ -12,6 +12,7 @@ from app.jobs.job_setup import ProvedJob
 from app.jobs.jobs_model import JobsModel
 from app.jobs.jobs_view import JobsPage
 from app.jobs.jobs_watch import JobsWatch
+from app.programs.programs_view import ProgramsPage
 from app.screen import page_table
 from app.screen.window_layout import FINGER
 from core.executor.snapshot import State
@@ -63,7 +64,9 @@ def added(day: Day, program: str, parts: str) -> None:
     day.key(Key.Key_F1, Key.Key_F6)
     day.sees(lambda: day.page == page_table.PROGRAMS)
     day.type(program[:3])
-    day.sees(lambda: program in "".join(row.cells[0] for row in day.frame.page.model.sheet().rows))
+    page = day.frame.page
+    assert isinstance(page, ProgramsPage)
+    day.sees(lambda: program in "".join(row.cells[0] for row in page.model.sheet().rows))
     day.key(Key.Key_F10)
     assert day.page == page_table.JOBS
     assert model(day).sheet(day.shot).question == f"HOW MANY PARTS OF {program}?"
@@ -149,6 +152,7 @@ def test_what_is_missing_on_the_plate_is_named(day: Day) -> None:
 def test_another_tip_than_when_it_ran_last_is_told(day: Day) -> None:
     day.store.run_started("peg.nc").result(5)
     started = day.store.runs()[0].started
+    assert started is not None
     day.qtbot.waitUntil(
         lambda: utc_now() > started
     )  # of one millisecond are what was set and what ran with it

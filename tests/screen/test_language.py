@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 from PySide6.QtCore import QTranslator
-from PySide6.QtGui import QRawFont
+from PySide6.QtGui import QFont, QPainter, QRawFont
 
 import app
 from app.desk.translation import tr
@@ -47,13 +47,13 @@ def spanish(hands: Hands) -> Hands:
 def drawn(hands: Hands, monkeypatch: pytest.MonkeyPatch) -> list[str]:
     """Every line that a picture of the window is made of."""
     texts: list[str] = []
-    real = look.QPainter.drawText
+    real = QPainter.drawText
 
-    def spy(painter: look.QPainter, *args: object) -> object:
+    def spy(painter: QPainter, *args: object) -> object:
         texts.extend(arg for arg in args if isinstance(arg, str))
         return real(painter, *args)  # type: ignore[call-overload]
 
-    monkeypatch.setattr(look.QPainter, "drawText", spy)
+    monkeypatch.setattr(QPainter, "drawText", spy)
     hands.window.refresh()
     hands.window.grab()
     monkeypatch.undo()
@@ -168,12 +168,12 @@ def test_a_refusal_of_a_shape_calls_its_field_as_the_form_does(spanish: Hands, k
 
 
 def test_no_letter_is_missing_in_the_font() -> None:
-    font = look.QFont(look.FAMILY)
+    font = QFont(look.FAMILY)
     missing = {sign for text in written("es").values() for sign in text if not _has(font, sign)}
     assert missing <= {"\n"}
 
 
-def _has(font: look.QFont, sign: str) -> bool:
+def _has(font: QFont, sign: str) -> bool:
     return QRawFont.fromFont(font).supportsCharacter(ord(sign))
 
 

@@ -23,6 +23,7 @@ from core.interpreter.elementary_blocks import Block
 from core.interpreter.elementary_blocks import Kind as BlockKind
 from core.interpreter.modal_state import Modal
 from tests.path.made import turned
+from tests.screen.colours import apart
 from tests.screen.hands import Hands
 
 Key = Qt.Key
@@ -243,12 +244,12 @@ def test_measuring_on_the_face(view: PathView) -> None:
 
 def drawn_in(colour: str, image: QImage, view: PathView, spots: list[tuple[float, float]]) -> bool:
     """Whether there is a pixel of about that colour near some points of the first pane."""
-    wanted = QColor(colour).getRgb()
+    wanted = QColor(colour)
     for z, x in spots:
         at = on_widget(view, z, x)
         for step in range(49):
-            seen = QColor(image.pixel(at.x() + step % 7 - 3, at.y() + step // 7 - 3)).getRgb()
-            if sum(abs(a - b) for a, b in zip(seen, wanted, strict=True)) < 90:  # smoothing mixes them
+            seen = image.pixelColor(at.x() + step % 7 - 3, at.y() + step // 7 - 3)
+            if apart(seen, wanted) < 90:  # smoothing mixes them
                 return True
     return False
 

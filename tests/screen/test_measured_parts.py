@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 from threading import Event
 
@@ -71,6 +72,11 @@ def cells(day: Day) -> list[tuple[str, ...]]:
     return [row.cells for row in sheet(day).rows]
 
 
+def texts(day: Day) -> dict[str, str]:
+    """What stands beside each name, on a sheet of two columns."""
+    return {name: text for name, text, *_ in cells(day)}
+
+
 def feature(day: Day, *fields: str, name: str = "spigot") -> None:
     """Nominal, upper, lower, number, every, sample of a diameter that wear of a tool corrects."""
     nominal, upper, lower, number, every, sample = fields
@@ -92,6 +98,10 @@ def spigot(day: Day, every: str = "0", sample: str = "1") -> None:
     day.sees(lambda: len(cells(day)) == 1)
 
 
+def has_made_more(day: Day, before: int) -> bool:
+    return day.shot.parts > before
+
+
 def parts(day: Day, count: int) -> None:
     """So many parts, one Cycle Start each."""
     day.key(Key.Key_F1)
@@ -101,7 +111,7 @@ def parts(day: Day, count: int) -> None:
     for _ in range(count):
         before = day.shot.parts
         day.palms()
-        day.until(lambda before=before: day.shot.parts > before)  # type: ignore[misc]
+        day.until(partial(has_made_more, day, before))
         day.reaches(State.IDLE)
     day.run(0.1)
 
@@ -455,7 +465,7 @@ def test_trends_of_what_was_made(day: Day, tmp_path: Path) -> None:
     parts(day, 3)
     section(day, TRENDS)
     day.sees(lambda: "3 parts" in cells(day)[0][1])
-    rows = dict(cells(day))
+    rows = texts(day)
     last = day.shot.last_cycle
     assert rows["CYCLE TIME"].startswith(f"last {last:.1f} s")
     assert rows["WEAR"] == "no correction yet"
@@ -469,13 +479,13 @@ def test_trends_of_what_was_made(day: Day, tmp_path: Path) -> None:
     day.key(Key.Key_Delete)
     day.enter("0-24")
     day.run(0.05)
-    ran = dict(cells(day))["AVAILABILITY"]
+    ran = texts(day)["AVAILABILITY"]
     assert re.fullmatch(r"0–24: \d+ %, \d:\d\d of .+", ran)
     # of the machine, whatever program is on the desk
     (tmp_path / "other.nc").write_text(PEG)
     day.desk.put_on_desk(tmp_path / "other.nc")
-    day.sees(lambda: dict(cells(day))["CYCLE TIME"] == "no part was made yet" and settled(day))
-    assert dict(cells(day))["AVAILABILITY"] >= ran  # the clock on the wall goes on
+    day.sees(lambda: texts(day)["CYCLE TIME"] == "no part was made yet" and settled(day))
+    assert texts(day)["AVAILABILITY"] >= ran  # the clock on the wall goes on
 
 
 def test_a_reading_that_nobody_sees_is_not_kept(day: Day) -> None:

@@ -224,6 +224,7 @@ def test_searchto_shows_table_and_plane_of_the_line(mill: Mill, qtbot: QtBot) ->
     shown = page.space.instant
     assert shown is not None
     assert (shown.axes["A"], shown.axes["C"]) == pytest.approx((30.0, 180.0))  # turned, where the line begins
+    assert page.model.plan is not None
     assert shown.block == page.model.plan.found.checkpoint.blocks
 
 

@@ -43,16 +43,18 @@ def test_the_first_key_ends_it_before_it_is_judged(hands: Hands) -> None:
     assert interval(hands) == FRAME_MS
 
 
-def test_a_change_of_the_machine_ends_it_from_any_thread(hands: Hands) -> None:
+def test_a_change_of_the_machine_ends_it_from_any_thread(
+    hands: Hands, monkeypatch: pytest.MonkeyPatch
+) -> None:
     left_alone(hands)
     hands.sees(lambda: interval(hands) == REST_MS)
     seen: list[int] = []
-    pace, hands.window._pace = hands.window._pace, seen.append  # type: ignore[method-assign]
+    monkeypatch.setattr(hands.window, "_pace", seen.append)
     executor = threading.Thread(target=hands.desk.stirs)
     executor.start()
     executor.join()
     hands.sees(lambda: FRAME_MS in seen)
-    hands.window._pace = pace  # type: ignore[method-assign]
+    monkeypatch.undo()
 
 
 @pytest.mark.parametrize("state", sorted(set(State) - {State.ESTOP, State.DISABLED, State.IDLE, State.FAULT}))

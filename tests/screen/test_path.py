@@ -26,6 +26,7 @@ from app.path.polyline import Polyline, Stroke
 from app.screen.look import Look
 from app.screen.theme import DARK
 from app.screen.window_layout import FINGER
+from tests.screen.colours import apart
 
 FRAME = Projection(z=0.0, x=0.0, scale=10.0, width=400, height=200)
 
@@ -112,7 +113,7 @@ def test_what_lies_beyond_an_edge_is_left_out() -> None:
 
 def test_polygon_holds_the_points() -> None:
     shape = polygon(np.array([1.0, 2.5]), np.array([3.0, 4.0]))
-    assert [(point.x(), point.y()) for point in shape] == [(1.0, 3.0), (2.5, 4.0)]
+    assert [(point.x(), point.y()) for point in shape.toList()] == [(1.0, 3.0), (2.5, 4.0)]
 
 
 def test_travelled_ends_at_the_tip() -> None:
@@ -137,11 +138,7 @@ def colour(image: QImage, z: float, x: float) -> str:
     """The palette's colour that a pixel is nearest to: smoothing mixes it with the ground."""
     pixel = image.pixelColor(round(float(FRAME.across(z))), round(float(FRAME.down(x))))
     candidates = (DARK.panel, DARK.todo, DARK.done, DARK.rapid, DARK.ghost)
-    return min(candidates, key=lambda name: _distance(pixel, QColor(name)))
-
-
-def _distance(one: QColor, other: QColor) -> int:
-    return sum(abs(a - b) for a, b in zip(one.getRgb(), other.getRgb(), strict=True))
+    return min(candidates, key=lambda name: apart(pixel, QColor(name)))
 
 
 def drawn(layers: Layers) -> QImage:

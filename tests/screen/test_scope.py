@@ -23,6 +23,7 @@ from app.scope.scope_view import ScopePage
 from app.screen import page_table
 from app.screen.theme import CURVES
 from app.screen.window_layout import FINGER
+from app.special.special_view import SpecialPage
 from core.executor.commands import FeedHold
 from core.executor.raised_alarm import make_alarm
 from core.executor.snapshot import Event, State
@@ -99,8 +100,9 @@ def test_one_key_leads_there_and_back(hands: Hands) -> None:
 
 def test_f10_has_it_in_its_list(hands: Hands) -> None:
     hands.key(Key.Key_F10)
-    model = hands.frame.page.model  # type: ignore[attr-defined]
-    number = [each.name for each in model.functions].index("SCOPE")
+    page = hands.frame.page
+    assert isinstance(page, SpecialPage)
+    number = [each.name for each in page.model.functions].index("SCOPE")
     for _ in range(number):
         hands.key(Key.Key_Down)
     hands.key(Key.Key_Return)
@@ -436,7 +438,7 @@ def test_a_file_is_deleted_after_asking(hands: Hands, tmp_path: Path) -> None:
     hands.key(Key.Key_F8)
     assert hands.desk.asked
     assert list((tmp_path / "records").glob("*.scope"))
-    yes(hands)
+    yes(hands.window)
     hands.sees(lambda: not page.scope.shelf.files)
     assert not list((tmp_path / "records").glob("*.scope"))
 

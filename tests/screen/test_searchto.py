@@ -13,12 +13,13 @@ from app.screen.window_layout import FINGER
 from app.searchto.searchto_model import SearchtoModel, SearchtoStage
 from app.searchto.searchto_view import SearchtoPage
 from core.executor.snapshot import Starts, State
+from tests.attached import attached
 from tests.screen.lathe import Key, Operator
 from tests.screen.yes import twist_out
 
 
 def model_of(operator: Operator) -> SearchtoModel:
-    return operator.stage.desk.attached(SearchtoModel)
+    return attached(operator.stage.desk, SearchtoModel)
 
 
 def page_of(operator: Operator) -> SearchtoPage:
@@ -407,4 +408,6 @@ def test_the_stock_is_shown_as_the_line_finds_it(operator: Operator) -> None:
     player.settle(60.0)
     assert player.played is not None
     assert player.played.instant.block == plan.found.checkpoint.blocks
-    assert 0 < plan.found.checkpoint.blocks < len(operator.stage.desk.session.now.picture.line)
+    picture = operator.stage.desk.session.now.picture
+    assert picture is not None
+    assert 0 < plan.found.checkpoint.blocks < len(picture.line)

@@ -12,7 +12,7 @@ from app.compose.stored_offsets import read_offsets
 from app.compose.workshop import samples
 from app.desk.desk import Desk
 from app.desk.translation import spoken
-from app.programs.folder_chooser import Stick
+from app.programs.removable_media import Stick
 from app.report.pdf_file import Paper
 from app.special.setup_sheet_function import MOST_NOTES, SetupSheetFunction
 from app.special.special_view import SpecialPage

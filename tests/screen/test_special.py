@@ -10,7 +10,7 @@ from app.compose.journal import Journal
 from app.desk.data_folder import data_folder
 from app.desk.desk import Desk
 from app.screen import page_table
-from app.special.backup_and_restore import BARRED
+from app.special.backup_and_restore import BARRED, BackupAndRestore
 from app.special.inputs_outputs import NOT_NOW
 from app.special.special_view import SpecialPage
 from core.executor.commands import ForceOutput, SetSwitch, SpindleLimit
@@ -238,7 +238,9 @@ def test_the_list_tells_what_a_backup_is_worth(hands: Hands, journal: Journal) -
     store.set_tool(3, "x", x=1.0, z=0.0).result(5)
     page = open_function(hands, 6)
     hands.sees(lambda: len(page.table.sheet.rows) >= 1)
-    folder = page.model.current.places[0].path
+    backups = page.model.current
+    assert isinstance(backups, BackupAndRestore)
+    folder = backups.places[0].path
     folder.mkdir(parents=True, exist_ok=True)
     journal.backup(folder / "2026-11-23-good.turndesk.db")
     (folder / "2026-11-22-bad.turndesk.db").write_bytes(b"no store any more")

@@ -46,13 +46,18 @@ def test_pick_start_hold_resume_single_block_estop_recover(hands: Hands) -> None
     hands.sees_state(State.RUN)
 
 
+def counted(hands: Hands) -> object:
+    times = hands.frame.times.value
+    return times[0] if isinstance(times, tuple) else None
+
+
 def test_a_whole_cycle_counts_a_part_and_comes_back(hands: Hands) -> None:
     hands.machine.step = 0.5
     hands.load("grooves")
     hands.both_palms()
     hands.sees(lambda: hands.machine.now.parts == 1)
     hands.sees_state(State.IDLE)
-    hands.sees(lambda: hands.frame.times.value[0] == ("PARTS", "1"))
+    hands.sees(lambda: counted(hands) == ("PARTS", "1"))
 
 
 def test_optional_stop_shows_its_comment_large(hands: Hands) -> None:

@@ -15,11 +15,11 @@ from app.offsets.tool_shapes_view import ShapeTable, ToolShapePage
 from app.screen import page_table
 from app.screen.entry_panel import KeyPad
 from app.screen.panel import Panel
+from app.screen.window_layout import FINGER
 from core.executor.snapshot import State
 from core.store.store import Store
 from core.store.store_rows import Kind, ShapeRow
 from tests.screen.hands import Hands, Key
-from tests.screen.test_offsets import FINGER
 from tests.screen.yes import yes
 
 LIMIT = 60.0

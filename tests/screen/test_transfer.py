@@ -6,6 +6,7 @@ import threading
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Generic, TypeVar
 
 import pytest
 from pytestqt.qtbot import QtBot
@@ -19,6 +20,7 @@ from core.executor.commands import FeedHold
 from core.executor.snapshot import State
 from core.machine.serial_table import DncModel
 from core.ports import DriverError
+from tests.attached import attached
 from tests.screen.desks import desk_on
 from tests.screen.fake import FakeMachine
 from tests.screen.hands import Hands, Key, window_on
@@ -26,6 +28,7 @@ from tests.screen.yes import yes
 
 DEFAULT = DncModel("/dev/ttyUSB0", 9600, 7, "E", 1, "xonxoff", "%", "\r\n")
 CAME = Received(b"O77\nM30\n", "O77.nc", 2, "ab" * 32, False, 3, (), 1.5)
+T = TypeVar("T")
 WAIT = 60.0
 
 
@@ -38,12 +41,12 @@ class Reach:
     heard: str = ""
 
 
-class Script:
+class Script(Generic[T]):
     """A transfer that goes on until the test lets it end, or somebody gives it up."""
 
-    def __init__(self, answer: object) -> None:
+    def __init__(self, answer: T, fails: Exception | None) -> None:
         self.reach = Reach()
-        self.answer = answer
+        self.answer, self.fails = answer, fails
         self.go = threading.Event()
         self.cancelled = False
 
@@ -51,35 +54,35 @@ class Script:
         self.cancelled = True
         self.go.set()
 
-    def run(self) -> object:
+    def run(self) -> T:
         assert self.go.wait(WAIT)
         if self.cancelled:
             raise DriverError("cancelled")
-        if isinstance(self.answer, Exception):
-            raise self.answer
+        if self.fails is not None:
+            raise self.fails
         return self.answer
 
 
 @dataclass
 class FakeLines:
-    """What the far end does is in ``answer``."""
+    """A program that goes out, or ``CAME``; ``fails`` instead, where it is given."""
 
-    answer: object = 1280
-    job: Script | None = None
+    fails: Exception | None = None
+    job: Script[int] | Script[Received] | None = None
     said: list[tuple[DncModel, Path | None]] = field(default_factory=list)
 
     def ports(self) -> list[tuple[str, str]]:
         return [("/dev/ttyS0", ""), ("/dev/ttyUSB0", "adapter")]
 
-    def send(self, settings: DncModel, path: Path) -> Script:
+    def send(self, settings: DncModel, path: Path) -> Script[int]:
         self.said.append((settings, path))
-        self.job = Script(self.answer)
-        return self.job
+        job = self.job = Script(1280, self.fails)
+        return job
 
-    def receive(self, settings: DncModel) -> Script:
+    def receive(self, settings: DncModel) -> Script[Received]:
         self.said.append((settings, None))
-        self.job = Script(self.answer)
-        return self.job
+        job = self.job = Script(CAME, self.fails)
+        return job
 
 
 @pytest.fixture
@@ -94,11 +97,12 @@ def hands(
     """A desk whose machine has a line for programs."""
     desk = desk_on(machine, keep=journal)
     section = SerialTransfer(desk, journal, lines, DEFAULT, tmp_path / "own")
-    functions = list(desk.attached(SpecialFunctions).functions)
+    special = attached(desk, SpecialFunctions)
+    functions = list(special.functions)
     (line,) = (number for number, each in enumerate(functions) if each.name == section.name)
     functions[line].close()
     functions[line] = section
-    desk.attached(SpecialFunctions).functions = functions
+    special.functions = functions
     with window_on(qtbot, desk, machine) as window:
         made = Hands(qtbot, window, desk, machine)
         made.key(Key.Key_F10)
@@ -136,7 +140,6 @@ def test_settings_by_arrows_and_return_are_kept(hands: Hands, journal: Journal) 
 def test_a_program_comes_in_under_a_new_name_and_starts_nothing(
     hands: Hands, lines: FakeLines, tmp_path: Path
 ) -> None:
-    lines.answer = CAME
     hands.key(Key.Key_F5)
     hands.sees(lambda: cells(hands).get("WAITS") == "HELD BY THE OTHER SIDE (XOFF)")
     assert cells(hands)["DONE"] == "50%"
@@ -162,7 +165,6 @@ def test_a_taken_name_is_refused_and_the_program_still_there(
     (tmp_path / "own").mkdir()
     old = tmp_path / "own" / "O77.nc"
     old.write_bytes(b"OLD\n")
-    lines.answer = CAME
     hands.key(Key.Key_F5)
     assert lines.job is not None
     lines.job.go.set()
@@ -176,7 +178,6 @@ def test_a_taken_name_is_refused_and_the_program_still_there(
 
 
 def test_it_is_thrown_away_after_asking(hands: Hands, lines: FakeLines, tmp_path: Path) -> None:
-    lines.answer = CAME
     hands.key(Key.Key_F5)
     assert lines.job is not None
     lines.job.go.set()
@@ -190,7 +191,6 @@ def test_it_is_thrown_away_after_asking(hands: Hands, lines: FakeLines, tmp_path
 
 
 def test_giving_up_keeps_nothing(hands: Hands, lines: FakeLines, tmp_path: Path) -> None:
-    lines.answer = CAME
     hands.key(Key.Key_F5)
     hands.sees(lambda: "WAITS" in cells(hands))
     hands.key(Key.Key_F6)
@@ -200,7 +200,7 @@ def test_giving_up_keeps_nothing(hands: Hands, lines: FakeLines, tmp_path: Path)
 
 
 def test_what_fails_on_the_line_is_told(hands: Hands, lines: FakeLines) -> None:
-    lines.answer = DriverError("parity error in line 7")
+    lines.fails = DriverError("parity error in line 7")
     hands.key(Key.Key_F5)
     assert lines.job is not None
     lines.job.go.set()
@@ -227,7 +227,6 @@ def test_the_program_on_the_desk_goes_out(hands: Hands, lines: FakeLines) -> Non
 
 
 def test_it_goes_on_behind_other_pages(hands: Hands, lines: FakeLines) -> None:
-    lines.answer = CAME
     hands.key(Key.Key_F5)
     hands.sees(lambda: "WAITS" in cells(hands))
     hands.key(Key.Key_Escape)
@@ -243,7 +242,6 @@ def test_it_goes_on_behind_other_pages(hands: Hands, lines: FakeLines) -> None:
 def test_while_a_program_runs_letters_keep_their_meaning(
     hands: Hands, lines: FakeLines, tmp_path: Path
 ) -> None:
-    lines.answer = CAME
     hands.key(Key.Key_F5)
     assert lines.job is not None
     lines.job.go.set()

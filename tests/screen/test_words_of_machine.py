@@ -18,6 +18,7 @@ from app.screen.page_table import menu_keys
 from app.special.inputs_outputs import InputsOutputs
 from core.executor.snapshot import Snapshot
 from drivers.clocks import StepClock
+from tests.attached import attached
 from tests.screen.hands import Hands
 
 
@@ -79,7 +80,7 @@ def test_a_feature_is_corrected_by_what_this_machine_has(
         desk, _executor = desk_and_executor(
             name, lambda: read_offsets(samples() / "offsets.toml"), StepClock()
         )
-        pages = desk.attached(QualityFunctions)
+        pages = attached(desk, QualityFunctions)
         features, readings, *_, trends = pages.functions
         assert isinstance(features, FeaturesSection)
         assert isinstance(trends, TrendsSection)

@@ -14,10 +14,10 @@ from pytestqt.qtbot import QtBot
 from app.compose.journal import Journal
 from app.compose.screen_desk import desk_and_executor
 from app.compose.stored_offsets import NONE
+from app.desk.formats import local_time
 from app.editor.editor import Editor, Stage, enter
 from app.editor.heading_view import editor_places
 from app.editor.text_view import TextField
-from app.editor.versions_view import local_time
 from app.screen.look import Look
 from app.screen.theme import DARK, LIGHT
 from core.language.source import Dialect

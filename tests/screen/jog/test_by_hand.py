@@ -7,7 +7,7 @@ from collections.abc import Callable
 import pytest
 from PySide6.QtCore import QPointF, Qt
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QDialog
+from PySide6.QtWidgets import QDialog, QWidget
 from pytestqt.qtbot import QtBot
 
 from app.jog.hand_functions import WORDS
@@ -350,8 +350,8 @@ def test_every_target_is_a_fingertip(jog: JogBench) -> None:
 
 
 def test_a_finger_chooses_and_the_pad_takes_the_speed(jog: JogBench) -> None:
-    def touch(panel: object, at: QPointF) -> None:
-        QTest.mouseClick(panel, Qt.MouseButton.LeftButton, pos=at.toPoint())  # type: ignore[arg-type]
+    def touch(panel: QWidget, at: QPointF) -> None:
+        QTest.mouseClick(panel, Qt.MouseButton.LeftButton, pos=at.toPoint())
 
     strip, hand = jog.page.strip, jog.page.hand
     strip.grab()

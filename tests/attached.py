@@ -1,0 +1,16 @@
+"""What is attached to a desk, in tests that know that it is there."""
+
+from __future__ import annotations
+
+from typing import TypeVar
+
+from app.desk.desk import Attached, Desk
+
+A = TypeVar("A", bound=Attached)
+
+
+def attached(desk: Desk, kind: type[A]) -> A:
+    """Fails where the desk was put together without."""
+    found = desk.attached(kind)
+    assert found is not None, kind
+    return found
