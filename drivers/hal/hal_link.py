@@ -28,7 +28,7 @@ class HalLink:
         open_link: Callable[[], BridgeLink],
         clock: Clock,
         bridge: BridgeConfig,
-        idle: Callable[[], None] | None = None,
+        idle: Callable[[], object] | None = None,
     ) -> None:
         self._open = open_link
         self._clock = clock

@@ -36,7 +36,7 @@ class HalMachine:
         config: HalConfig,
         clock: Clock,
         open_link: Callable[[], BridgeLink],
-        idle: Callable[[], None] | None = None,
+        idle: Callable[[], object] | None = None,
     ) -> None:
         self.config = config
         self.clock = clock

@@ -10,7 +10,7 @@ from drivers.lookalikes.grblhal_program import Modes, Program
 from drivers.lookalikes.grblhal_settings import Quirks, Registers
 from drivers.lookalikes.grblhal_slides import PlannedBlock, Slides
 from drivers.lookalikes.plant_config import SimSpindle
-from drivers.lookalikes.spindle_motor import SpindleMotor
+from drivers.lookalikes.spindle_motor import SpindleMotor, TurnedSpindle
 
 # --- What the look-alike's real-time bytes do, in whatever state it is.
 
@@ -240,7 +240,7 @@ class Firmware:
         self.quirks = quirks or Quirks()
         self.registers = Registers(self.quirks)
         self.slides = Slides(self.registers, 100)
-        self.spindle = SpindleMotor(SimSpindle())
+        self.spindle: TurnedSpindle = SpindleMotor(SimSpindle())
         self.outputs: dict[str, bool] = {}
         self.pins = ""
         self.inputs: dict[int, bool] = {}

@@ -8,7 +8,7 @@ from typing import Protocol
 
 from drivers.lookalikes.grblhal_settings import Quirks, Registers
 from drivers.lookalikes.grblhal_slides import Place, PlannedBlock, Shape, Slides, circle, straight
-from drivers.lookalikes.spindle_motor import SpindleMotor
+from drivers.lookalikes.spindle_motor import TurnedSpindle
 
 
 class Controller(Protocol):
@@ -17,7 +17,7 @@ class Controller(Protocol):
     quirks: Quirks
     registers: Registers
     slides: Slides
-    spindle: SpindleMotor
+    spindle: TurnedSpindle
     outputs: dict[str, bool]
     inputs: dict[int, bool]
     pins: str

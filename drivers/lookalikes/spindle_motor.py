@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections import deque
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 from drivers.lookalikes.plant_config import SimSpindle
 
@@ -41,6 +41,20 @@ class OrientOrder(NamedTuple):
         if self.sense > 0 or (not self.sense and left <= 0.5):
             return left
         return left - 1.0 if left else 0.0
+
+
+class TurnedSpindle(Protocol):
+    """What a controller knows of the spindle that it turns: rpm and turns, both signed."""
+
+    @property
+    def speed(self) -> float: ...
+
+    @property
+    def turns(self) -> float: ...
+
+    def advance(self, now: float) -> None: ...
+
+    def order(self, now: float, rpm: float) -> None: ...
 
 
 class SpindleMotor:

@@ -30,6 +30,7 @@ import time
 from collections.abc import Callable, Iterator
 from functools import partial
 from pathlib import Path
+from unittest import mock
 
 import can
 import numpy as np
@@ -102,7 +103,7 @@ class FramePair(can.BusABC):
 def on_pair(descriptor: int) -> None:
     """Whatever bus is opened in this process from now on is that end; -1: as the machine file says."""
     if descriptor >= 0:
-        can.Bus = lambda **_: FramePair(descriptor)  # type: ignore[assignment,misc]
+        can.Bus = lambda **_: FramePair(descriptor)
 
 
 def machine_file(folder: Path, sync_ms: int) -> Path:
@@ -144,7 +145,6 @@ def feeder(arguments: list[str]) -> None:
         if follower.gaps > before:
             gaps.append(away)
 
-    SyncSchedule.sent, CyclicFollower.waited = noted, missed  # type: ignore[method-assign]
     if fifo == "yes":
         real_time()
     keep_memory()
@@ -154,7 +154,8 @@ def feeder(arguments: list[str]) -> None:
     sock = socket.socket(fileno=int(descriptor))
     sock.sendall(packed(Message({"ready": True}, NOTHING)))
     begun, used = time.monotonic(), time.process_time()
-    serve(sock, owned, [])
+    with mock.patch.object(SyncSchedule, "sent", noted), mock.patch.object(CyclicFollower, "waited", missed):
+        serve(sock, owned, [])
     share = (time.process_time() - used) / (time.monotonic() - begun)
     Path(out).write_text(json.dumps({"late": late, "gaps": gaps, "share": share}))
 
@@ -364,7 +365,11 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    roles = {"--feeder": feeder, "--far-end": far_end, "--witness": lambda a: witness(int(a[0]), a[1])}
+    roles: dict[str, Callable[[list[str]], None]] = {
+        "--feeder": feeder,
+        "--far-end": far_end,
+        "--witness": lambda a: witness(int(a[0]), a[1]),
+    }
     role = roles.get(sys.argv[1] if len(sys.argv) > 1 else "")
     if role is not None:
         role(sys.argv[2:])

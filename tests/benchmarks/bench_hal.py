@@ -31,7 +31,8 @@ TICK = 0.005  # s
 def main() -> None:
     """Run it."""
     seconds = float(sys.argv[1]) if len(sys.argv) > 1 else 20.0
-    busy = [multiprocessing.Process(target=_compute, daemon=True) for _ in range(int(*sys.argv[2:3] or [0]))]
+    count = int(sys.argv[2]) if len(sys.argv) > 2 else 0
+    busy = [multiprocessing.Process(target=_compute, daemon=True) for _ in range(count)]
     for each in busy:
         each.start()
     sys.stdout.write(f"{len(busy)} busy processes, load {os.getloadavg()[0]:.1f} at the beginning\n")

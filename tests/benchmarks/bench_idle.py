@@ -23,6 +23,7 @@ import time
 from contextlib import suppress
 from pathlib import Path
 from typing import Any, NamedTuple
+from unittest import mock
 
 import resources
 from tests.benchmarks.footprint import keep_result
@@ -57,9 +58,9 @@ def desk(words: list[str]) -> int:
         say(f"{time.monotonic()!r}\n")
         splice(plant, segments)
 
-    threading.Thread.run, Plant.splice = named, told  # type: ignore[method-assign]
     sys.argv = ["turndesk", *words]
-    return console()
+    with mock.patch.object(threading.Thread, "run", named), mock.patch.object(Plant, "splice", told):
+        return console()
 
 
 class Used(NamedTuple):

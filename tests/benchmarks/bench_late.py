@@ -229,15 +229,23 @@ class Desk:
         self._folder.cleanup()
 
 
+def _for_a_while(desk: Desk, state: str, seconds: float) -> bool:
+    """Whether the state was reached, which then goes on for so long."""
+    reached = desk.until(lambda: bool(desk.now["state"] == state))
+    if reached:
+        time.sleep(seconds)
+    return reached
+
+
 def bring(desk: Desk, place: str) -> bool:
     """Into this situation; whether it was reached."""
     desk.ready()
     if place == "at rest":
         time.sleep(0.4)
-        return desk.now["state"] == "READY"
+        return bool(desk.now["state"] == "READY")
     if place == "jog":
         desk.do("jog", -20.0 if desk.now["at"][1] > -50.0 else 20.0)
-        return desk.until(lambda: desk.now["state"] == "JOG") and not time.sleep(0.5)
+        return _for_a_while(desk, "JOG", 0.5)
     desk.do("load", PROGRAMS[place])
     time.sleep(0.4)
     desk.do("start")
@@ -255,7 +263,7 @@ def bring(desk: Desk, place: str) -> bool:
         return False
     if place == "hold":
         desk.do("hold")
-        return desk.until(lambda: desk.now["state"] == "FEED HOLD") and not time.sleep(0.3)
+        return _for_a_while(desk, "FEED HOLD", 0.3)
     return True
 
 
@@ -270,7 +278,7 @@ class Row(NamedTuple):
 
 
 def way(a: Shot, b: Shot) -> float:
-    return max(abs(p - q) for p, q in zip(a["at"], b["at"], strict=True))
+    return max(abs(float(p) - float(q)) for p, q in zip(a["at"], b["at"], strict=True))
 
 
 def measured(desk: Desk, what: str, place: str, act: Callable[[], None], settle: float = 2.5) -> Row:
@@ -391,7 +399,7 @@ def main(words: list[str]) -> None:
         desk = desks.get(feeder) or Desk(feeder=feeder)
         desks[feeder] = desk
         settle = 4.0 if "3 s" in what or "killed" in what or place == "rapid" else 2.5
-        row = measured(desk, what, place, lambda desk=desk, act=act: act(desk), settle)
+        row = measured(desk, what, place, partial(act, desk), settle)
         sys.stdout.write(f"| {' | '.join(row)} |\n")
         sys.stdout.flush()
         if any(word in what for word in FINAL) or row.way == "?":

@@ -237,6 +237,7 @@ def _found_again(kept: dict[str, Any]) -> Mutant | None:
 
 def say(text: str) -> None:
     """Past what pytest captures."""
+    assert sys.__stdout__ is not None
     sys.__stdout__.write(text)
     sys.__stdout__.flush()
 

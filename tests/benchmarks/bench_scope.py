@@ -56,7 +56,7 @@ class LiveSamples(PlayedSamples):
         super().__init__()
         self.all = record_of(seconds(0.0, 400.0))
         noise = np.random.default_rng(7).normal(scale=1.5, size=len(self.all.times))
-        self.all.columns["spindle speed"][:] += noise  # type: ignore[index]
+        self.all.columns["spindle speed"][:] += noise
         self.began = time.monotonic() - 110.0
 
     @property

@@ -20,6 +20,7 @@ from contextlib import contextmanager
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
+from unittest import mock
 
 from core.store.store import Store
 from tests.benchmarks.bench_night_shift import counted_in
@@ -57,10 +58,10 @@ def desk(words: list[str]) -> int:
         behind = now
         return answer
 
-    Plant._servos_follow = seen  # type: ignore[method-assign]
     sys.argv = ["turndesk", *words]
     try:
-        return console()
+        with mock.patch.object(Plant, "_servos_follow", seen):
+            return console()
     finally:
         say(json.dumps({"pins": pins}) + "\n")
 

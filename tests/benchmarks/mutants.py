@@ -121,11 +121,13 @@ def _kinds(node: ast.AST) -> Iterator[tuple[str, str]]:
 def _changed(node: Any, kind: str) -> ast.AST:
     match kind:
         case "swap" if isinstance(node, ast.Compare):
-            node.ops = [_PAIRS[type(node.ops[0])]()]
+            other: Any = _PAIRS[type(node.ops[0])]()
+            node.ops = [other]
         case "swap":
             node.op = _PAIRS[type(node.op)]()
         case "bare":
-            return node.operand
+            operand: ast.AST = node.operand
+            return operand
         case "constant":
             node.value = (not node.value) if isinstance(node.value, bool) else node.value + 1
         case "negate":
@@ -136,7 +138,8 @@ def _changed(node: Any, kind: str) -> ast.AST:
             node.value = None
         case "call":
             node.func.id = _CALLS[node.func.id]
-    return node
+    changed: ast.AST = node
+    return changed
 
 
 class _At(ast.NodeTransformer):

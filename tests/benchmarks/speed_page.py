@@ -17,13 +17,15 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from app.compose.machine_files import load_machine
 from app.compose.machine_setup import setup_for
-from core.interpreter.job_setup import ToolOffset
+from core.interpreter.job_setup import Setup, ToolOffset
 from core.language.source import Source
+from core.machine.machine_model import Machine
 from core.motion.axis_limits import MotionLimits
 from core.motion.motion_plan import plan
 from core.proving.prove_program import prove
@@ -184,6 +186,11 @@ def _median_ms(work: Callable[[], object], rounds: int) -> str:
     return f"{1000.0 * statistics.median(taken):.1f}"
 
 
+def _proved(text: str, setup: Setup, machine: Machine) -> None:
+    """Read anew and proved."""
+    prove(Source("speed", text), setup, machine)
+
+
 def _warm() -> str:
     """Proofs in a process that has proved before, as the editor's."""
     machine = load_machine(None)
@@ -191,11 +198,11 @@ def _warm() -> str:
     rows, figures = [], {}
     for count, rounds in ((200, 50), (20_000, 7)):
         text, name = program(count), f"prove {count:,} blocks, read anew"
-        cost = _median_ms(lambda text=text: prove(Source("speed", text), setup, machine), rounds)
+        cost = _median_ms(partial(_proved, text, setup, machine), rounds)
         rows.append((name, cost, goal_of(name, "{:.0f}")))
         figures[name] = (float(cost),)
     text, name = feeds(20_000), "prove 20,000 blocks with an F on each, read anew"
-    cost = _median_ms(lambda: prove(Source("speed", text), setup, machine), FEW)
+    cost = _median_ms(partial(_proved, text, setup, machine), FEW)
     rows.append((name, cost, goal_of(name, "{:.0f}")))
     return _table("In a process that runs", ("", "ms", "goal"), rows, _reasons(figures))
 
@@ -213,7 +220,7 @@ def _removal() -> str:
     except ImportError:
         below = "shapely was not installed: no peer."
     rows = [
-        (name, f"{1000.0 * bench_removal.MOVES / float(_median_ms(lambda work=work: work(todo), FEW)):,.0f}")
+        (name, f"{1000.0 * bench_removal.MOVES / float(_median_ms(partial(work, todo), FEW)):,.0f}")
         for name, work in works.items()
     ]
     return _table("Removal of metal, 1000 roughing moves at .01 mm", ("", "moves a second"), rows, below)

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Sequence
 
 import numpy as np
 
-from core.ports import Segments
+from core.ports import FloatArray, Segments
 from drivers.clocks import StepClock
 from drivers.lookalikes.plant_config import SimAxis, SimConfig, SimOutput, SimSpindle
 from drivers.lookalikes.plant_hands import PlantHands
@@ -43,7 +44,7 @@ def simulation(config: SimConfig = CONFIG, powered: bool = True) -> tuple[Simula
     return sim, clock
 
 
-def ramp(start: float, p: tuple[float, float, float], x_speed: float, cruise: float) -> Segments:
+def ramp(start: float, p: Sequence[float] | FloatArray, x_speed: float, cruise: float) -> Segments:
     """X from rest at ``p`` to ``x_speed``, on for ``cruise`` seconds, back to rest; 3000 mm/s²."""
     up = abs(x_speed) / 3000.0
     a = 3000.0 if x_speed > 0 else -3000.0

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Callable
 
 import pytest
 
@@ -144,7 +145,12 @@ def test_in_estop_or_with_a_fault_the_spindle_neither_turns_nor_goes_to_an_angle
     else:
         sim.machine.press_estop()
     why = "the spindle stays off: over-current" if broken else "while E-stop is pressed; release it first"
-    for act in (lambda: sim.ports.orientation.orient(0.0), lambda: sim.ports.spindle.run(100.0)):
+    orientation = sim.ports.orientation
+    acts: tuple[Callable[[], None], ...] = (
+        lambda: orientation.orient(0.0),
+        lambda: sim.ports.spindle.run(100.0),
+    )
+    for act in acts:
         with pytest.raises(DriverError, match=why) as told:
             act()
         assert told.value.code == "spindle-off"

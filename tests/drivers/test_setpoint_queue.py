@@ -64,7 +64,8 @@ def test_refuses_what_starts_before_commit() -> None:
 
 def in_slices(start: float, count: int) -> Segments:
     """At rest in so many pieces of 2 ms."""
-    t, zero = start + 0.002 * np.arange(count), np.zeros((count, 3))
+    t = start + 0.002 * np.arange(count, dtype=np.float64)
+    zero = np.zeros((count, 3))
     return Segments(t, np.full(count, 0.002), np.tile(REST, (count, 1)), zero, zero)
 
 

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from core.ports import FloatArray
+from drivers.clocks import StepClock
 from drivers.lookalikes.plant_config import PlannedFault
 from drivers.simulated.simulated_machine import Simulation
 from tests.drivers.machines import CONFIG, play, ramp, simulation
@@ -18,13 +19,13 @@ COUNT = 0.00127
 T, DEMAND, ACTUAL, SPEED, TURNS = 0, 1, 4, 10, 11
 
 
-def moved(sim: Simulation, clock: object, speed: float, seconds: float) -> FloatArray:
+def moved(sim: Simulation, clock: StepClock, speed: float, seconds: float) -> FloatArray:
     """X at an even speed; the samples of the last 60 % of the way."""
     assert sim.ports.samples is not None
     sim.ports.samples.take()
     begin = sim.ports.axes.now() + 0.03
     sim.ports.axes.splice(ramp(begin, sim.ports.axes.demand_at(begin)[0], speed, seconds))
-    play(sim, clock, seconds + 0.3)  # type: ignore[arg-type]
+    play(sim, clock, seconds + 0.3)
     rows = sim.ports.samples.take()
     ramped = abs(speed) / 3048.0 + 0.001
     first, last = begin + ramped + 0.4 * seconds, begin + ramped + seconds - 0.01

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import copy
 import itertools
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 import can
 
@@ -15,6 +15,7 @@ from core.machine.machine_model import Machine
 from drivers.canopen.canopen_machine import CanopenMachine
 from drivers.clocks import StepClock
 from drivers.lookalikes.canopen_devices import CanopenDevices
+from drivers.lookalikes.canopen_node import Device
 
 TICK = 0.005
 _channels = itertools.count()
@@ -47,6 +48,36 @@ def cyclic(mode: str = "csp", *changes: tuple[str, str], drive: str = "cia402", 
         *changes,
         **how,
     )
+
+
+class SaysOtherwise:
+    """A device some of whose objects, by index and sub-index, have other values than its own."""
+
+    def __init__(self, device: Device, values: Mapping[tuple[int, int], int]) -> None:
+        self._device, self._values = device, values
+
+    def read(self, index: int, sub: int) -> int | None:
+        """What is said instead, or its own."""
+        own = self._device.read(index, sub)
+        return self._values.get((index, sub), own)
+
+    def write(self, index: int, sub: int, value: int) -> None:
+        """As its own."""
+        self._device.write(index, sub, value)
+
+    def host_lost(self) -> None:
+        """As its own."""
+        self._device.host_lost()
+
+    def reset(self) -> None:
+        """As its own."""
+        self._device.reset()
+
+
+def says(peers: CanopenDevices, name: str, values: Mapping[tuple[int, int], int]) -> None:
+    """From now on that node answers so."""
+    node = peers.nodes[name]
+    node.device = SaysOtherwise(node.device, values)
 
 
 class CanBench:

@@ -126,7 +126,7 @@ def test_a_bus_that_moves_or_that_is_not_heard_needs_every_round(sleeping: Sleep
     sleeping.go_on(1.0)
     axes = machine.axes
     begin = sleeping.bench.clock.now() + axes.commit + 0.05
-    axes.splice(ramp(begin, axes.sample().demand, 30.0, 0.5))  # type: ignore[arg-type]
+    axes.splice(ramp(begin, axes.sample().demand, 30.0, 0.5))
     sleeping.bench.run(0.4)
     assert axes.sample().moving
     assert machine.idle(True) == 0.0

@@ -75,7 +75,7 @@ def test_sync_goes_on_while_a_long_path_is_taken_in(bench: CanBench, monkeypatch
     count, rest = 2000, np.array([axes.demand_at(axes.horizon())[0]])
     zero = np.zeros((count, rest.shape[1]))
     start = bench.clock.now() + 0.2
-    t = start + 0.002 * np.arange(count)
+    t = start + 0.002 * np.arange(count, dtype=np.float64)
     axes.splice(Segments(t, np.full(count, 0.002), np.repeat(rest, count, 0), zero, zero))
     assert len(syncs) == pytest.approx(25, abs=1)
     assert np.diff(syncs) == pytest.approx(0.004, abs=1e-6)

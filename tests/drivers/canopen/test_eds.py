@@ -24,7 +24,9 @@ def beside(folder: Path) -> Machine:
 
 def test_an_eds_lies_beside_the_machine_file(tmp_path: Path) -> None:
     canopen.export_od(drive_objects(PROFILES["epos2"]), str(tmp_path / "x.eds"), "eds")
-    assert canopen_config(beside(tmp_path)).axes[0].node.eds == str(tmp_path / "x.eds")
+    node = canopen_config(beside(tmp_path)).axes[0].node
+    assert node is not None
+    assert node.eds == str(tmp_path / "x.eds")
     bench = CanBench(beside(tmp_path))
     bench.machine.axes.enable(True)
     assert bench.machine.axes.sample().enabled

@@ -13,6 +13,9 @@ from tests.executor.rig import Rig
 OVER = "G90G94F300\nX0Z0\nG01F300\n" + "X.2Z-3\nX0Z0\n" * 3 + "M30"
 
 
+BUS_TICK = 0.01  # s
+
+
 class BusRig(Rig):
     """The rig of the executor's tests, on the bus instead of the simulation's own ports."""
 
@@ -22,10 +25,11 @@ class BusRig(Rig):
         self.executor = Executor(self.machine, self.bench.machine.ports, self.events.append, self._passes)
         self.executor.tick()
 
-    def tick(self, dt: float = 0.01) -> None:
+    def tick(self, dt: float | None = None) -> None:
         """Two rounds of the bus for each of the executor's."""
+        step = BUS_TICK if dt is None else dt
         for _ in range(2):
-            self.clock.advance(dt / 2)
+            self.clock.advance(step / 2)
             self.bench.machine.tick()
             self.bench.peers.pump()
         self.executor.tick()

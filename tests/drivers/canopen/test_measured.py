@@ -17,7 +17,7 @@ from drivers.inverter.inverter_obedience import Agreement
 from drivers.inverter.inverter_spindle import InverterSpindle, attendant
 from tests.drivers.canopen.bench import can_machine
 from tests.drivers.canopen.test_encoder import OWN
-from tests.drivers.canopen.test_executor import BusRig
+from tests.drivers.canopen.test_executor import BUS_TICK, BusRig
 from tests.drivers.inverter.benches import Bench, config, far_end
 from tests.drivers.inverter.inverter_lookalikes import Inverter
 from tests.drivers.inverter.wires import BenchWire
@@ -63,8 +63,8 @@ class MeasuredRig(BusRig):
         self.executor = Executor(self.machine, joined, self.events.append, self._passes)
         self.executor.tick()
 
-    def tick(self, dt: float = 0.01) -> None:
-        while self.line.clock.now() < self.clock.now() + dt:
+    def tick(self, dt: float | None = None) -> None:
+        while self.line.clock.now() < self.clock.now() + (BUS_TICK if dt is None else dt):
             self.line.run(0.001)
         super().tick(dt)
 

@@ -189,7 +189,7 @@ class Turned(BusRig):
 
     page: Wheel | None = None
 
-    def tick(self, dt: float = 0.01) -> None:
+    def tick(self, dt: float | None = None) -> None:
         if self.page is not None:
             self.executor.post(self.page)
         super().tick(dt)

@@ -21,7 +21,7 @@ from drivers.canopen import canopen_objects as od
 from drivers.canopen.canopen_table import CanopenTable
 from drivers.canopen.drive_profiles import profile_of
 from drivers.clocks import StepClock
-from tests.drivers.canopen.bench import CanBench, can_machine, cyclic
+from tests.drivers.canopen.bench import CanBench, can_machine, cyclic, says
 from tests.drivers.machines import ramp
 
 FOLDER = Path(os.environ.get("TURNDESK_EDS", "/nowhere"))
@@ -72,10 +72,7 @@ def bench(request: pytest.FixtureRequest) -> Iterator[CanBench]:
     found.peers = canopen_peers(machine, found.clock)
     if isinstance(modes, ODVariable) and modes.default:
         for name in ("X", "Z"):
-            read = found.peers.nodes[name].device.read
-            found.peers.nodes[name].device.read = (  # type: ignore[method-assign]
-                lambda index, sub, read=read: modes.default if index == od.SUPPORTED else read(index, sub)
-            )
+            says(found.peers, name, {(od.SUPPORTED, 0): modes.default})
     found.machine = canopen_machine(machine, found.clock, found.peers.pump)
     yield found
     found.close()

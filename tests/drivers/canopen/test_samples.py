@@ -25,7 +25,7 @@ def test_each_sync_is_a_row_with_the_drives_positions(bench: CanBench) -> None:
     source.take()
     width = 5 + 3 * len(axes.axes)
     begin = bench.clock.now() + axes.commit + 0.05
-    axes.splice(ramp(begin, axes.sample().demand, 30.0, 0.5))  # type: ignore[arg-type]
+    axes.splice(ramp(begin, axes.sample().demand, 30.0, 0.5))
     seen = []
     for _ in range(180):
         bench.tick()

@@ -13,7 +13,7 @@ from drivers.canopen import canopen_objects as od
 from drivers.clocks import StepClock
 from drivers.lookalikes.canopen_axis_drive import AxisDrive
 from drivers.lookalikes.canopen_devices import CanopenDevices
-from tests.drivers.canopen.bench import CanBench, can_machine, cyclic
+from tests.drivers.canopen.bench import CanBench, can_machine, cyclic, says
 from tests.drivers.machines import ramp
 
 
@@ -121,27 +121,21 @@ def test_a_node_that_is_not_there() -> None:
 
 def test_a_terminal_block_where_a_drive_should_be() -> None:
     def spoil(peers: CanopenDevices) -> None:
-        peers.nodes["Z"].device.read = lambda _index, _sub: 0x000F0191  # type: ignore[method-assign]
+        says(peers, "Z", {(od.DEVICE_TYPE, 0): 0x000F0191})
 
     assert "node 2 is a device of profile 401, expected 402" in refused(spoil)
 
 
 def test_a_drive_without_the_mode() -> None:
     def spoil(peers: CanopenDevices) -> None:
-        read = drive(peers).read
-        peers.nodes["Z"].device.read = (  # type: ignore[method-assign]
-            lambda index, sub: 0x21 if index == od.SUPPORTED else read(index, sub)
-        )
+        says(peers, "Z", {(od.SUPPORTED, 0): 0x21})
 
     assert "Z: the drive has no mode interpolated position" in refused(spoil)
 
 
 def test_a_drive_that_keeps_another_value() -> None:
     def spoil(peers: CanopenDevices) -> None:
-        read = drive(peers).read
-        peers.nodes["Z"].device.read = (  # type: ignore[method-assign]
-            lambda index, sub: 0xFFFFFFFF if index == od.WINDOW else read(index, sub)
-        )
+        says(peers, "Z", {(od.WINDOW, 0): 0xFFFFFFFF})
 
     assert "object 6065:0 stays at 4294967295 instead of 1600" in refused(spoil)
 
@@ -161,15 +155,10 @@ def test_a_drive_that_does_not_come_on_is_named(bench: CanBench) -> None:
 
 
 def test_a_mode_that_is_not_taken_keeps_the_drives_off(bench: CanBench) -> None:
-    bench.peers.nodes["X"].device.read = _mode_stays(bench)  # type: ignore[method-assign]
+    says(bench.peers, "X", {(od.MODE_SHOWN, 0): 1})
     with pytest.raises(DriverError, match="X is"):
         bench.machine.axes.enable(True)
     assert not bench.machine.axes.sample().enabled
-
-
-def _mode_stays(bench: CanBench) -> Callable[[int, int], int | None]:
-    read = bench.peers.plant.drives["X"].read
-    return lambda index, sub: 1 if index == od.MODE_SHOWN else read(index, sub)
 
 
 def test_a_fault_is_told_in_words_and_cleared_without_power(bench: CanBench) -> None:
@@ -195,13 +184,13 @@ def test_a_fault_is_told_in_words_and_cleared_without_power(bench: CanBench) -> 
     assert axes.sample().enabled
 
 
-def test_a_fault_that_stays_is_told_again(bench: CanBench) -> None:
+def test_a_fault_that_stays_is_told_again(bench: CanBench, monkeypatch: pytest.MonkeyPatch) -> None:
     axes, power = bench.machine.axes, bench.peers.plant.drives["Z"].power
     bench.peers.machine.drive_fault("Z")
     bench.run(0.1)
     assert "Z: voltage" in axes.sample().fault or "Z: temperature" in axes.sample().fault
     control = power.control
-    power.control = lambda word: control(word & ~0x80)  # type: ignore[method-assign]
+    monkeypatch.setattr(power, "control", lambda word: control(word & ~0x80))
     with pytest.raises(DriverError, match="Z: the drive keeps its fault"):
         axes.clear_fault()
 
@@ -239,10 +228,7 @@ def told_by(machine: Machine, values: dict[tuple[int, int], int]) -> str:
     """Why a machine is refused whose X says these values."""
 
     def spoil(peers: CanopenDevices) -> None:
-        read = drive(peers, "X").read
-        peers.nodes["X"].device.read = (  # type: ignore[method-assign]
-            lambda index, sub: values.get((index, sub), read(index, sub))
-        )
+        says(peers, "X", values)
 
     return refused(spoil, machine)
 

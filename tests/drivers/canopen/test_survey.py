@@ -73,12 +73,17 @@ def test_a_node_of_another_kind_is_named_with_both_profiles() -> None:
     assert not found["X"].trouble
 
 
-def test_asking_leaves_no_heartbeat_that_somebody_could_miss() -> None:
+def test_asking_leaves_no_heartbeat_that_somebody_could_miss(monkeypatch: pytest.MonkeyPatch) -> None:
     clock, machine = StepClock(), can_machine()
     peers = canopen_peers(machine, clock)
     heard: list[int] = []
     take = peers.nodes["X"].take
-    peers.nodes["X"].take = lambda cob, data: (heard.append(cob), take(cob, data))[1]  # type: ignore[method-assign]
+
+    def noted(cob: int, data: bytes) -> None:
+        heard.append(cob)
+        take(cob, data)
+
+    monkeypatch.setattr(peers.nodes["X"], "take", noted)
     try:
         survey(canopen_config(machine), clock, peers.pump)
     finally:

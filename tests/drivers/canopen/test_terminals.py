@@ -81,6 +81,7 @@ def test_a_spindle_load_is_told_in_per_cent() -> None:
         for _ in range(300):
             bench.tick()
         load = bench.machine.io.snapshot().spindle_load
+        assert load is not None
         assert load == pytest.approx(bench.peers.plant.spindle.load, abs=1.6)  # 1 % of the word
         assert load > 1.6
     finally:

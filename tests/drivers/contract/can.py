@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping
+from dataclasses import replace
 from functools import partial
 from typing import ClassVar
 
@@ -11,11 +11,11 @@ import can
 
 from app.compose.canopen_backend import canopen_machine
 from core.machine.machine_model import Machine
-from core.ports import ALL_UNKNOWN, DriverError, MachinePorts, Unknown
+from core.ports import ALL_UNKNOWN, DriverError, Unknown
 from drivers.canopen.canopen_machine import CanopenMachine
 from drivers.feeder.feeder_line import Line, Link, cleared
 from drivers.feeder.feeder_ports import feeder_ports
-from drivers.feeder.feeder_server import Feeder
+from drivers.feeder.feeder_server import Driven, Feeder
 from drivers.lookalikes.plant_hands import PlantHands
 from drivers.reopening import Opening
 from tests.drivers.canopen.bench import CanBench, can_machine, cyclic
@@ -159,28 +159,9 @@ class Interpolated(Csp):
         return cyclic("ip", *changes, absolute=absolute)
 
 
-@dataclass
-class CanDriven:
-    """The bus as the feeder owns it."""
-
-    machine: CanopenMachine
-    hands: object | None = None
-
-    @property
-    def ports(self) -> MachinePorts:
-        return self.machine.ports
-
-    def tick(self) -> None:
-        self.machine.tick()
-
-    def wake(self) -> float | None:
-        return self.machine.wake()
-
-    def notes(self) -> Sequence[str]:
-        return self.machine.notes()
-
-    def close(self) -> None:
-        """The bench does."""
+def bus_driven(machine: CanopenMachine) -> Driven:
+    """The bus as the feeder owns it; the bench closes it."""
+    return Driven(machine.ports, machine.tick, close=lambda: None, wake=machine.wake, notes=machine.notes)
 
 
 class FedCanopen(Canopen):
@@ -203,7 +184,7 @@ class FedCanopen(Canopen):
     def __init__(self, *, homing: bool = False, turns: bool = False) -> None:
         super().__init__(homing=homing, turns=turns)
         self._mended = False
-        self.feeder = Feeder(CanDriven(self.bench.machine))
+        self.feeder = Feeder(bus_driven(self.bench.machine))
         self.link = BrokenLink(self.feeder)
         self.ports = feeder_ports(Line(self.link, self.clock, self._again))
 
@@ -223,7 +204,7 @@ class FedCanopen(Canopen):
                 raise DriverError("the feeder's process does not come up", "feeder-gone")
             self.bench.machine.bus.close()
             self.bench.machine = canopen_machine(self.machine, self.clock, self.peers.pump)
-            self.feeder = Feeder(CanDriven(self.bench.machine))
+            self.feeder = Feeder(bus_driven(self.bench.machine))
             self.link = BrokenLink(self.feeder)
             return cleared(self.link)
 

@@ -12,6 +12,7 @@ from core.ports import ALL_UNKNOWN
 from drivers.clocks import StepClock
 from drivers.grblhal.grblhal_machine import GrblMachine
 from drivers.lookalikes.grblhal_firmware import Firmware
+from drivers.lookalikes.spindle_motor import SpindleMotor
 from drivers.operator_station import PanelStation
 from tests.drivers.contract.rig import Fault, Rig
 from tests.drivers.contract.world import Readings
@@ -88,13 +89,18 @@ class GrblWorld:
         self._panel.release_left()
         self._panel.release_right()
 
+    @property
+    def _motor(self) -> SpindleMotor:
+        assert isinstance(self._peer.spindle, SpindleMotor)
+        return self._peer.spindle
+
     def press_estop(self) -> None:
         """Its pin, its alarm, and the relay of the spindle."""
         self.set_input("estop", True)
         self._peer.turn(0.0)
         self._peer.outputs.update(flood=False, mist=False)
         self._peer.raise_alarm(10)
-        self._peer.spindle.cut(self._peer.clock.now())
+        self._motor.cut(self._peer.clock.now())
 
     def release_estop(self) -> None:
         """Free."""
@@ -115,11 +121,11 @@ class GrblWorld:
 
     def spindle_ignores_stop(self) -> None:
         """Its inverter no longer obeys."""
-        self._peer.spindle.faults.ignores_stop = True
+        self._motor.faults.ignores_stop = True
 
     def spindle_dies(self) -> None:
         """The belt slips."""
-        self._peer.spindle.faults.bog = 0.3
+        self._motor.faults.bog = 0.3
 
 
 class Grblhal(Rig):

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from typing import ClassVar
 
 from app.compose.machine_files import load_machine
@@ -16,7 +15,7 @@ from drivers.feeder.feeder_line import Line, Link, cleared
 from drivers.feeder.feeder_links import LoopLink
 from drivers.feeder.feeder_messages import Message
 from drivers.feeder.feeder_ports import feeder_ports
-from drivers.feeder.feeder_server import Feeder
+from drivers.feeder.feeder_server import Driven, Feeder
 from drivers.lookalikes.plant_hands import PlantHands
 from drivers.reopening import Opening
 from tests.drivers.contract.rig import Fault, Rig
@@ -116,28 +115,9 @@ class BrokenLink(LoopLink):
         return answer
 
 
-@dataclass
-class SimDriven:
+def simulation_driven(ports: MachinePorts, hands: object | None) -> Driven:
     """The simulation as the feeder owns it."""
-
-    ports: MachinePorts
-    hands: object | None
-
-    def tick(self) -> None:
-        self.ports.axes.sample()
-
-    def wake(self) -> None:
-        """Every few milliseconds."""
-
-    def notes(self) -> tuple[str, ...]:
-        return ()
-
-    def idle(self, _asleep: bool) -> float:
-        """It cannot tell."""
-        return 0.0
-
-    def close(self) -> None:
-        """Nothing to let go."""
+    return Driven(ports, tick=ports.axes.sample, close=lambda: None, hands=hands)
 
 
 # The feeder ends the queue of a control that it no longer hears, and then takes the power: 1.0 s of way here.
@@ -171,7 +151,7 @@ class Fed(Simulated):
     def __init__(self, machine: Machine | None = None, *, homing: bool = False) -> None:
         super().__init__(machine, homing=homing)
         self.inner, self._mended = self.ports, False
-        self.feeder = Feeder(SimDriven(self.ports, self.hands))
+        self.feeder = Feeder(simulation_driven(self.ports, self.hands))
         self.link = BrokenLink(self.feeder)
         self.ports = feeder_ports(Line(self.link, self.clock, self._again))
 
@@ -186,7 +166,7 @@ class Fed(Simulated):
         def begun() -> Link:
             if not self._mended:
                 raise DriverError("the feeder's process does not come up", "feeder-gone")
-            self.feeder = Feeder(SimDriven(self.inner, self.hands))
+            self.feeder = Feeder(simulation_driven(self.inner, self.hands))
             self.link = BrokenLink(self.feeder)
             return cleared(self.link)
 

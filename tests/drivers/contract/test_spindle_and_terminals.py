@@ -2,17 +2,23 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import pytest
 
-from core.ports import DriverError
+from core.ports import DriverError, Spindle
 from tests.drivers.contract.rig import Rig
+
+
+def _turns_at(spindle: Spindle, rpm: float) -> bool:
+    return abs(spindle.speed() - rpm) < 2.0
 
 
 def test_the_spindle_turns_both_ways_and_stops(rig: Rig) -> None:
     spindle = rig.ports.spindle
     for rpm in (-1200.0, 600.0, 1500.0, 0.0):
         spindle.run(rpm)
-        rig.until(lambda rpm=rpm: abs(spindle.speed() - rpm) < 2.0, 6.0)  # type: ignore[misc]
+        rig.until(partial(_turns_at, spindle, rpm), 6.0)
         rig.run(0.3)
         assert rig.world.rpm() == pytest.approx(rpm, abs=1.0)
     spindle.run(600.0)

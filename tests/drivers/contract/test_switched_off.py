@@ -174,7 +174,9 @@ def test_outputs_that_fell_with_a_feeder_that_stood_still_do_not_come_back(
     rig.close()
 
 
-def test_what_happens_in_the_very_tick_of_the_stall_moves_nothing_either(control: Control) -> None:
+def test_what_happens_in_the_very_tick_of_the_stall_moves_nothing_either(
+    control: Control, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Frozen between the look and the setpoints: the feeder refuses them until the control knows."""
     if not control.rig.watched:
         pytest.skip("nothing switches off by itself")
@@ -188,9 +190,9 @@ def test_what_happens_in_the_very_tick_of_the_stall_moves_nothing_either(control
         look()
         away(control, SILENT)
 
-    control.executor._look = frozen  # type: ignore[method-assign]
-    control.run(0.2)
-    control.executor._look = look  # type: ignore[method-assign]
+    with monkeypatch.context() as stalled:
+        stalled.setattr(control.executor, "_look", frozen)
+        control.run(0.2)
     control.run(1.0)
     assert control.world.place() == pytest.approx(place, abs=STILL)
     assert control.state is State.HOLD

@@ -11,7 +11,7 @@ from drivers.feeder.feeder_line import Line
 from drivers.feeder.feeder_ports import feeder_ports
 from drivers.feeder.feeder_server import Feeder
 from drivers.simulated.simulated_machine import Simulation
-from tests.drivers.contract.simulated import BrokenLink, SimDriven
+from tests.drivers.contract.simulated import BrokenLink, simulation_driven
 from tests.executor.rig import Rig
 from tests.executor.test_signal_lamps import tower, with_lamps
 from tests.executor.test_threads import EXTERNAL
@@ -26,7 +26,7 @@ class FedRig(Rig):
     def __post_init__(self) -> None:
         super().__post_init__()
         plain = self.sim
-        self.feeder = Feeder(SimDriven(plain.ports, plain.machine))
+        self.feeder = Feeder(simulation_driven(plain.ports, plain.machine))
         self.link = BrokenLink(self.feeder)
         ports = feeder_ports(Line(self.link, self.clock))
         self.sim = Simulation(ports, plain.machine)

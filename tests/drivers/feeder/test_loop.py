@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import ctypes
+import gc
+import os
 import resource
+import select
 import signal
 import socket
 import threading
@@ -24,7 +28,7 @@ from drivers.feeder.feeder_messages import NOTHING, Message, packed
 from drivers.feeder.feeder_ports import feeder_ports
 from drivers.feeder.feeder_server import Driven, Feeder
 from drivers.simulated.simulated_machine import Simulation, build_simulation
-from tests.drivers.contract.simulated import SimDriven
+from tests.drivers.contract.simulated import simulation_driven
 from tests.drivers.machines import CONFIG
 
 
@@ -34,7 +38,7 @@ def served() -> Iterator[tuple[socket.socket, Simulation, threading.Thread]]:
     ours, theirs = socket.socketpair()
     clock = RealClock()
     sim = build_simulation(CONFIG, clock)
-    thread = threading.Thread(target=serve, args=(theirs, SimDriven(sim.ports, sim.machine), []))
+    thread = threading.Thread(target=serve, args=(theirs, simulation_driven(sim.ports, sim.machine), []))
     thread.start()
     yield ours, sim, thread
     ours.close()
@@ -83,15 +87,12 @@ def test_a_mistake_in_the_loop_leaves_the_drives_without_power() -> None:
     ours, theirs = socket.socketpair()
     closed: list[bool] = []
 
-    class Broken(SimDriven):
-        def tick(self) -> None:
-            raise RuntimeError("a mistake")
+    def broken() -> None:
+        raise RuntimeError("a mistake")
 
-        def close(self) -> None:
-            closed.append(True)
-
+    driven = Driven(sim.ports, tick=broken, close=lambda: closed.append(True), hands=sim.machine)
     with ours, theirs, pytest.raises(RuntimeError, match="a mistake"):
-        serve(theirs, Broken(sim.ports, sim.machine), [])
+        serve(theirs, driven, [])
     assert closed == [True]
 
 
@@ -118,10 +119,10 @@ def test_memory_is_locked_as_far_as_it_cannot_run_out(
             asked.append(how)
             return 0
 
-    monkeypatch.setattr(feeder_loop.ctypes, "CDLL", lambda *_a, **_k: Library())
-    monkeypatch.setattr(feeder_loop.os, "geteuid", lambda: user)
+    monkeypatch.setattr(ctypes, "CDLL", lambda *_a, **_k: Library())
+    monkeypatch.setattr(os, "geteuid", lambda: user)
     monkeypatch.setattr(resource, "getrlimit", lambda _which: (limit, limit))
-    monkeypatch.setattr(feeder_loop.gc, "freeze", lambda: None)
+    monkeypatch.setattr(gc, "freeze", lambda: None)
     assert feeder_loop.keep_memory() == told
     assert asked == [flags]
 
@@ -130,7 +131,7 @@ def test_what_the_system_refuses_is_told(monkeypatch: pytest.MonkeyPatch) -> Non
     def refused(*_: object) -> None:
         raise PermissionError(1, "Operation not permitted")
 
-    monkeypatch.setattr(feeder_loop.os, "sched_setscheduler", refused)
+    monkeypatch.setattr(os, "sched_setscheduler", refused)
     (told,) = feeder_loop.real_time()
     assert "without real-time priority (Operation not permitted)" in told
 
@@ -284,7 +285,7 @@ def test_a_round_that_is_soon_due_comes_with_the_look_of_a_control_that_sleeps(
             return ([theirs], [], [])
 
         said = [True]
-        monkeypatch.setattr(feeder_loop.select, "select", waited)
+        monkeypatch.setattr(select, "select", waited)
         ours.sendall(packed(Message({"do": "look"}, NOTHING)))
         due = ear.listen(left, punctual=punctual)
         assert due == pytest.approx(0.0 if early else left, abs=1e-5)

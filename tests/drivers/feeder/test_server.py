@@ -18,7 +18,7 @@ from drivers.feeder.feeder_ports import feeder_ports
 from drivers.feeder.feeder_server import PERIOD, RESTS, Driven, Feeder, TripGuard, act
 from drivers.simulated.simulated_machine import Simulation, build_simulation
 from drivers.wakeup import Bell
-from tests.drivers.contract.simulated import SimDriven
+from tests.drivers.contract.simulated import simulation_driven
 from tests.drivers.machines import CONFIG, ramp
 from tests.drivers.test_gear import cam
 
@@ -44,7 +44,7 @@ class Bench:
 def bench() -> Bench:
     clock = StepClock()
     sim = build_simulation(CONFIG, clock)
-    feeder = Feeder(SimDriven(sim.ports, sim.machine), ["without real-time priority"])
+    feeder = Feeder(simulation_driven(sim.ports, sim.machine), ["without real-time priority"])
     line = Line(LoopLink(feeder), clock)
     return Bench(sim, clock, feeder, line, feeder_ports(line))
 
@@ -105,7 +105,7 @@ def test_a_driver_without_samples_has_none_through_the_feeder_either() -> None:
     clock = StepClock()
     sim = build_simulation(CONFIG, clock)
     plain = dataclasses.replace(sim.ports, samples=None)
-    ports = feeder_ports(Line(LoopLink(Feeder(SimDriven(plain, sim.machine))), clock))
+    ports = feeder_ports(Line(LoopLink(Feeder(simulation_driven(plain, sim.machine))), clock))
     ports.axes.sample()
     assert ports.samples is None
 
@@ -275,7 +275,7 @@ def test_an_order_that_takes_long_is_no_silence(bench: Bench, monkeypatch: pytes
 
 
 def test_an_output_that_must_be_renewed_falls_while_the_slides_still_move(bench: Bench) -> None:
-    feeder = Feeder(SimDriven(bench.sim.ports, bench.sim.machine), refresh={"coolant": 0.3})
+    feeder = Feeder(simulation_driven(bench.sim.ports, bench.sim.machine), refresh={"coolant": 0.3})
     bench.feeder = feeder
     working(bench)
     feeder.handle(Message({"do": "look"}, NOTHING))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Callable
+from typing import Any
 
 import resources
 from app.compose.grblhal_backend import grblhal_config
@@ -21,7 +22,8 @@ from core.proving.prove_program import prove
 from drivers.clocks import StepClock
 from drivers.grblhal.grblhal_machine import GrblMachine
 from drivers.grblhal.grblhal_wire import WireLostError
-from drivers.lookalikes.grblhal_firmware import Firmware, Quirks
+from drivers.lookalikes.grblhal_firmware import Firmware
+from drivers.lookalikes.grblhal_settings import Quirks
 
 TICK = 0.01
 SHIPPED = resources.machine_file("gt75-grblhal.toml")
@@ -157,5 +159,5 @@ class GrblBench:
         return "; ".join(f"{alarm.code}: {alarm.detail or alarm.cause}" for alarm in self.shot.alarms)
 
 
-def quirky(**changes: object) -> Quirks:
-    return dataclasses.replace(Quirks(), **changes)  # type: ignore[arg-type]
+def quirky(**changes: Any) -> Quirks:
+    return dataclasses.replace(Quirks(), **changes)

@@ -68,7 +68,7 @@ def both(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Both]:
     one = inverter()
     firmware = Firmware(RealClock(), quirky(encoder=request.param == "encoder"))
     belt = Belt(one)
-    firmware.spindle = belt  # type: ignore[assignment]  what it asks of a motor
+    firmware.spindle = belt
     end, over = TcpEnd("127.0.0.1", 0), threading.Event()
     peer = threading.Thread(target=serve, args=(end, firmware, lambda: not over.is_set()))
     with ExitStack() as stack:

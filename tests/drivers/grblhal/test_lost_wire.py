@@ -99,10 +99,12 @@ def test_a_reset_by_its_button_keeps_the_place_where_it_does_not_stand_at_0() ->
     assert bench.shot.actual[1] < -8.0
 
 
-def test_firmware_that_knows_no_question_for_its_modes_is_taken_by_its_place() -> None:
+def test_firmware_that_knows_no_question_for_its_modes_is_taken_by_its_place(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     bench = pulled(GrblBench())
     told = bench.peer.program.told
-    bench.peer.program.told = lambda: "" if bench.wire.sent[-1:] == b"\x83" else told()  # type: ignore[method-assign]
+    monkeypatch.setattr(bench.peer.program, "told", lambda: "" if bench.wire.sent[-1:] == b"\x83" else told())
     bench.wire.cut = False
     bench.post(Reset())
     bench.run(3.0)

@@ -196,7 +196,12 @@ def test_the_handwheel_moves_its_axis_click_by_click(homed: LiveLathe) -> None:
 def test_a_tool_is_touched_off_where_the_setter_stands(homed: LiveLathe) -> None:
     homed.run("G90G94F100\nG00X-.05Z0\nM30\n")
     home = feedback(homed, "x-motor.out") - homed.shot.actual[0]
-    homed.until(lambda shot: homed.executor.post(Touch("X", -1, 0.5, 1)) is None and shot.touched is not None)
+
+    def touched_under_a_lease(shot: Snapshot) -> bool:
+        homed.executor.post(Touch("X", -1, 0.5, 1))
+        return shot.touched is not None
+
+    homed.until(touched_under_a_lease)
     touched = homed.shot.touched
     assert touched is not None
     assert touched.place is not None, touched.why

@@ -100,12 +100,15 @@ class ModbusServer:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         assert self._server is not None
-        asyncio.run_coroutine_threadsafe(self._server.shutdown(), self._loop)
+        asyncio.run_coroutine_threadsafe(self._shut(self._server), self._loop)
         self._thread.join(WAIT)
         self._loop.close()
 
     def _run(self) -> None:
         self._loop.run_until_complete(self._serve())
+
+    async def _shut(self, server: ModbusSerialServer) -> None:
+        await server.shutdown()  # type: ignore[no-untyped-call]  # pymodbus has types elsewhere
 
     async def _serve(self) -> None:
         self._server = ModbusSerialServer(self._device(), port=self._port, baudrate=9600)
@@ -132,9 +135,11 @@ class ModbusServer:
         """Reads show the memory, writes go there; a write's answer is read from what it has left."""
         try:
             if set_values is not None:
-                write = self._memory.set_coil if function_code in (5, 15) else self._memory.set_word
                 for n, value in enumerate(set_values):
-                    write(address + n, int(value))
+                    if function_code in (5, 15):
+                        self._memory.set_coil(address + n, bool(value))
+                    else:
+                        self._memory.set_word(address + n, int(value))
             elif function_code in (3, 4):
                 for n in range(address, address + count):
                     current_registers[n - start_address] = self._memory.word(n)

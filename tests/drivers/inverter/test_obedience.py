@@ -8,8 +8,15 @@ from drivers.inverter.inverter_family import Look
 from drivers.inverter.inverter_obedience import OBEYS_WITHIN, PRESS, Obedience
 
 
-def look(output: float, setpoint: float = 20.0, **words: bool) -> Look:
-    return Look(output, setpoint, **{"run": True, "reverse": False, "asked_reverse": False, **words})
+def look(
+    output: float,
+    setpoint: float = 20.0,
+    *,
+    run: bool = True,
+    reverse: bool = False,
+    asked_reverse: bool = False,
+) -> Look:
+    return Look(output, setpoint, run, reverse, asked_reverse)
 
 
 STOOD = look(0.0, 0.0, run=False)

@@ -30,6 +30,7 @@ class FakeAgent:
     bad: list[str] = field(default_factory=list)
     lines: list[str] = field(default_factory=list)
     interval: float | None = None
+    _rest: bytes = field(default=b"", init=False)  # of a line that has not come whole
 
     def __post_init__(self) -> None:
         self.kinds = kinds_of(self.model)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import socket
+from functools import partial
 
 import pytest
 
@@ -216,12 +217,16 @@ def test_there_is_room_for_so_many_and_no_more(bench: Bench) -> None:
     bench.agent()
 
 
+def _serves(bench: Bench, count: int) -> bool:
+    return bench.adapter.agents == count
+
+
 def test_who_pings_takes_the_place_of_who_never_did(bench: Bench) -> None:
     """Half-open connections and port scanners must not lock the agents out."""
     silent = []
     for taken in range(1, MOST + 1):
         silent.append(socket.create_connection(bench.adapter.address, 5.0))
-        bench.until(lambda taken=taken: bench.adapter.agents == taken)  # type: ignore[misc]
+        bench.until(partial(_serves, bench, taken))
     agents = [bench.agent() for _ in range(MOST)]
     assert all(agent.values["execution"] == "READY" for agent in agents)
     assert bench.adapter.agents == MOST

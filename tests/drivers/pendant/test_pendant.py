@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Callable
 
 import pytest
 
@@ -345,11 +346,12 @@ def test_its_thread_reads_and_ends() -> None:
 
 def test_a_control_at_rest_hears_at_once_that_something_was_pressed_turned_or_unplugged() -> None:
     bench = Bench()
-    for act in (
+    acts: tuple[Callable[[], None], ...] = (
         lambda: bench.device.key(BTN_A, True),
         lambda: bench.device.turn(1),
         bench.device.pull,
-    ):
+    )
+    for act in acts:
         before = bench.rung
         bench.look()
         assert bench.rung == before  # nothing has happened

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import struct
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -16,8 +17,8 @@ WANTED = {"hold": Control(KEY, 0x131), "handwheel": Control(REL, 7)}
 ABLE = frozenset({(KEY, 0x130), (KEY, 0x131), (REL, 7)})
 
 
-def entry(**said: object) -> DeviceEntry:
-    plain: dict[str, object] = {
+def entry(**said: Any) -> DeviceEntry:
+    plain: dict[str, Any] = {
         "node": "event3",
         "name": "Shop Pendant",
         "numbers": "0b33:0030",
@@ -26,7 +27,7 @@ def entry(**said: object) -> DeviceEntry:
         "bluetooth": False,
         "able": ABLE,
     }
-    return DeviceEntry(**(plain | said))  # type: ignore[arg-type]
+    return DeviceEntry(**(plain | said))
 
 
 def in_sysfs(

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from drivers.clocks import StepClock
 from drivers.serial_line import WireError
 
@@ -21,6 +23,7 @@ class OtherSide:
         self.damaged = 0
         self.closed = self.obeys = False
         self.largest = 0  # chunk
+        self.before_listening: Callable[[], object] = lambda: None
         self._out = 0.0  # when the last byte will have gone out
 
     def offer(self, data: bytes) -> int:
@@ -36,6 +39,7 @@ class OtherSide:
         self.offer(data)
 
     def receive(self, limit: float) -> bytes:
+        self.before_listening()
         self._look()
         until = self.clock.now() + limit
         if self.script and self.script[0][0] <= until:

@@ -42,13 +42,11 @@ def test_a_hold_in_a_line_is_waited_for_and_told() -> None:
     side = OtherSide(StepClock(), holds=(0.5, 30.0))
     job = sending(side)
     told: set[str] = set()
-    held = side.receive
 
-    def look(limit: float) -> bytes:
+    def look() -> None:
         told.add(job.reach.what)
-        return held(limit)
 
-    side.receive = look
+    side.before_listening = look
     job.run()
     assert bytes(side.taken) == DATA
     assert "held" in told
@@ -117,14 +115,12 @@ def test_cable_out_while_sending(at: float) -> None:
 def test_giving_up_while_it_is_held() -> None:
     side = OtherSide(StepClock(), [(20.0, b"")], holds=(0.2, 1e9))
     job = sending(side)
-    come = side.receive
 
-    def cancel_late(limit: float) -> bytes:
+    def cancel_late() -> None:
         if side.clock.now() > 5.0:
             job.cancel()
-        return come(limit)
 
-    side.receive = cancel_late
+    side.before_listening = cancel_late
     with pytest.raises(CancelledError):
         job.run()
     assert side.clock.now() < 5.3
@@ -163,16 +159,15 @@ def test_a_disturbance_before_the_program_does_not_end_the_asking() -> None:
     ],
 )
 def test_what_is_heard_before_a_program_is_told(come: bytes, heard: str, what: str) -> None:
-    side, told = OtherSide(StepClock(), [(1.0, come), (4.0, DATA)]), []
+    side = OtherSide(StepClock(), [(1.0, come), (4.0, DATA)])
+    told: list[tuple[str, str]] = []
     job = receiving(side)
-    listens = side.receive
 
-    def look(limit: float) -> bytes:
+    def look() -> None:
         if side.clock.now() > 2.0 and not told:
             told.append((job.reach.heard, job.reach.what))
-        return listens(limit)
 
-    side.receive = look
+    side.before_listening = look
     assert job.run().text == TEXT
     assert told == [(heard, what)]
 
@@ -206,13 +201,11 @@ def test_a_lost_last_percent_is_refused() -> None:
 def test_a_damaged_character_ends_it_at_once() -> None:
     side = OtherSide(StepClock(), [(1.0, DATA[:100]), (1.2, DATA[100:])])
     job = receiving(side)
-    come = side.receive
 
-    def spoil(limit: float) -> bytes:
+    def spoil() -> None:
         side.damaged = int(side.clock.now() >= 1.1)
-        return come(limit)
 
-    side.receive = spoil
+    side.before_listening = spoil
     with pytest.raises(IncompleteError, match="a damaged character in line"):
         job.run()
 
@@ -232,14 +225,12 @@ def test_cable_out_while_receiving(at: float) -> None:
 def test_giving_up_while_receiving() -> None:
     side = OtherSide(StepClock(), [(1.0, DATA[:100])])
     job = receiving(side)
-    come = side.receive
 
-    def cancel_late(limit: float) -> bytes:
+    def cancel_late() -> None:
         if side.clock.now() > 2.0:
             job.cancel()
-        return come(limit)
 
-    side.receive = cancel_late
+    side.before_listening = cancel_late
     with pytest.raises(CancelledError):
         job.run()
     assert side.clock.now() < 2.2
