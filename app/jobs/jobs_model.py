@@ -27,7 +27,6 @@ from core.store.program_settings import notes_key
 from core.store.store_errors import StoreError
 
 NONE_YET = "NO JOB WAITS: F3 ADDS THE PROGRAM ON THE DESK, F10 OF THE LIST OF PROGRAMS (F1, F6) ANY OTHER"
-MARK_ONE = "MARK A JOB FIRST"
 _WIDE = 46  # letters of a cell
 
 
@@ -178,7 +177,9 @@ class JobsModel:
     # --- keys ----------------------------------------------------------------------------------------
 
     def keys(self) -> Mapping[str, Key]:
-        """Function keys of this moment."""
+        """Function keys of this moment; none while something is asked, which Return and Esc end."""
+        if self.asking:
+            return {}
         return {
             "F3": Key("ADD", self.add),
             "F4": Key("COUNT", partial(self._ask, "count")),
@@ -192,7 +193,7 @@ class JobsModel:
     def may_load(self) -> bool:
         """Whether the marked job can be put on the desk; why not is said."""
         if self.job is None:
-            self.desk.say(MARK_ONE)
+            self.desk.say(NONE_YET)
             return False
         return self.desk.may_choose()
 
@@ -220,7 +221,7 @@ class JobsModel:
     def _ask(self, what: str) -> None:
         job = self.job
         if job is None:
-            self.desk.say(MARK_ONE)
+            self.desk.say(NONE_YET)
         elif what == "note" and self.desk.snapshot().state in UNDER_WAY:
             self.desk.say("NOTES ARE TYPED BETWEEN CYCLES: LETTERS STOP THE MACHINE WHILE IT RUNS")
         else:
@@ -232,7 +233,7 @@ class JobsModel:
         """The marked job one place up or down the queue."""
         job, to = self.job, self.marked + 1 + by
         if job is None:
-            self.desk.say(MARK_ONE)
+            self.desk.say(NONE_YET)
         elif 1 <= to <= len(self.jobs):
             self.desk.clear()
             self._write(
@@ -248,7 +249,7 @@ class JobsModel:
         """The marked job goes, after asking; what was counted of its program stays."""
         job = self.job
         if job is None:
-            self.desk.say(MARK_ONE)
+            self.desk.say(NONE_YET)
             return
         words = tr("PRESS Y TO TAKE {program} OUT OF THE QUEUE, {made} OF {wanted} MADE; ESC KEEPS IT")
         words = words.format(program=job.program, made=job.made, wanted=job.wanted)

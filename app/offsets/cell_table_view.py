@@ -114,7 +114,8 @@ class CellPanel(Panel):
                 bold=offset is not None,
                 raw=text,
             )
-            self.place(cell, partial(self._choose, row, column))
+            spot = cell.united(box.adjusted(0, 0, cell.left() - box.right(), 0)) if column == 0 else cell
+            self.place(spot, partial(self._choose, row, column))  # who touches its number means its row
 
 
 _WIDE = {"name": 1.7, "remark": 2.0, "length": 1.35, "teeth": 0.65, "point": 0.9, "stops": 0.85}  # columns

@@ -129,7 +129,8 @@ class ToolTable(Panel):
             self._cell(painter, cell, number, name)
             if here and at == model.column:
                 painter.box(cell.adjusted(0.2 * u, 0.1 * u, -0.2 * u, -0.1 * u), "accent", 0.24, "")
-            self.place(cell, partial(self.choose, number, at))
+            spot = cell.united(margin) if at == 0 else cell  # who touches its number means its row
+            self.place(spot, partial(self.choose, number, at))
         if unset and number != model.fields.new.number:
             empty = QRectF(columns["x"][0] + u, row.y(), 14 * u, row.height())
             painter.write(empty, not_set(), 1.9 * self._scale(row), "soft", bold=False)

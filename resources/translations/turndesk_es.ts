@@ -6835,11 +6835,6 @@
     </message>
     <message>
       <location filename="app/jobs/jobs_model.py" />
-      <source>MARK A JOB FIRST</source>
-      <translation>MARQUE ANTES UN TRABAJO</translation>
-    </message>
-    <message>
-      <location filename="app/jobs/jobs_model.py" />
       <source>NO JOB IS DONE YET: THERE IS NOTHING TO CLEAR</source>
       <translation>NINGÚN TRABAJO ESTÁ HECHO: NO HAY NADA QUE VACIAR</translation>
     </message>

@@ -267,3 +267,20 @@ def test_a_job_whose_program_is_not_on_the_desk_is_proved_and_loaded_like_any_ot
     day.sees(lambda: model(day).sheet(day.shot).rows[0].cells[4] == "TOOLS COMPLETE")
     loaded(day, "peg.nc")
     assert day.desk.counter.words == "0/3"
+
+
+def test_an_empty_queue_says_how_a_job_is_added(day: Day) -> None:
+    opened(day)
+    day.key(Key.Key_F4)
+    assert day.prompt.startswith("NO JOB WAITS: F3 ADDS THE PROGRAM ON THE DESK")
+
+
+def test_what_is_asked_of_a_job_is_answered_before_another_key_acts(day: Day) -> None:
+    """F4 while the count of a new job is typed had asked for the count of the marked one."""
+    added(day, "cap.nc", "5")
+    day.key(Key.Key_F3)
+    assert model(day).sheet(day.shot).question == "HOW MANY PARTS OF peg.nc?"
+    assert model(day).keys() == {}
+    day.key(Key.Key_F4)
+    day.enter("2")
+    day.sees(lambda: rows(day) == [("cap.nc\n", "0/5"), ("peg.nc\n", "0/2")])

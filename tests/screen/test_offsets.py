@@ -351,3 +351,8 @@ def test_fingers_leaf_through_the_tools_and_choose_a_cell(hands: Hands, store: S
     hands.sees(lambda: (tools_of(hands).model.number, table.top) == (6, 1))
     touch(hands, table, 2 + 8 * 4 + 4)  # the last row that is shown, wear X
     hands.sees(lambda: tools_of(hands).asked.asked.question == "T6  WEAR X Ø?")
+    number, _press = table._places[2 + 8 * 1]
+    QTest.mouseClick(
+        table, Qt.MouseButton.LeftButton, pos=QPoint(int(number.left()) + 9, int(number.center().y()))
+    )
+    hands.sees(lambda: (tools_of(hands).model.number, tools_of(hands).model.column) == (3, 0))
