@@ -7,6 +7,7 @@ stood behind it, or are refused where the command has no such option.
 from __future__ import annotations
 
 import argparse
+import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, NoReturn
@@ -69,6 +70,12 @@ class Parser(argparse.ArgumentParser):
             meant = f"; did you mean {near}?" if near else ""
             self.error(f"unrecognized arguments: {' '.join(rest)}{meant}")
         return found
+
+    def print_help(self, file: Any = None) -> None:
+        """Write the help, or raise the OSError that argparse would drop: it cannot be written."""
+        out = file or sys.stdout
+        out.write(self.format_help())
+        out.flush()
 
     def _all_options(self) -> list[str]:
         """Those of this parser and of every command and action below it."""

@@ -73,8 +73,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     """Run the command line; the exit status of interfaces.md: 0 done, 1 errors in the program, 2 usage."""
     argv = sys.argv[1:] if argv is None else argv
     gc.set_threshold(200_000)  # importing alone would collect a hundred times and find nothing
-    args = build_parser(_commands_for(argv)).parse_args(argv)
     try:
+        args = build_parser(_commands_for(argv)).parse_args(argv)
         with dropped_interrupt.kept():
             check_data_folder()
             status = _flushed(_dispatch(settled(args)))

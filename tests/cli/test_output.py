@@ -13,14 +13,15 @@ from core.file_placing import put_in_place
 
 
 @pytest.mark.skipif(not Path("/dev/full").is_char_device(), reason="no device here that is always full")
+@pytest.mark.parametrize("words", [["--version"], ["--help"], ["prove", "--help"]])
 def test_a_full_disk_behind_stdout_is_one_sentence(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    words: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     with Path("/dev/full").open("w") as full, monkeypatch.context() as patch:
         patch.setattr(sys, "stdout", full)
-        status = main(["--version"])
-    words = "turndesk: stdout cannot be written: No space left on device\n"
-    assert (status, capsys.readouterr().err) == (2, words)
+        status = main(words)
+    told = "turndesk: stdout cannot be written: No space left on device\n"
+    assert (status, capsys.readouterr().err) == (2, told)
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no pipes with names here")
