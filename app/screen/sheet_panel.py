@@ -63,11 +63,19 @@ class SheetPanel(Panel):
     @property
     def rows(self) -> int:
         """How many rows of the table fit into the panel; none where a question needs all of it."""
-        return max(0 if self.sheet.question else 1, self._fit(len(self._notes)))
+        fits = self._fit(len(self._notes))
+        if fits < len(self.sheet.rows):
+            fits = self._fit(len(self._notes), self._leaves)
+        return max(0 if self.sheet.question else 1, fits)
 
-    def _fit(self, notes: int) -> int:
-        foot = notes * NOTE + (self._asked if self.sheet.question else 0.0)
+    def _fit(self, notes: int, below: float = 0.0) -> int:
+        foot = notes * NOTE + (self._asked if self.sheet.question else 0.0) + below
         return int((self.height() / self.look.u - 4.0 - HEAD - foot) / self._high)
+
+    @property
+    def _leaves(self) -> float:
+        """Units that the keys of ``leaf`` take below the rows of a narrow table; else they stand beside."""
+        return self._leaf_size[1] / self.look.u + 0.6 if self._is_narrow(self.inside().width()) else 0.0
 
     @property
     def _notes(self) -> tuple[str, ...]:
@@ -98,8 +106,9 @@ class SheetPanel(Panel):
         self._follow()
         room = self.inside()
         row = QRectF(room.x(), room.y(), room.width(), HEAD * u)
-        body = QRectF(room.x(), row.bottom(), room.width(), self.rows * self._high * u)
         seen = (self.top, self.rows, len(sheet.rows))
+        below = self._leaves if self.rows < len(sheet.rows) else 0.0
+        body = QRectF(room.x(), row.bottom(), room.width(), (self.rows * self._high + below) * u)
         left = self.leaf(painter, body, seen, self.leaf_by) if self.rows else body
         row.setWidth(left.width())
         self._head(painter, row)

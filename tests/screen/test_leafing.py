@@ -204,6 +204,19 @@ def test_keys_that_leaf_fit_a_finger(above: QWidget) -> None:
         assert panel.area().contains(box)
 
 
+@pytest.mark.parametrize("wide", [300, 500])
+def test_keys_that_leaf_lie_over_no_row(above: QWidget, wide: int) -> None:
+    """Below the rows of a narrow table, as that of the analyses at 1024x600, beside those of a wide one."""
+    panel = SheetPanel(Look(DARK, SMALL), lambda _row: None, above)
+    panel.resize(wide, 300)
+    panel.show_sheet(replace(sheet_of(MANY), notes=("one", "two")))
+    keys = leaf_keys(panel)
+    rows = [box for box, _press in panel._places if box not in keys]
+    assert len(rows) == panel.rows > 1
+    assert not [row for row in rows for key in keys if row.intersects(key)]
+    assert all(panel.area().contains(key) for key in keys)
+
+
 def test_keys_that_leaf_stand_side_by_side_where_there_is_no_height(above: QWidget) -> None:
     panel = SheetPanel(Look(DARK, SMALL), lambda _row: None, above)
     panel.resize(500, 110)
