@@ -22,6 +22,7 @@ from app.screen.window_layout import FINGER
 ROW, HEAD, ASKED, NOTE = 4.0, 2.6, 5.4, 2.4  # units
 TALL = 6.0
 LAMP = 3.2
+_ROUNDING = 1e-6
 
 
 class SheetPanel(Panel):
@@ -44,11 +45,18 @@ class SheetPanel(Panel):
 
     @property
     def _high(self) -> float:
-        """Of a row, units: a fingertip, and on a large glass no more than 9 mm (a tall one 14)."""
-        look = self.look
-        return (
-            look.row(TALL, 14.0, touch=True) if self.sheet.tall else look.row(ROW, 9.0, touch=True)
-        ) / look.u
+        """Of a row, units: a fingertip, and on a large glass no more than 9 mm (a tall one 14).
+
+        Where fewer rows are than the glass has room for, they are as large as everything else on it.
+        """
+        own, mm = (TALL, 14.0) if self.sheet.tall else (ROW, 9.0)
+        share = self._room(len(self.sheet.notes)) / max(1, len(self.sheet.rows)) - _ROUNDING
+        return max(self.look.row(own, mm, touch=True) / self.look.u, min(own, share))
+
+    def _room(self, notes: int) -> float:
+        """Units of height for rows, beside so many lines of notes."""
+        foot = notes * NOTE + (self._asked if self.sheet.question else 0.0)
+        return self.height() / self.look.u - 4.0 - HEAD - foot
 
     @property
     def _asked(self) -> float:
@@ -69,8 +77,7 @@ class SheetPanel(Panel):
         return max(0 if self.sheet.question else 1, fits)
 
     def _fit(self, notes: int, below: float = 0.0) -> int:
-        foot = notes * NOTE + (self._asked if self.sheet.question else 0.0) + below
-        return int((self.height() / self.look.u - 4.0 - HEAD - foot) / self._high)
+        return int((self._room(notes) - below) / self._high)
 
     @property
     def _leaves(self) -> float:

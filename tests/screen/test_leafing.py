@@ -217,6 +217,22 @@ def test_keys_that_leaf_lie_over_no_row(above: QWidget, wide: int) -> None:
     assert all(panel.area().contains(key) for key in keys)
 
 
+@pytest.mark.parametrize(("count", "high", "fits"), [(8, 80.0, 15), (20, 60.4, 20), (60, 43.0, 28)])
+def test_few_rows_are_as_large_as_the_rest_of_a_large_glass(
+    above: QWidget, count: int, high: float, fits: int
+) -> None:
+    """96 dots an inch: 9 mm are 34 pixels, a fingertip 43; four units of 20 are 80, and 15 rows of them fit.
+
+    Of 1340 pixels 4 units are the frame's and 2.6 the head's: 1208 are left.
+    """
+    panel = SheetPanel(Look(DARK, 20.0), lambda _row: None, above)
+    panel.resize(1400, 1340)
+    panel.show_sheet(sheet_of(count))
+    panel.grab()
+    assert panel._high * 20.0 == pytest.approx(high, abs=1e-3)
+    assert panel.rows == fits
+
+
 def test_keys_that_leaf_stand_side_by_side_where_there_is_no_height(above: QWidget) -> None:
     panel = SheetPanel(Look(DARK, SMALL), lambda _row: None, above)
     panel.resize(500, 110)
