@@ -196,6 +196,8 @@ class Desk:
         """How a cycle is started at this machine."""
         if self.station is None:
             return "PRESS BOTH PALM BUTTONS" if self.two_hand else "PRESS CYCLE START"
+        if self.two_hand and self.one_hand and self.settings.now.latched:
+            return "PRESS ONE PALM BUTTON, THEN THE OTHER (F11, F12)"
         return "PRESS BOTH PALM BUTTONS (F11 + F12)" if self.two_hand else "PRESS CYCLE START (F12)"
 
     @property

@@ -9,10 +9,13 @@ from app.desk.interrupted_notice import NoticeRow
 from app.desk.program_loading import Loaded, Phase
 from app.desk.prompt_line import missing_tools
 from app.desk.translation import tr
-from core.executor.snapshot import CYCLE, Snapshot
+from core.executor.snapshot import CYCLE, Snapshot, State
 
 CLOSE = "×"  # what the card's key presses, and shows
 _COUNTED = (("P", "NO COUNT"),)  # no lamp shows it while it is off, so a finger has it here
+
+
+_NO_END = CYCLE | {State.ESTOP, State.FAULT}  # a dry run that stands here did not come to its end
 
 
 class Step(NamedTuple):
@@ -58,7 +61,7 @@ class FirstJob:
             return good and not missing_tools(loaded)
         if self.at == 3:
             ran, self._dry = self._dry, snapshot.state in CYCLE and snapshot.no_count
-            return ran and not self._dry
+            return ran and snapshot.state not in _NO_END
         made = self._parts = parts if self._parts is None else self._parts
         return parts > made
 

@@ -141,7 +141,7 @@ class StationDock(FingerPanel):
             painter.fill(at, "key")
             painter.write(at, key, 2.8, "accent", at=CENTRE)
             self.controls.append(pressed(at, partial(turn, steps)))
-        track = box.adjusted(wide + 0.6 * u, 0, -wide - 0.6 * u, 0)
+        track = box.adjusted(wide + 0.5 * u, 0, -wide - 0.5 * u, 0)
         painter.box(track, "frame", 0.14, "panel")
         self._slider(painter, track.adjusted(0.3 * u, 0.3 * u, -0.3 * u, -0.3 * u), pot.wanted / pot.most)
 

@@ -293,7 +293,7 @@ class SearchtoPage(ModelPage):
         if model.stage is SearchtoStage.SEARCHING:
             words = tr("GOING THROUGH THE PROGRAM TO LINE {line}").format(line=line)
             return StateShown(f"{words}  ·  {model.finder.worker.reached}")
-        return StateShown(tr("ENTER REBUILDS THE STATE OF LINE {line}").format(line=line))
+        return StateShown(tr("ENTER OR A TOUCH REBUILDS THE STATE OF LINE {line}").format(line=line))
 
     def _state(self, plan: Plan) -> StateShown:
         title, visit = tr("STATE AT LINE {line}").format(line=plan.found.line), plan.found.visit

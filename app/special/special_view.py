@@ -18,13 +18,14 @@ from app.screen.look import CENTRE, Look, Painter
 from app.screen.page_base import Host, KeyActions
 from app.screen.panel import Panel, Shown
 from app.screen.sheet_panel import ListPage, SheetPanel
+from app.screen.window_layout import FINGER
 from app.special.special_functions import SpecialFunctions
 from core.executor.snapshot import Snapshot
 
 # --- the list of functions ---------------------------------------------------------------------------------
 
 
-ROW = 7.0  # units: a fingertip
+ROW, GAP = 7.0, 0.4  # units: a row of the list with what is left free below it
 
 
 class ItemList(Panel):
@@ -45,9 +46,14 @@ class ItemList(Panel):
         self._followed = -1
 
     @property
+    def _high(self) -> float:
+        """Of a row, pixels: what is touched of it is a fingertip high."""
+        return max(ROW * self.look.u, FINGER + GAP * self.look.u)
+
+    @property
     def rows(self) -> int:
         """How many rows fit, above the keys that leaf where there are some."""
-        return self.fitting(self.inside(), ROW * self.look.u, len(self.model.functions))
+        return self.fitting(self.inside(), self._high, len(self.model.functions))
 
     def leaf_by(self, rows: int) -> None:
         """So many rows down the list."""
@@ -59,7 +65,7 @@ class ItemList(Panel):
         self.leaf_by(-round(event.angleDelta().y() / 120))
 
     def draw(self, painter: Painter) -> None:
-        functions, rows, high = self.model.functions, self.rows, ROW * self.look.u
+        functions, rows, high = self.model.functions, self.rows, self._high
         if self._followed != self.model.at:  # a key has moved it; a finger that leafs does not
             self._followed = self.model.at
             self.top = min(max(self.top, self.model.at - rows + 1), self.model.at)
@@ -67,7 +73,7 @@ class ItemList(Panel):
         room = self.leaf(painter, self.inside(), (self.top, rows, len(functions)), self.leaf_by)
         for number in range(self.top, min(len(functions), self.top + rows)):
             y = room.y() + (number - self.top) * high
-            box = QRectF(room.x(), y, room.width(), high - 0.4 * self.look.u)
+            box = QRectF(room.x(), y, room.width(), high - GAP * self.look.u)
             self._item(painter, box, number, functions[number].name, functions[number].use)
             self.place(box, partial(self._enter, number))
 

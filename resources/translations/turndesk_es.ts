@@ -5120,6 +5120,11 @@
     </message>
     <message>
       <location filename="app/desk/desk.py" />
+      <source>PRESS ONE PALM BUTTON, THEN THE OTHER (F11, F12)</source>
+      <translation>PULSE UN PULSADOR Y LUEGO EL OTRO (F11, F12)</translation>
+    </message>
+    <message>
+      <location filename="app/desk/desk.py" />
       <source>REFUSED: %1</source>
       <translation>RECHAZADO: %1</translation>
     </message>
@@ -5715,6 +5720,11 @@
     </message>
     <message>
       <location filename="app/desk/prompt_line.py" />
+      <source>FEED HOLD (PAUSE, H OR ESC) HOLDS THE FEED, STOP (SCROLL LOCK) IS THE E-STOP</source>
+      <translation>RETENCIÓN DE AVANCE (PAUSA, H O ESC) RETIENE EL AVANCE, PARO (BLOQ DESPL) ES EL PARO DE EMERGENCIA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/prompt_line.py" />
       <source>FILE NOT FOUND, PRESS ANY KEY TO CONTINUE</source>
       <translation>NO SE ENCONTRÓ EL ARCHIVO, PULSE CUALQUIER TECLA PARA CONTINUAR</translation>
     </message>
@@ -5757,11 +5767,6 @@
       <location filename="app/desk/prompt_line.py" />
       <source>ONE PALM BUTTON WAS HELD LONGER THAN HALF A SECOND: LET BOTH GO, THEN PRESS BOTH</source>
       <translation>UN PULSADOR SE SOSTUVO MÁS DE MEDIO SEGUNDO: SUELTE LOS DOS Y PULSE LOS DOS</translation>
-    </message>
-    <message>
-      <location filename="app/desk/prompt_line.py" />
-      <source>PAUSE HOLDS THE FEED (SO DO H AND ESC), SCROLL LOCK IS THE E-STOP</source>
-      <translation>PAUSA RETIENE EL AVANCE (TAMBIÉN H Y ESC), BLOQ DESPL ES EL PARO DE EMERGENCIA</translation>
     </message>
     <message>
       <location filename="app/desk/prompt_line.py" />
@@ -6125,6 +6130,11 @@
     </message>
     <message>
       <location filename="app/desk/waiting.py" />
+      <source>FEED HOLD (PAUSE), THEN R GIVES THE PROGRAM UP</source>
+      <translation>RETENCIÓN DE AVANCE (PAUSA) Y LUEGO R ABANDONA EL PROGRAMA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/waiting.py" />
       <source>FEED HOLD BEHIND THE TAP</source>
       <translation>RETENCIÓN DE AVANCE TRAS EL MACHO</translation>
     </message>
@@ -6147,11 +6157,6 @@
       <location filename="app/desk/waiting.py" />
       <source>ON</source>
       <translation>ENCENDIDO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/waiting.py" />
-      <source>PAUSE HOLDS THE FEED, THEN R GIVES THE PROGRAM UP</source>
-      <translation>PAUSA DETIENE EL AVANCE, LUEGO R ABANDONA EL PROGRAMA</translation>
     </message>
     <message>
       <location filename="app/desk/waiting.py" />
@@ -12630,8 +12635,8 @@
     </message>
     <message>
       <location filename="app/searchto/searchto_view.py" />
-      <source>ENTER REBUILDS THE STATE OF LINE {line}</source>
-      <translation>RETURN RECONSTRUYE EL ESTADO DE LA LÍNEA {line}</translation>
+      <source>ENTER OR A TOUCH REBUILDS THE STATE OF LINE {line}</source>
+      <translation>RETURN O UN TOQUE RECONSTRUYE EL ESTADO DE LA LÍNEA {line}</translation>
     </message>
     <message>
       <location filename="app/searchto/searchto_view.py" />

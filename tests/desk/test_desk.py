@@ -177,6 +177,15 @@ def test_one_palm_of_a_simulated_machine_says_how_one_hand_starts(machine: FakeM
     assert desk.notice == ONE_HAND
 
 
+def test_the_prompt_says_how_the_palms_on_the_glass_start(machine: FakeMachine) -> None:
+    desk = replace(desk_on(machine), one_hand=True)
+    assert desk.start_words == "PRESS BOTH PALM BUTTONS (F11 + F12)"
+    desk.choose_setting("latched", True)
+    assert desk.start_words == "PRESS ONE PALM BUTTON, THEN THE OTHER (F11, F12)"
+    desk.one_hand = False  # something real moves: the choice counts for nothing
+    assert desk.start_words == "PRESS BOTH PALM BUTTONS (F11 + F12)"
+
+
 def test_a_held_palm_that_repeats_is_pressed_once(desk: Desk, machine: FakeMachine) -> None:
     desk.hands.palm("left", down=True)
     desk.hands.palm("left", down=True)

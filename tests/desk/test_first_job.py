@@ -39,7 +39,13 @@ def test_each_step_waits_for_what_it_asks() -> None:
     card.see(running, loaded(), 0)
     card.see(REST, loaded(), 1)
     assert card.at == 3  # a part that counts is no dry run
-    card.see(replace(running, no_count=True), loaded(), 1)
+    dry = replace(running, no_count=True)
+    for stopped in (State.ESTOP, State.FAULT):
+        card.see(dry, loaded(), 1)
+        card.see(replace(dry, state=stopped), loaded(), 1)
+        card.see(REST, loaded(), 1)
+        assert card.at == 3  # it did not come to its end
+    card.see(dry, loaded(), 1)
     assert card.at == 3
     card.see(REST, loaded(), 1)
     assert card.at == 4

@@ -7,7 +7,10 @@ from PySide6.QtGui import QTouchEvent
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 
+from app.screen.look import Look
 from app.screen.station_dock import StationDock
+from app.screen.theme import DARK
+from app.screen.window_layout import FINGER, LEAST, places, unit
 from core.executor.commands import CycleStart
 from core.executor.snapshot import State
 from tests.screen.hands import Hands
@@ -77,6 +80,16 @@ def test_a_finger_that_slides_turns_the_pot(hands: Hands) -> None:
     fingers.move(0, end)
     assert hands.desk.hands.feed_pot.wanted == 0.0
     fingers.release(at=end)
+
+
+def test_whatever_stands_on_the_smallest_station_fits_a_finger(hands: Hands) -> None:
+    """The tracks of the pots had 42 pixels."""
+    at = places(*LEAST, dock=True).dock
+    dock = StationDock(Look(DARK, unit(*LEAST)), hands.desk)
+    dock.resize(at.w, at.h)
+    dock.grab()
+    assert len(dock.controls) == 13  # as above, feed hold and the palms
+    assert all(min(each.box.width(), each.box.height()) >= FINGER for each in dock.controls)
 
 
 def test_two_fingers_on_the_palms_start(hands: Hands) -> None:

@@ -33,10 +33,12 @@ from app.screen.sheet_panel import SheetPanel
 from app.screen.theme import DARK
 from app.screen.window_layout import FINGER
 from app.shapes.shapes_view import RowsPanel, _Line
+from app.special.special_view import ItemList
 from core.language.diagnostics import Diagnostic, Severity
 
 if TYPE_CHECKING:
     from app.offsets.cell_table import CellTable
+    from app.special.special_functions import SpecialFunctions
 
 MANY = 30
 SMALL = 6.4  # pixels of the unit at 1024x600
@@ -288,4 +290,15 @@ def test_tiles_of_the_main_menu_fit_a_finger(above: QWidget) -> None:
     panel.resize(858, 360)  # as at 1024x600
     panel.grab()
     assert len(panel._places) == len(entries)
+    assert all(box.height() >= FINGER for box, _press in panel._places)
+
+
+def test_a_finger_comes_to_every_special_function(above: QWidget) -> None:
+    """Their rows had 42 pixels."""
+    entered: list[int] = []
+    functions = [SimpleNamespace(name=f"FUNCTION {n}", use="what it does") for n in range(MANY)]
+    model = SimpleNamespace(functions=functions, at=0, inside=False)
+    panel = ItemList(Look(DARK, SMALL), cast("SpecialFunctions", model), entered.append, above)
+    panel.resize(218, 360)  # as at 1024x600
+    assert chosen_rows(panel, lambda: entered[-1], leaf_keys(panel)) == set(range(MANY))
     assert all(box.height() >= FINGER for box, _press in panel._places)

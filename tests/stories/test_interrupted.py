@@ -173,11 +173,11 @@ def test_under_an_estop_the_prompt_of_a_field_names_keys_that_work_there(story: 
 def test_while_another_window_has_the_keyboard_the_prompt_promises_no_key(story: Story) -> None:
     operator = story.begins(PART, tools=TOOLS)
     in_the_cut(operator)
-    operator.sees("PAUSE HOLDS THE FEED")
+    operator.sees("HOLDS THE FEED")
     with another_client(operator.server, "window"):
         operator.until(lambda: "ANOTHER WINDOW HAS THE KEYBOARD" in operator.prompt, "the truth")
     operator.comes_back()
-    operator.until(lambda: "PAUSE HOLDS THE FEED" in operator.prompt or operator.state != "RUNNING", "back")
+    operator.until(lambda: "HOLDS THE FEED" in operator.prompt or operator.state != "RUNNING", "back")
 
 
 def test_another_program_takes_its_place_only_when_that_is_meant(story: Story) -> None:
