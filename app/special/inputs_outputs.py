@@ -168,12 +168,12 @@ class InputsOutputs(SpecialFunction):
     def prompt(self) -> str:
         """What Return does here, for the prompt line."""
         if self.kind is Kind.INPUTS and self._simulated:
-            return tr("RETURN SWITCHES THE MARKED INPUT OF THE SIMULATED MACHINE; F4 SHOWS THE NEXT LIST")
+            return tr("RETURN OR A TOUCH SWITCHES THE MARKED INPUT OF THE SIMULATION; F4 SHOWS THE NEXT LIST")
         if self.kind is not Kind.OUTPUTS:
             return "F4 SHOWS THE NEXT LIST; ESC GOES BACK TO THE LIST OF FUNCTIONS"
         if self.desk.snapshot().state not in AT_REST:
             return NOT_NOW
-        return "RETURN SWITCHES THE MARKED OUTPUT BY HAND: LOOK AT THE MACHINE FIRST"
+        return "RETURN OR A TOUCH SWITCHES THE MARKED OUTPUT BY HAND: LOOK AT THE MACHINE FIRST"
 
 
 def _state(on: bool) -> str:

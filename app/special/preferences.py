@@ -87,7 +87,7 @@ class ScreenPreferences(SpecialFunction):
 
     def prompt(self) -> str:
         """How to choose, for the prompt line."""
-        return "ARROWS MARK, RETURN GOES ON TO THE NEXT CHOICE; ESC GOES BACK TO THE LIST"
+        return "RETURN OR A TOUCH GOES ON TO THE NEXT CHOICE; ESC GOES BACK TO THE LIST"
 
 
 def _in_words(name: str, value: object) -> str:

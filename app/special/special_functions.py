@@ -206,7 +206,7 @@ class SpecialFunctions:
         """Of the function, or how to choose one."""
         if self.inside:
             return self.current.prompt()
-        return "ARROWS OR A FIGURE CHOOSE A FUNCTION, RETURN OPENS IT; ESC FOR AUTOMATIC"
+        return "A FINGER OPENS A FUNCTION; ARROWS OR A FIGURE CHOOSE, RETURN OPENS IT; ESC FOR AUTOMATIC"
 
     def opened(self) -> None:
         """The page comes up with the list."""

@@ -13590,13 +13590,13 @@
     </message>
     <message>
       <location filename="app/special/inputs_outputs.py" />
-      <source>RETURN SWITCHES THE MARKED INPUT OF THE SIMULATED MACHINE; F4 SHOWS THE NEXT LIST</source>
-      <translation>RETURN CONMUTA LA ENTRADA MARCADA DE LA MÁQUINA SIMULADA; F4 MUESTRA LA LISTA SIGUIENTE</translation>
+      <source>RETURN OR A TOUCH SWITCHES THE MARKED INPUT OF THE SIMULATION; F4 SHOWS THE NEXT LIST</source>
+      <translation>RETURN O UN TOQUE CONMUTA LA ENTRADA MARCADA DE LA SIMULACIÓN; F4 MUESTRA LA LISTA SIGUIENTE</translation>
     </message>
     <message>
       <location filename="app/special/inputs_outputs.py" />
-      <source>RETURN SWITCHES THE MARKED OUTPUT BY HAND: LOOK AT THE MACHINE FIRST</source>
-      <translation>RETURN CAMBIA A MANO LA SALIDA MARCADA: MIRE PRIMERO LA MÁQUINA</translation>
+      <source>RETURN OR A TOUCH SWITCHES THE MARKED OUTPUT BY HAND: LOOK AT THE MACHINE FIRST</source>
+      <translation>RETURN O UN TOQUE CONMUTA A MANO LA SALIDA MARCADA: MIRE ANTES LA MÁQUINA</translation>
     </message>
     <message>
       <location filename="app/special/inputs_outputs.py" />
@@ -13995,11 +13995,6 @@
     </message>
     <message>
       <location filename="app/special/preferences.py" />
-      <source>ARROWS MARK, RETURN GOES ON TO THE NEXT CHOICE; ESC GOES BACK TO THE LIST</source>
-      <translation>LAS FLECHAS MARCAN, RETURN PASA A LA SIGUIENTE OPCIÓN; ESC REGRESA A LA LISTA</translation>
-    </message>
-    <message>
-      <location filename="app/special/preferences.py" />
       <source>BOTH HELD</source>
       <translation>LOS DOS A LA VEZ</translation>
     </message>
@@ -14077,6 +14072,11 @@
       <location filename="app/special/preferences.py" />
       <source>RELEASE THE E-STOP OF THE STATION BEFORE HIDING IT (U)</source>
       <translation>SUELTE EL PARO DE EMERGENCIA DE LA ESTACIÓN ANTES DE OCULTARLA (U)</translation>
+    </message>
+    <message>
+      <location filename="app/special/preferences.py" />
+      <source>RETURN OR A TOUCH GOES ON TO THE NEXT CHOICE; ESC GOES BACK TO THE LIST</source>
+      <translation>RETURN O UN TOQUE PASA A LA OPCIÓN SIGUIENTE; ESC REGRESA A LA LISTA</translation>
     </message>
     <message>
       <location filename="app/special/preferences.py" />
@@ -14380,8 +14380,8 @@
     </message>
     <message>
       <location filename="app/special/special_functions.py" />
-      <source>ARROWS OR A FIGURE CHOOSE A FUNCTION, RETURN OPENS IT; ESC FOR AUTOMATIC</source>
-      <translation>FLECHAS O UNA CIFRA ELIGEN UNA FUNCIÓN, RETURN LA ABRE; ESC A AUTOMÁTICO</translation>
+      <source>A FINGER OPENS A FUNCTION; ARROWS OR A FIGURE CHOOSE, RETURN OPENS IT; ESC FOR AUTOMATIC</source>
+      <translation>UN DEDO ABRE UNA FUNCIÓN; FLECHAS O UNA CIFRA ELIGEN, RETURN LA ABRE; ESC A AUTOMÁTICO</translation>
     </message>
     <message>
       <location filename="app/special/special_functions.py" />
