@@ -291,6 +291,7 @@ def test_a_restart_that_is_interrupted_in_the_program_is_at_its_new_line() -> No
 
 def test_what_a_power_cut_leaves_is_noted_before_the_first_move() -> None:
     rig = Rig()
+    rig.post(PartsMade(11))
     rig.load(PART, TOOLS)
     rig.ready()
     rig.run(0.4)
@@ -299,7 +300,7 @@ def test_what_a_power_cut_leaves_is_noted_before_the_first_move() -> None:
     note = rig.notes[0]
     assert note is not None
     assert rig.shot.demand == stood
-    assert (note.program, note.line, note.why) == ("PART", 1, CONTROL_LOST)
+    assert (note.program, note.line, note.part, note.why) == ("PART", 1, 12, CONTROL_LOST)
 
 
 def test_notes_follow_the_tool_at_once_and_lines_once_a_second() -> None:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,7 +14,7 @@ from hypothesis import strategies as st
 from core.geometry.virtual_mill import Face, PlaneMove, Side, Spot
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.modal_state import Modal
-from core.motion.axis_limits import FloatArray, MotionError, MotionLimits
+from core.motion.axis_limits import OVERRIDE_MAX, FloatArray, MotionError, MotionLimits
 from core.motion.curved_axes import CHORD_ERROR, chords
 from core.motion.motion_path import Path
 from core.motion.motion_plan import plan
@@ -258,3 +259,49 @@ def test_a_stop_beside_the_axis_brakes_c_too() -> None:
     tangent = path.pieces.direction[path.piece_at(s)]
     assert begin[0] == pytest.approx(tangent[0] * 1e-3 * v[0])
     assert np.abs(begin[-1] + a[-1] * dt[-1]).max() < 1e-6
+
+
+@dataclass(frozen=True)
+class Circle:
+    """A way along a circle of so large a radius, mm; ``seen`` False: from the part it looks straight."""
+
+    radius: float
+    length: float
+    seen: bool = True
+    straight: bool = False
+
+    def machine(self, share: FloatArray) -> FloatArray:
+        """X, Z and C at shares of the way."""
+        angle = share * self.length / self.radius
+        return np.stack([self.radius * np.cos(angle), self.radius * np.sin(angle), 0.0 * angle], axis=1)
+
+    def part(self, points: FloatArray) -> FloatArray:
+        """The points as the part has them."""
+        return points if self.seen else np.zeros_like(points)
+
+    def nearest(self) -> float:
+        """Where C turns fastest: nowhere, so in the middle."""
+        return 0.5
+
+
+def circle(radius: float, length: float, *, seen: bool = True) -> Any:
+    """As one of the moves that the interpreter makes."""
+    return Circle(radius, length, seen)
+
+
+def test_a_long_way_is_cut_as_finely_as_a_short_one() -> None:
+    """A chord c leaves a circle by c²/8R: of 1e-4 mm at R 50 with chords of .2 mm."""
+    way = circle(50.0, 300.0)
+    ways = np.diff(chords(way, 1.0, LIMITS)) * way.length
+    assert ways.max() <= math.sqrt(8.0 * CHORD_ERROR * way.radius)
+    assert ways.min() > 0.4 * math.sqrt(8.0 * CHORD_ERROR * way.radius)
+
+
+def test_chords_are_cut_until_their_joints_cost_no_speed() -> None:
+    """At 127 mm/s a joint turns by .5·3048·.001/127 = .012 at most: 16 chords of 22.5 mm turn .0225, 32 half.
+
+    On a circle of 1000 mm the acceleration allows 1561 mm/s, so it is the speed of the axes that counts.
+    """
+    way = circle(1000.0, 360.0, seen=False)
+    assert len(chords(way, 127.0 / OVERRIDE_MAX, LIMITS)) - 1 == 32
+    assert len(chords(way, 60.0 / OVERRIDE_MAX, LIMITS)) - 1 == 16

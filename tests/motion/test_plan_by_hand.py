@@ -68,6 +68,15 @@ def test_joints_that_may_yet_be_moved_are_not_settled() -> None:
     assert 100 < settled_joints(builder.path()) < 150
 
 
+def test_joints_within_an_interval_of_the_end_are_not_settled() -> None:
+    """A right angle .03 mm before the end: chords that follow within .127 mm may yet allow it more."""
+    builder = PathBuilder(LIMITS)
+    there = [(0.0, 0.01 * i) for i in range(301)]
+    builder.add(polyline([*there, *((0.01 * i, 3.0) for i in range(1, 4))]))
+    path = builder.path()
+    assert path.s[settled_joints(path)] <= 3.03 - 127.0 * T
+
+
 @pytest.mark.parametrize("back", [2, 7, 1000])
 def test_the_settled_joint_is_found_however_far_back_is_looked(
     back: int, monkeypatch: pytest.MonkeyPatch
@@ -185,6 +194,19 @@ def test_an_interval_asks_of_one_bend_what_the_bend_turns() -> None:
     alone = JointDemand(np.array([19]), np.array([1.0]), np.zeros((1, 3)))
     asked = demand_over_intervals(pieces, alone, np.array([50.0]), LIMITS, more=False)
     assert asked.squared == pytest.approx([(0.8 * A * T / BEND) ** 2], rel=1e-6)
+
+
+def test_one_bend_an_interval_is_left_to_its_own_limit() -> None:
+    """Bends there and back by .2, .05 mm apart: at 20 mm/s an interval has one of them, so it asks nothing.
+
+    Else each would be held to (.8·3048·.001/.2)² = 148.6 mm²/s².
+    """
+    x = [0.0, 0.05 * BEND]
+    points = [(x[i % 2], 0.05 * i * DIRECTION[1]) for i in range(21)]
+    alone = JointDemand(np.array([9]), np.array([1.0]), np.zeros((1, 3)))
+    pieces = build_path(polyline(points), LIMITS).pieces
+    asked = demand_over_intervals(pieces, alone, np.array([20.0]), LIMITS, more=False)
+    assert asked.squared.tolist() == [math.inf]
 
 
 def test_chords_on_both_sides_of_a_bend_keep_room_for_it() -> None:
