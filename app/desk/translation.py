@@ -59,15 +59,26 @@ Find = Callable[[str], str]  # the translation of a whole text; empty: it has no
 HOLE = re.compile(r"%\d|\{\w*(?:[:.][^{}]*)?\}")
 BETWEEN = "  ·  "  # parts of a title are texts of their own
 _AND = " · "  # those of the prompt line too
-_UNIT = re.compile(r"(?<=\d )in(?:/min|/rev|/s²?)?(?=$|[,;)]|  | …|\n)")  # not the word in of a sentence
+_UNIT = re.compile(r"(?<=\d )in(?:/min|/rev|/s²?)?(?=$|[,;)]|  | […×]|\n)")  # not the word in of a sentence
 _WORD = re.compile(r"[^\W\d_]{2}")
-_DEEPEST = 3  # values in values
+_DEEPEST = 5  # values in values: REFUSED, why, the program, its line, the sentence, what stands in it
+_JOINER = 8  # characters round holes, such as " and ", that also stand in sentences nobody knows
+_SENTENCE = re.compile(r"(?<=[.?!)]) (?=[A-Z0-9'/(%{\[])")
 _NAMES = frozenset({"{name}", "{program}", "{path}", "{text}", "{remark}"})  # holes for somebody's text
 _SLIGHT = 4  # characters between two holes, such as " OF ", that any sentence has
 
 
 _LOWER = re.compile(r"[a-z]{2}")
 _CODE = re.compile(r"[^a-z\s]+")  # one word in capitals: in a finding it is the program's own
+
+
+def _is_data(text: str) -> bool:
+    return text.startswith(_DATA) and text.find(_END) == len(text) - 1
+
+
+def _is_unknown(text: str, told: str) -> bool:
+    """Whether it is a piece of a sentence that has no translation: it would stand half translated."""
+    return told == text and _LOWER.search(text) is not None and " " in text
 
 
 class _Template:
@@ -79,10 +90,13 @@ class _Template:
     def __init__(self, english: str, other: str) -> None:
         pieces = HOLE.split(english)
         self.head, self.tail = pieces[0], pieces[-1]
-        self.weight = sum(map(len, pieces))
+        self.weight = sum(map(len, pieces)) - 2 * pieces.count(" ")  # two holes side by side are unsure
         self.joined = _AND in english
         self.of_program = any(_LOWER.search(piece) for piece in pieces)
         self.slight = not (self.head or self.tail) and self.weight <= _SLIGHT
+        self.before = bool(self.head) and not self.tail and pieces[-2].endswith(": ")
+        self.several = len(_SENTENCE.split(english)) > 1
+        self.joiner = not self.head and len(self.tail) <= 1 and self.weight <= _JOINER
         self._holes = HOLE.findall(english)
         self._other = other
         self._pattern: re.Pattern[str] | None = None
@@ -110,6 +124,7 @@ class Catalogue:
         found = [_Template(text, other) for text in templates if (other := find(text))]
         told = (template for template in found if not template.slight)
         self._templates = sorted(told, key=lambda template: -template.weight)
+        self._before = [each for each in self._templates if each.before]
         self.translate = lru_cache(8192)(self._translated)
 
     def _translated(self, text: str) -> str:
@@ -117,14 +132,28 @@ class Catalogue:
 
     def _look_up(self, text: str, depth: int, of_program: bool = False) -> str:
         """Empty when nothing of it is known; ``of_program``: within a finding about a program."""
-        if depth > _DEEPEST or not _WORD.search(text) or text.startswith(_DATA):
+        if depth > _DEEPEST or not _WORD.search(text) or _is_data(text):
             return ""
-        made = self._find(text) or self._shouted(text) or self._made(text, depth, of_program)
-        return made or self._joined(text, depth) or self._measured(text)
+        whole = self._find(text) or self._shouted(text)
+        made = whole or self._sentences(text, depth, of_program) or self._made(text, depth, of_program)
+        return made or self._joined(text, depth) or self._headed(text, depth) or self._measured(text)
 
     def _shouted(self, text: str) -> str:
         """Sentences of the control that are shown in capitals."""
         return self._find(text.lower()).upper() if text.isupper() else ""
+
+    def _sentences(self, text: str, depth: int, of_program: bool) -> str:
+        """What is wrong and what to do behind it: both in one template, or each known by itself."""
+        said = _SENTENCE.split(text)
+        if len(said) == 1 or self._announced(text):
+            return ""
+        whole = self._made(text, depth, of_program, several=True)
+        told = [] if whole else [self._look_up(each, depth + 1, of_program) for each in said]
+        return whole or (" ".join(told) if all(told) else "")
+
+    def _announced(self, text: str) -> str:
+        """The head of what stands before a sentence, such as REFUSED or its line: it goes first."""
+        return next((each.head for each in self._before if each.values(text)), "")
 
     def _joined(self, text: str, depth: int) -> str:
         if _AND not in text:
@@ -134,19 +163,30 @@ class Catalogue:
         joined = between.join(parts)
         return joined if joined != text else ""
 
+    def _headed(self, text: str, depth: int) -> str:
+        """A name, a colon and a sentence: what a tool, a file or a feature is told of."""
+        head, _, said = text.partition(": ")
+        told = self._look_up(said, depth + 1) if said and " " in said else ""
+        return f"{head}: {told}" if told else ""
+
     def _measured(self, text: str) -> str:
         """The units behind figures that no sentence stands round."""
         shown = _UNIT.sub(lambda unit: self._find(unit.group()) or unit.group(), text)
         return shown if shown != text else ""
 
-    def _made(self, text: str, depth: int, of_program: bool) -> str:
+    def _made(self, text: str, depth: int, of_program: bool, several: bool = False) -> str:
         joined = _AND in text  # its parts are texts: no hole reaches over from one into the next
+        before = self._announced(text)
         for template in self._templates:
-            values = template.values(text) if template.joined or not joined else None
-            if values is not None:
-                found = of_program or template.of_program
-                known = {hole: self._value(hole, value, depth, found) for hole, value in values.items()}
-                return template.filled(known)
+            if (joined and not template.joined) or (several and not template.several):
+                continue
+            values = template.values(text) if template.head.startswith(before) else None
+            if values is None:
+                continue
+            found = of_program or template.of_program
+            told = {hole: self._value(hole, value, depth, found) for hole, value in values.items()}
+            if not (template.joiner and any(map(_is_unknown, values.values(), told.values()))):
+                return template.filled(told)
         return ""
 
     def _value(self, hole: str, value: str, depth: int, of_program: bool) -> str:

@@ -130,6 +130,21 @@ def test_every_alarm_is_told_whole_wherever_it_stands(entry: Entry) -> None:
             "Con la entrada 7 encendida en la línea 5: G99 no es código de este control. Escriba T.",
         ),
         (
+            "LINE 6: Q is no word of the language. See the language page.",
+            "LÍNEA 6: Q no es una palabra del lenguaje. Vea la página del lenguaje.",
+        ),
+        (
+            "LINE 50: A tool is fed where there is no metal, from one rapid to the next.",
+            "LÍNEA 50: Una herramienta avanza donde no hay metal, de un rápido al siguiente.",
+        ),
+        ("\u2068BEN\u2069 HAS SIGNED IN: SETUP", "\u2068BEN\u2069 HA ENTRADO: PREPARADOR"),
+        (
+            "REFUSED: D33 does not exist; offsets are D1…32",
+            "RECHAZADO: D33 no existe; los correctores son D1…32",
+        ),
+        ("REFUSED: a b.nc CANNOT BE WRITTEN: x", "RECHAZADO: NO SE PUEDE ESCRIBIR a b.nc: x"),
+        ("the bar and the tools are new", "the bar and the tools are new"),  # never half of a sentence
+        (
             "Alarm 61003: channel 1 block in line 5: CYCLE95: FF1 is missing, and no F is in force.",
             "Alarma 61003: canal 1 bloque en la línea 5: CYCLE95: FF1 falta, y no hay F vigente.",
         ),
