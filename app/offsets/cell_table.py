@@ -37,6 +37,11 @@ class CellTable(OffsetTable):
     # --- what is shown -------------------------------------------------------------------------------
 
     @property
+    def is_writing(self) -> bool:
+        """Whether a text is open."""
+        return self.writing
+
+    @property
     def columns(self) -> tuple[str, ...]:
         """What the columns are called inside."""
         return tuple(FIELDS[self.kind])

@@ -58,6 +58,11 @@ class OffsetTable(ABC):
         """What the operator is asked to type now."""
 
     @property
+    def is_writing(self) -> bool:
+        """Whether a text is open, which takes letters."""
+        return False
+
+    @property
     def entered(self) -> str:
         """What is typed, as the entry shows it."""
         return self.text

@@ -22,10 +22,12 @@ from app.path.path_pane_view import ZOOM_STEP
 from app.path.path_view import PathView
 from app.screen import page_table
 from app.screen.entry_panel import EntryPanel, EntryWords, KeyPad
+from app.screen.letter_keys import LetterPad
 from app.screen.look import Look, Painter
 from app.screen.page_base import Host, KeyActions, ModelPage
 from app.screen.panel import Panel, Shown
 from app.screen.sheet_panel import SheetPanel
+from app.screen.window_layout import FINGER
 from core.executor.snapshot import Snapshot
 
 PAD, ASKED = 28.4, 12.4  # units: width of the pad, height of the line that is typed
@@ -134,6 +136,7 @@ class OffsetPage(ModelPage):
         own = (model.own_key, model.own_key) if model.own_key else None
         self.pad = KeyPad(self.look, self.touched, own=own, parent=self)
         self.pad.hide()
+        self.letters = LetterPad(self.look, self.touched, self)
         self.asked.installEventFilter(self)
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
@@ -224,7 +227,9 @@ class OffsetPage(ModelPage):
         model.look(snapshot)
         changes = model.history.listed
         self.history.setVisible(changes is not None)
-        self.table.setVisible(changes is None and not effect.open)
+        self._show_letters(model.is_writing and not self.pad.isHidden())
+        room = self.letters.isHidden() or self.table.height() >= 2 * FINGER
+        self.table.setVisible(changes is None and not effect.open and room)
         part = effect.part
         self.effect.setVisible(effect.open and part is None)
         self.features.setVisible(part is not None)
@@ -238,14 +243,23 @@ class OffsetPage(ModelPage):
         self.asked.asked = EntryWords(*words)
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
-        """Table over the line that is typed, the pad at their right."""
+        """Table over the line that is typed, the pad at their right; letters of a text stand below them."""
         self._lay_out()
 
+    def _show_letters(self, shown: bool) -> None:
+        """Letters while a finger writes a text, figures else."""
+        if shown is self.letters.isHidden():
+            self.letters.setVisible(shown)
+            self._lay_out()
+
     def _lay_out(self) -> None:
-        u = self.look.u
+        u, texts = self.look.u, not self.letters.isHidden()
         pad, high, gap = round(PAD * u), round(ASKED * u), max(4, round(0.7 * u))
-        wide, table = self.width() - (0 if self.pad.isHidden() else pad + gap), self.height() - high - gap
+        low = self.letters.least + gap if texts else 0
+        wide = self.width() - (0 if self.pad.isHidden() or texts else pad + gap)
+        table = self.height() - high - gap - low
         for part in (self.table, self.history, self.effect, self.features):
             part.setGeometry(0, 0, wide, table)
         self.asked.setGeometry(0, table + gap, wide, high)
-        self.pad.setGeometry(self.width() - pad, 0, pad, self.height())
+        self.pad.setGeometry(self.width() - pad, 0, 0 if texts else pad, self.height())
+        self.letters.setGeometry(0, self.height() - low + gap, wide, max(0, low - gap))

@@ -74,6 +74,11 @@ class ToolOffsets(ToolEntry):
         return shown_value(name, getattr(row, name), mode)
 
     @property
+    def is_writing(self) -> bool:
+        """Whether a remark is open."""
+        return self.writing
+
+    @property
     def value_before(self) -> str:
         """The cell as it is, without what is typed."""
         return self.cell(self.number, self.name) or (not_set() if self.tool is None else "")

@@ -239,6 +239,25 @@ def test_a_remark_takes_the_letters_that_are_keys_elsewhere(hands: Hands, store:
     assert not hands.machine.now.single_block
 
 
+def test_a_remark_is_written_by_a_finger(hands: Hands, store: Store) -> None:
+    """The pad has figures; a text had no letters, and none of it could be typed."""
+    store.set_tool(1, "touched off", x=1.0, z=1.0).result(5)
+    hands.desk.book = OffsetBook(store)
+    hands.window.resize(1024, 600)
+    hands.key(Key.Key_F8)
+    page = tools_of(hands)
+    page.show_pad(True)
+    page.model.choose(1, 7)
+    hands.sees(page.letters.isHidden)
+    page.touched("Enter")  # on the pad: it opens the remark
+    hands.sees(lambda: not page.letters.isHidden())
+    for place in (11, 13):  # of the rows of ten: w, r
+        touch(hands, page.letters, place)
+    page.letters._places[-1][1]()
+    hands.sees(lambda: store.tools()[1].remark == "wr")
+    hands.sees(lambda: page.letters.isHidden() and not page.pad.isHidden() and page.table.isVisible())
+
+
 def test_without_a_store_nothing_is_changed(hands: Hands) -> None:
     hands.key(Key.Key_F9)
     answer(hands, "1")
