@@ -9,6 +9,7 @@ import hmac
 import json
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from datetime import datetime
 from html import escape
 from http import HTTPStatus
 from http.cookies import CookieError, SimpleCookie
@@ -150,8 +151,16 @@ def _desk(status: Status) -> str:
     )
     return (
         f'<p class="state {_look(state)}">{escape(state)}</p><p class="why">{escape(why)}</p>{told}'
-        f'<table>{rows}</table>{_stops(status)}<p class="made">{escape(str(status["updated"]))}</p>'
+        f'<table>{rows}</table>{_stops(status)}<p class="made">{escape(_local(status["updated"]))}</p>'
     )
+
+
+def _local(at: object) -> str:
+    """A moment in ISO 8601 as the clock of this desk shows it; what is none stays as it is."""
+    try:
+        return f"{datetime.fromisoformat(str(at)).astimezone():%Y-%m-%d %H:%M:%S}"
+    except ValueError:
+        return str(at)
 
 
 def _figures(status: Mapping[str, Any]) -> list[tuple[str, str]]:
@@ -172,7 +181,7 @@ def _stops(status: Status) -> str:
     if not isinstance(stops, list) or not stops:
         return ""
     rows = "".join(
-        f"<tr><td>{escape(each['at'])}</td><td>{escape(each['reason'])}</td>"
+        f"<tr><td>{escape(_local(each['at']))}</td><td>{escape(each['reason'])}</td>"
         f"<td>{duration(each['seconds'])}</td></tr>"
         for each in stops
     )

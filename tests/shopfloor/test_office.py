@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import socket
 import threading
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
@@ -76,6 +77,20 @@ def get(
 
     body = b"".join(wsgi(environ, begin))
     return answer[0], answer[1], body.decode()
+
+
+@pytest.mark.skipif(not hasattr(time, "tzset"), reason="no change of the time zone here")
+def test_times_are_those_of_the_clock_in_the_shop(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Three hours behind UTC."""
+    monkeypatch.setenv("TZ", "<-03>3")
+    time.tzset()
+    try:
+        body = get(page())[2]
+    finally:
+        monkeypatch.undo()
+        time.tzset()
+    assert ">2026-11-23 06:00:00<" in body  # made at 09:00 UTC
+    assert "<td>2026-11-23 05:00:00</td>" in body
 
 
 # --- who may look -----------------------------------------------------------------------------------
