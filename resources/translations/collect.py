@@ -131,9 +131,30 @@ ALSO = (
     # What the screen puts together of parts that are texts of their own.
     "LINE %1",
     "%1 WARNINGS",
+    "1 WARNING",
+    # A finding in one line, as an answer names it.
+    "%1: error: %2 [%3]",
+    "%1: error: %2 [%3] — %4",
+    "%1: warning: %2 [%3]",
+    "%1: warning: %2 [%3] — %4",
+    "NOT COUNTED AS A PART: %1; %2 s",
+    "NO COUNT is on",
+    "wait until the slides are at rest",
+    "%1 is %2, and lies between %3 and %4",
+    "%1 would go to %2 from home, %3 beyond the travel limit of %4",
+    "%1: character %2, %3, means nothing as %4; known: %5",
+    "No word of an %1 block",
+    "No word of a %1 block",
+    "starts",
+    "ends",
+    "passes",
+    "pecks",
+    "Type -.",
+    "Type +.",
+    "Type (.",
+    "Type ).",
     "AND %1 MORE",
     "STOP %1: %2",
-    "%1 cuts a contour, and its lines would have to follow",  # the reason stands in the code's entry
     "%1 COMES ON",
     "%1 GOES OFF",
     "%1 HAS COME ON AND %2",
@@ -266,7 +287,7 @@ def _of_levels() -> list[str]:
 def _of_codes() -> list[str]:
     """What the code table says of codes to an operator; the rest of it is documentation."""
     codes = [code for _, chapter in CHAPTERS for code in chapter]
-    said = {code.not_in_mdi for code in codes} | {code.group for code in codes}
+    said = {f"%1 {code.not_in_mdi}." for code in codes if code.not_in_mdi} | {code.group for code in codes}
     for refusal in (each for code in codes for each in code.plain_refusals):
         said |= {_with_numbered_holes(refusal.text), _with_numbered_holes(refusal.hint)}
     rules = [rule for code in codes for rule in code.rules.values()]

@@ -35,18 +35,68 @@
     </message>
     <message>
       <location filename="" />
+      <source>%1 begins a loop, and its lines and LF would have to follow.</source>
+      <translation>%1 empieza un bucle, y sus líneas y LF tendrían que seguir.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1 begins a subroutine, and those stand in programs.</source>
+      <translation>%1 empieza una subrutina, y ésas van en programas.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1 begins nose compensation, which looks at the lines that follow.</source>
+      <translation>%1 empieza compensación de punta, que mira las líneas que siguen.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1 belongs to plane switching, whose lines would have to follow.</source>
+      <translation>%1 pertenece a un cambio de plano, cuyas líneas tendrían que seguir.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1 calls a subroutine, and those stand in programs.</source>
+      <translation>%1 llama una subrutina, y ésas van en programas.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>%1 cannot run while nose compensation is active.</source>
       <translation>%1 no puede correr con la compensación de punta activa.</translation>
     </message>
     <message>
       <location filename="" />
-      <source>%1 cuts a contour, and its lines would have to follow</source>
-      <translation>%1 corta un contorno, y sus líneas tendrían que seguir</translation>
+      <source>%1 cuts a contour, and its lines would have to follow.</source>
+      <translation>%1 corta un contorno, y tendrían que seguir sus líneas.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1 ends a contour, and there is none.</source>
+      <translation>%1 termina un contorno, y no hay ninguno.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1 ends a loop, and there is none.</source>
+      <translation>%1 termina un bucle, y no hay ninguno.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1 ends a subroutine, and there is none.</source>
+      <translation>%1 termina una subrutina, y no hay ninguna.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1 ends nose compensation, which looks at the lines around it.</source>
+      <translation>%1 termina compensación de punta, que mira las líneas alrededor.</translation>
     </message>
     <message>
       <location filename="" />
       <source>%1 has no feed: none for cutting is in force.</source>
       <translation>%1 no tiene avance: no hay ninguno de corte vigente.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1 is %2, and lies between %3 and %4</source>
+      <translation>%1 es %2, y debe estar entre %3 y %4</translation>
     </message>
     <message>
       <location filename="" />
@@ -90,6 +140,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>%1 needs a G92 on the next line.</source>
+      <translation>%1 necesita un G92 en la línea siguiente.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>%1 takes 1 parameter, and %2 are handed over.</source>
       <translation>%1 toma 1 parámetro, y se pasan %2.</translation>
     </message>
@@ -102,6 +157,11 @@
       <location filename="" />
       <source>%1 turns the spindle, which is not locked.</source>
       <translation>%1 gira el husillo, que no está bloqueado.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1 would go to %2 from home, %3 beyond the travel limit of %4</source>
+      <translation>%1 iría a %2 de la referencia, %3 más allá del límite de carrera de %4</translation>
     </message>
     <message>
       <location filename="" />
@@ -182,6 +242,21 @@
       <location filename="" />
       <source>%1: beside G35 only F2 has a meaning (leads to 2 in/rev).</source>
       <translation>%1: junto a G35 sólo F2 tiene sentido (pasos hasta 2 pulg/rev).</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1: character %2, %3, means nothing as %4; known: %5</source>
+      <translation>%1: el carácter %2, %3, no significa nada como %4; se conocen: %5</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1: error: %2 [%3]</source>
+      <translation>%1: error: %2 [%3]</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1: error: %2 [%3] — %4</source>
+      <translation>%1: error: %2 [%3] — %4</translation>
     </message>
     <message>
       <location filename="" />
@@ -275,6 +350,16 @@
     </message>
     <message>
       <location filename="" />
+      <source>%1: warning: %2 [%3]</source>
+      <translation>%1: aviso: %2 [%3]</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1: warning: %2 [%3] — %4</source>
+      <translation>%1: aviso: %2 [%3] — %4</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>%1: write CYCLE840, which feeds the tap by its lead and turns it back.</source>
       <translation>%1: escriba CYCLE840, que hace avanzar el macho según su paso y lo gira de vuelta.</translation>
     </message>
@@ -322,6 +407,11 @@
       <location filename="" />
       <source>(~%1) with nose compensation on.</source>
       <translation>(~%1) con compensación de punta activa.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>1 WARNING</source>
+      <translation>1 AVISO</translation>
     </message>
     <message>
       <location filename="" />
@@ -2210,6 +2300,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>NOT COUNTED AS A PART: %1; %2 s</source>
+      <translation>NO CONTADO COMO PIEZA: %1; %2 s</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>Names a subprogram with parameters that stands in a file of its own.</source>
       <translation>Nombra un subprograma con parámetros que está en su propio archivo.</translation>
     </message>
@@ -2252,6 +2347,16 @@
       <location filename="" />
       <source>No touch probe: %1</source>
       <translation>Sin palpador: %1</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>No word of a %1 block</source>
+      <translation>No es palabra de un bloque %1</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>No word of an %1 block</source>
+      <translation>No es palabra de un bloque %1</translation>
     </message>
     <message>
       <location filename="" />
@@ -3655,6 +3760,26 @@
     </message>
     <message>
       <location filename="" />
+      <source>Type (.</source>
+      <translation>Escriba (.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Type ).</source>
+      <translation>Escriba ).</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Type +.</source>
+      <translation>Escriba +.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Type -.</source>
+      <translation>Escriba -.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>UNIT</source>
       <translation>UNIDAD</translation>
     </message>
@@ -4150,33 +4275,8 @@
     </message>
     <message>
       <location filename="" />
-      <source>begins a loop, and its lines and LF would have to follow</source>
-      <translation>empieza un bucle, y sus líneas y LF tendrían que seguir</translation>
-    </message>
-    <message>
-      <location filename="" />
-      <source>begins a subroutine, and those stand in programs</source>
-      <translation>empieza una subrutina, y ésas van en programas</translation>
-    </message>
-    <message>
-      <location filename="" />
-      <source>begins nose compensation, which looks at the lines that follow</source>
-      <translation>empieza compensación de punta, que mira las líneas que siguen</translation>
-    </message>
-    <message>
-      <location filename="" />
-      <source>belongs to plane switching, whose lines would have to follow</source>
-      <translation>pertenece a un cambio de plano, cuyas líneas tendrían que seguir</translation>
-    </message>
-    <message>
-      <location filename="" />
       <source>buffer of blocks</source>
       <translation>búfer de bloques</translation>
-    </message>
-    <message>
-      <location filename="" />
-      <source>calls a subroutine, and those stand in programs</source>
-      <translation>llama una subrutina, y ésas van en programas</translation>
     </message>
     <message>
       <location filename="" />
@@ -4215,11 +4315,6 @@
     </message>
     <message>
       <location filename="" />
-      <source>cuts a contour, and its lines would have to follow</source>
-      <translation>corta un contorno, y tendrían que seguir sus líneas</translation>
-    </message>
-    <message>
-      <location filename="" />
       <source>departure</source>
       <translation>salida</translation>
     </message>
@@ -4240,23 +4335,8 @@
     </message>
     <message>
       <location filename="" />
-      <source>ends a contour, and there is none</source>
-      <translation>termina un contorno, y no hay ninguno</translation>
-    </message>
-    <message>
-      <location filename="" />
-      <source>ends a loop, and there is none</source>
-      <translation>termina un bucle, y no hay ninguno</translation>
-    </message>
-    <message>
-      <location filename="" />
-      <source>ends a subroutine, and there is none</source>
-      <translation>termina una subrutina, y no hay ninguna</translation>
-    </message>
-    <message>
-      <location filename="" />
-      <source>ends nose compensation, which looks at the lines around it</source>
-      <translation>termina compensación de punta, que mira las líneas alrededor</translation>
+      <source>ends</source>
+      <translation>termina a</translation>
     </message>
     <message>
       <location filename="" />
@@ -4370,11 +4450,6 @@
     </message>
     <message>
       <location filename="" />
-      <source>needs a G92 on the next line</source>
-      <translation>necesita un G92 en la línea siguiente</translation>
-    </message>
-    <message>
-      <location filename="" />
       <source>nose compensation</source>
       <translation>compensación de punta</translation>
     </message>
@@ -4392,6 +4467,16 @@
       <location filename="" />
       <source>outside corners</source>
       <translation>esquinas exteriores</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>passes</source>
+      <translation>pasadas</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>pecks</source>
+      <translation>picadas</translation>
     </message>
     <message>
       <location filename="" />
@@ -4457,6 +4542,11 @@
       <location filename="" />
       <source>spindle mode</source>
       <translation>modo de husillo</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>starts</source>
+      <translation>empieza a</translation>
     </message>
     <message>
       <location filename="" />
@@ -4592,6 +4682,11 @@
       <location filename="" />
       <source>unit of length</source>
       <translation>unidad de longitud</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>wait until the slides are at rest</source>
+      <translation>espere a que los carros estén quietos</translation>
     </message>
     <message>
       <location filename="" />

@@ -142,6 +142,14 @@ def test_every_alarm_is_told_whole_wherever_it_stands(entry: Entry) -> None:
             "REFUSED: D33 does not exist; offsets are D1…32",
             "RECHAZADO: D33 no existe; los correctores son D1…32",
         ),
+        (
+            "NOT COUNTED AS A PART: NO COUNT is on; 4.62 s",
+            "NO CONTADO COMO PIEZA: SIN CONT está puesto; 4.62 s",
+        ),
+        (
+            "LS begins a loop, and its lines and LF would have to follow.",
+            "LS empieza un bucle, y sus líneas y LF tendrían que seguir.",
+        ),
         ("REFUSED: a b.nc CANNOT BE WRITTEN: x", "RECHAZADO: NO SE PUEDE ESCRIBIR a b.nc: x"),
         ("the bar and the tools are new", "the bar and the tools are new"),  # never half of a sentence
         (
