@@ -65,6 +65,7 @@ _DEEPEST = 5  # values in values: REFUSED, why, the program, its line, the sente
 _JOINER = 8  # characters round holes, such as " and ", that also stand in sentences nobody knows
 _SENTENCE = re.compile(r"(?<=[.?!)]) (?=[A-Z0-9'/(%{\[])")
 _NAMES = frozenset({"{name}", "{program}", "{path}", "{text}", "{remark}"})  # holes for somebody's text
+_HINT = "] — "  # what to do, behind the code of a finding
 _SLIGHT = 4  # characters between two holes, such as " OF ", that any sentence has
 
 
@@ -95,6 +96,7 @@ class _Template:
         self.of_program = any(_LOWER.search(piece) for piece in pieces)
         self.slight = not (self.head or self.tail) and self.weight <= _SLIGHT
         self.before = bool(self.head) and not self.tail and pieces[-2].endswith(": ")
+        self.hinted = any(_HINT in piece for piece in pieces)
         self.several = len(_SENTENCE.split(english)) > 1
         self.joiner = not self.head and len(self.tail) <= 1 and self.weight <= _JOINER
         self._holes = HOLE.findall(english)
@@ -145,7 +147,7 @@ class Catalogue:
     def _sentences(self, text: str, depth: int, of_program: bool) -> str:
         """What is wrong and what to do behind it: both in one template, or each known by itself."""
         said = _SENTENCE.split(text)
-        if len(said) == 1 or self._announced(text):
+        if len(said) == 1 or _HINT in text or self._announced(text):
             return ""
         whole = self._made(text, depth, of_program, several=True)
         told = [] if whole else [self._look_up(each, depth + 1, of_program) for each in said]
@@ -177,8 +179,11 @@ class Catalogue:
     def _made(self, text: str, depth: int, of_program: bool, several: bool = False) -> str:
         joined = _AND in text  # its parts are texts: no hole reaches over from one into the next
         before = self._announced(text)
+        hinted = _HINT in text and not before  # a finding in one line: it is taken apart first
         for template in self._templates:
             if (joined and not template.joined) or (several and not template.several):
+                continue
+            if hinted and not template.hinted:
                 continue
             values = template.values(text) if template.head.startswith(before) else None
             if values is None:

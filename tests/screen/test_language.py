@@ -150,6 +150,12 @@ def test_every_alarm_is_told_whole_wherever_it_stands(entry: Entry) -> None:
             "LS begins a loop, and its lines and LF would have to follow.",
             "LS empieza un bucle, y sus líneas y LF tendrían que seguir.",
         ),
+        (
+            "NO START: the program has errors: a.nc:5:1: error: G99 is no code of this control. Write T."
+            " [g-unknown] — Take it out.",
+            "NO ARRANCA: el programa tiene errores: a.nc:5:1: error: G99 no es código de este control."
+            " Escriba T. [g-unknown] — Quítelo.",
+        ),
         ("REFUSED: a b.nc CANNOT BE WRITTEN: x", "RECHAZADO: NO SE PUEDE ESCRIBIR a b.nc: x"),
         ("the bar and the tools are new", "the bar and the tools are new"),  # never half of a sentence
         (
