@@ -24,8 +24,10 @@ from app.jog.jog_touch_off import TOUCH_X, TOUCH_Z
 from app.jog.skim_cut import CutStep
 from app.screen.look import CENTRE, LEFT, Look, Painter
 from app.screen.panel import FingerPanel, Shown, pressed
+from app.screen.window_layout import FINGER
 from core.executor.snapshot import Snapshot
 
+KEY = 4.5  # units: height of a key of the strip
 Key = tuple[str, str, Callable[[], object]]  # letter, words, what it does
 
 
@@ -124,6 +126,11 @@ class HandPanel(FingerPanel):
             self.controls.append(pressed(box, press))
 
 
+def strip_keys(look: Look) -> float:
+    """Height of the keys of the strip, pixels: a fingertip, and room for their words on a large glass."""
+    return max(float(FINGER), KEY * look.u)
+
+
 class HandStrip(FingerPanel):
     """Under tool setting while nothing is asked: what leads to functions by hand and to the skim cut."""
 
@@ -146,7 +153,7 @@ class HandStrip(FingerPanel):
         painter.fill(self.area(), "ground")
         keys = self._keys()
         room = self.area()
-        low = self.height() - self.look.row(7.0, 9.0, touch=True)
+        low = self.height() - strip_keys(self.look)
         wide = (room.width() + 0.6 * u) / len(keys)
         for number, (letter, words, press) in enumerate(keys):
             box = QRectF(room.x() + number * wide, low, wide - 0.6 * u, room.bottom() - low)

@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QWidget
 from app.desk.machine_status import MachineStatus
 from app.desk.program_loading import Loaded
 from app.desk.translation import tr
-from app.jog.hand_functions_view import HandPanel, HandStrip
+from app.jog.hand_functions_view import HandPanel, HandStrip, strip_keys
 from app.jog.held_keys_view import CHORDS, HeldKeysPage
 from app.jog.jog_model import JogModel
 from app.jog.jog_pad_view import JogPad
@@ -155,7 +155,7 @@ class JogPage(HeldKeysPage):
         for part in (self.pad, self.numbers):
             part.setGeometry(0, 0, left, self.height())
         wide, asked = self.width() - left - gap, round(ASKED * u)
-        strip = round(self.look.row(7.0, 9.0, touch=True) + WORDS * u)
+        strip = round(strip_keys(self.look) + WORDS * u)
         sides: tuple[tuple[QWidget, int], ...] = ((self.tool, asked), (self.mill, strip), (self.hand, asked))
         for side, foot in sides:
             side.setGeometry(left + gap, 0, wide, self.height() - foot - gap)

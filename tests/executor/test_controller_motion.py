@@ -90,6 +90,15 @@ def test_a_feed_per_turn_follows_the_commanded_speed_its_pot_and_its_limit() -> 
     assert piece.op.feed == pytest.approx(0.1 * 600 / 60)
 
 
+def test_a_surface_speed_on_an_arc_is_that_of_the_part_not_of_the_machine() -> None:
+    """400π mm/s at a radius of 20 mm are 10 turns a second; at the machine's X of 21 they would be 9.5."""
+    at = {"x0": 10.0, "x": 20.0, "z": -10.0, "cx": 20.0, "feed": 0.1, "per_rev": True, "rpm": 600.0}
+    arc = block(Kind.ARC, cz=0.0, css=400 * math.pi, modal=Modal(css_min=0.0), **at)
+    *_, last = parts_of(arc, FULL)
+    assert isinstance(last.op, ArcOp)
+    assert (last.op.x, last.op.feed) == pytest.approx((21.0, 1.0))
+
+
 @pytest.mark.parametrize(
     ("words", "expected"), [({"c": 90.0}, "X and Z only"), ({"x": 1.0, "feed": 0.0}, "no feed")]
 )
