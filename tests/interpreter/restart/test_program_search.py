@@ -9,13 +9,13 @@ import pytest
 from app.compose.machine_files import named_machine
 from app.compose.machine_setup import setup_for
 from core.interpreter.actions import ProgramStop, SpindleRun, ToolChange
-from core.interpreter.checkpoint import AxesLeg, Begin, FunctionStep
+from core.interpreter.checkpoint import AxesLeg, Begin, Checkpoint, FunctionStep
 from core.interpreter.dialects import ReadProgram
 from core.interpreter.elementary_blocks import Block
 from core.interpreter.job_setup import Setup, ToolOffset, ZeroOffset
 from core.interpreter.modal_state import Modal
 from core.interpreter.restart.mill_approach import begin_on_mill
-from core.interpreter.restart.program_search import ProgramSearch
+from core.interpreter.restart.program_search import ProgramSearch, _Stand
 from core.interpreter.restart.restart_approach import Choices, MachineNow, begin_at
 from core.interpreter.restart.restart_point import Interruption, NoRestart, RestartPoint
 from core.language.source import Source
@@ -407,3 +407,15 @@ def test_a_block_that_is_deleted_is_no_place_to_go_on() -> None:
     reading, setup = milled(FLATS.replace("Z2\nG1", "/Z2\nG1"))
     assert "the run never comes to it" in refused((reading, replace(setup, block_delete=True)), 9).why
     assert good((reading, setup), 9).line == 9
+
+
+@pytest.mark.parametrize(
+    ("cutting", "turned", "good"), [(False, False, True), (True, False, False), (False, True, False)]
+)
+def test_only_a_place_of_a_rapid_with_the_table_still_is_above_what_was_left_out(
+    cutting: bool, turned: bool, good: bool
+) -> None:
+    """Tip at 60 - 20 = 40 mm, the highest cut begins at 30."""
+    stand = _Stand(cutting=cutting, turned=turned, length=20.0, top=30.0)
+    assert stand.above(Checkpoint(Modal(), at=(0.0, 0.0, 60.0))) is good
+    assert not stand.above(Checkpoint(Modal(), at=(0.0, 0.0, 49.0)))

@@ -1,0 +1,33 @@
+"""What the states of an operator station become, one look at a time."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from core.executor.station_signals import StationWatch
+from core.ports import StationState
+
+
+@pytest.mark.parametrize("state", [StationState(age=1e3), StationState(feed_pot=math.nan)])
+def test_a_station_that_was_never_heard_is_silent_and_its_switch_unknown(state: StationState) -> None:
+    told = StationWatch().read(state, 0.0)
+    assert (told.trouble, told.auto) == ("OPERATOR STATION SILENT", True)
+    assert (told.start, told.turned_on) == (False, False)
+
+
+def test_a_start_that_is_on_at_the_first_look_is_no_press() -> None:
+    watch = StationWatch()
+    assert not watch.read(StationState(start=True), 0.0).start
+    assert not watch.read(StationState(start=True), 0.01).start
+    assert not watch.read(StationState(), 0.02).start
+
+
+def test_the_spindle_switch_is_turned_on_once() -> None:
+    watch = StationWatch()
+    found = [
+        watch.read(StationState(spindle_auto=auto), 0.01 * n).turned_on
+        for n, auto in enumerate((True, False, True, True))
+    ]
+    assert found == [False, False, True, False]
