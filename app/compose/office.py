@@ -74,11 +74,12 @@ def _look(desk: Desk, machine: Machine) -> OfficeLook:
 def _announcer(
     table: AnnounceTable, look: OfficeLook, tell: Callable[[str], None]
 ) -> list[Callable[[], None]]:
-    from app.shopfloor.announcements import Announcer, WebHook
+    from app.shopfloor.announcements import Announcer
+    from app.shopfloor.web_hook import WebHook
 
     told: list[Told] = []
     if table.hook:
-        told.append(WebHook(table.hook))
+        told.append(WebHook(table.hook, table.again))
     if table.mqtt and find_spec("paho") is None:
         tell(MISSING.format(what="[announce] mqtt", package="paho-mqtt"))
     elif table.mqtt:

@@ -1,27 +1,19 @@
-"""Who is told of the end of a part, a stop, an alarm, a tool at the end of its life: MQTT and a web hook."""
+"""What is told to others: the end of a part, a stop, an alarm, a tool at the end of its life."""
 
 from __future__ import annotations
 
 import json
-import logging
-import threading
-from collections import deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from http.client import HTTPException
 from typing import Any, Protocol
-from urllib.error import URLError
-from urllib.request import Request, urlopen
 
 from app.desk.repeating_thread import RepeatingThread
 from app.shopfloor.status_file import Status
 
 LOOK = 0.5  # s
 HELD = 100  # announcements that wait for somebody who does not answer; of more the oldest go
-_PATIENCE = 5.0  # s
 _STANDS = frozenset({"FEED HOLD", "PROGRAM STOP", "WAITING", "SINGLE BLOCK"})
 _FAULTS = frozenset({"ALARM", "E-STOP", "CONTROL SILENT"})
-_log = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,56 +66,6 @@ class Told(Protocol):
 
     def close(self) -> None:
         """The desk ends."""
-
-
-class WebHook:
-    """Each announcement is posted as JSON to an address, by a thread of its own, in their order."""
-
-    def __init__(self, address: str, post: Callable[[str, bytes], None] | None = None) -> None:
-        self._address, self._post = address, post or posted
-        self._waiting: deque[Announcement] = deque(maxlen=HELD)
-        self._there = threading.Event()
-        self._closing = False
-        self._failed = False
-        self._thread = threading.Thread(target=self._work, name="web-hook", daemon=True)
-        self._thread.start()
-
-    def state(self, status: Status) -> None:
-        """A web hook is told of what happens, not of every change."""
-
-    def tell(self, announcement: Announcement) -> None:
-        """Queue it."""
-        self._waiting.append(announcement)
-        self._there.set()
-
-    def close(self) -> None:
-        """What is under way goes out; nobody waits for it."""
-        self._closing = True
-        self._there.set()
-
-    def _work(self) -> None:
-        while not self._closing:
-            self._there.wait()
-            self._there.clear()
-            while self._waiting:
-                self._one(self._waiting.popleft())
-
-    def _one(self, announcement: Announcement) -> None:
-        try:
-            self._post(self._address, announcement.json())
-        except (URLError, HTTPException, OSError, ValueError) as error:
-            if not self._failed:
-                _log.warning("%s cannot be told: %s", self._address, getattr(error, "reason", error))
-            self._failed = True
-            return
-        self._failed = False
-
-
-def posted(address: str, body: bytes) -> None:
-    """Post JSON to an address. Raises OSError, ValueError or HTTPException."""
-    request = Request(address, body, {"Content-Type": "application/json"}, method="POST")
-    with urlopen(request, timeout=_PATIENCE):
-        return
 
 
 class Announcer:

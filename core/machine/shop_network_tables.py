@@ -50,7 +50,7 @@ class StatusPageTable:
 class AnnounceTable:
     """The MQTT broker (``host:port``) and the web address that are told; empty: that one is not.
 
-    ``again`` is the seconds after which a broker that was lost is tried once more.
+    ``again`` is the seconds after which a broker or host that was away is tried once more.
     """
 
     mqtt: str

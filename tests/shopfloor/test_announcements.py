@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+import os
 import shutil
+import signal
 import socket
 import subprocess
 import threading
@@ -16,9 +18,10 @@ import paho.mqtt.client as mqtt
 import pytest
 from paho.mqtt.enums import CallbackAPIVersion
 
-from app.shopfloor.announcements import Announcement, Announcer, WebHook, happened
+from app.shopfloor.announcements import HELD, Announcement, Announcer, happened
 from app.shopfloor.mqtt_broker import MqttBroker
 from app.shopfloor.status_file import Status
+from app.shopfloor.web_hook import WebHook
 from core.machine.shop_network_tables import AnnounceTable
 
 READY: Status = {"state": "READY", "program": "pin.nc", "made": 3, "stop": "", "waiting_for": ""}
@@ -100,16 +103,28 @@ def test_a_state_is_told_when_it_changes_and_not_with_every_second() -> None:
 # --- a web hook -------------------------------------------------------------------------------------
 
 
+AT_ONCE = 0.001  # s until the next try
+
+
 @pytest.fixture
 def posts() -> Iterator[tuple[str, SimpleQueue[dict[str, object]]]]:
-    """A server that takes what is posted, and its address."""
+    """A server that takes what is posted, and its address; other paths answer with their number."""
     heard: SimpleQueue[dict[str, object]] = SimpleQueue()
 
     class Taker(BaseHTTPRequestHandler):
         def do_POST(self) -> None:
-            heard.put(json.loads(self.rfile.read(int(self.headers["Content-Length"]))))
-            self.send_response(204)
-            self.end_headers()
+            said = json.loads(self.rfile.read(int(self.headers["Content-Length"])))
+            number = self.path.removeprefix("/hook")
+            if number == "garbage":
+                self.wfile.write(b"\x1b[2J garbage\r\n\r\n")
+            else:
+                self.send_response(int(number or 204))
+                self.send_header("Location", "https://office/hook")
+                self.end_headers()
+            heard.put(said)
+
+        def do_GET(self) -> None:
+            heard.put({"text": "asked by GET"})
 
         def log_message(self, *_words: object) -> None:
             pass
@@ -125,30 +140,88 @@ def posts() -> Iterator[tuple[str, SimpleQueue[dict[str, object]]]]:
 
 def test_a_web_hook_hears_in_order(posts: tuple[str, SimpleQueue[dict[str, object]]]) -> None:
     address, heard = posts
-    hook = WebHook(address)
+    hook = WebHook(address, AT_ONCE)
     for number in range(5):
         hook.tell(Announcement("part", f"part {number}", READY))
     assert [heard.get(timeout=60)["text"] for _ in range(5)] == [f"part {n}" for n in range(5)]
     hook.close()
 
 
-def test_a_web_hook_that_is_away_is_told_of_once(caplog: pytest.LogCaptureFixture) -> None:
+@pytest.mark.parametrize(
+    ("path", "why"),
+    [
+        ("301", "it answers 301 Moved Permanently, moved to https://office/hook: [announce] hook must name"),
+        ("307", "it answers 307 Temporary Redirect, moved to https://office/hook: [announce] hook must name"),
+        ("404", "it answers 404 Not Found"),
+    ],
+)
+def test_what_a_web_hook_refuses_is_given_up_and_told_once(
+    posts: tuple[str, SimpleQueue[dict[str, object]]], path: str, why: str, caplog: pytest.LogCaptureFixture
+) -> None:
+    address, heard = posts
+    hook = WebHook(address + path, AT_ONCE)
+    for number in range(3):
+        hook.tell(Announcement("part", f"part {number}", READY))
+    assert [heard.get(timeout=60)["text"] for _ in range(3)] == [f"part {n}" for n in range(3)]
+    hook.close()
+    said = [each.getMessage() for each in caplog.records]
+    assert len(said) == 1
+    assert said[0].startswith(f"{address}{path} cannot be told: {why}")
+
+
+@pytest.mark.parametrize(
+    ("path", "why"),
+    [("503", "it answers 503 Service Unavailable"), ("garbage", "what it answers is not HTTP")],
+)
+def test_a_host_with_a_fault_is_asked_again_and_told_of_once(
+    posts: tuple[str, SimpleQueue[dict[str, object]]], path: str, why: str, caplog: pytest.LogCaptureFixture
+) -> None:
+    address, heard = posts
+    hook = WebHook(address + path, AT_ONCE)
+    hook.tell(Announcement("alarm", "ALARM", READY))
+    assert [heard.get(timeout=60)["text"] for _ in range(3)] == ["ALARM"] * 3
+    hook.close()
+    assert [each.getMessage() for each in caplog.records] == [f"{address}{path} cannot be told: {why}"]
+
+
+def test_a_web_hook_that_was_away_hears_all_of_it_in_order(caplog: pytest.LogCaptureFixture) -> None:
     asked: SimpleQueue[str] = SimpleQueue()
+    away = iter([True, True, True])
 
-    def away(address: str, _body: bytes) -> None:
-        asked.put(address)
-        raise OSError(111, "Connection refused")
+    def post(_address: str, body: bytes) -> None:
+        asked.put(json.loads(body)["text"])
+        if next(away, False):
+            raise OSError(111, "Connection refused")
 
-    hook = WebHook("http://shop/hook", away)
-    for _ in range(3):
-        hook.tell(Announcement("stop", "FEED HOLD", READY))
-        asked.get(timeout=60)
-    hook.tell(Announcement("stop", "FEED HOLD", READY))
-    asked.get(timeout=60)  # the three before are worked off
+    hook = WebHook("http://shop/hook", AT_ONCE, post)
+    for text in ("first", "second"):
+        hook.tell(Announcement("stop", text, READY))
+    assert [asked.get(timeout=60) for _ in range(5)] == ["first"] * 4 + ["second"]
     hook.close()
     assert [each.getMessage() for each in caplog.records] == [
         "http://shop/hook cannot be told: [Errno 111] Connection refused"
     ]
+
+
+def test_of_more_than_a_hundred_for_a_dead_hook_the_newest_are_kept() -> None:
+    asked: SimpleQueue[int] = SimpleQueue()
+    dead, queued = threading.Event(), threading.Event()
+
+    def post(_address: str, body: bytes) -> None:
+        asked.put(int(json.loads(body)["text"]))
+        assert queued.wait(60)
+        if not dead.is_set():
+            dead.set()
+            raise OSError(113, "No route to host")
+
+    hook = WebHook("http://shop/hook", AT_ONCE, post)
+    hook.tell(Announcement("part", "0", READY))
+    assert asked.get(timeout=60) == 0
+    for number in range(1, HELD + 31):
+        hook.tell(Announcement("part", str(number), READY))
+    queued.set()
+    assert [asked.get(timeout=60) for _ in range(HELD)] == list(range(31, HELD + 31))
+    hook.close()
 
 
 # --- an MQTT broker ---------------------------------------------------------------------------------
@@ -172,8 +245,8 @@ MOSQUITTO = shutil.which("mosquitto") or shutil.which("mosquitto", path="/usr/sb
 
 
 @pytest.fixture
-def mosquitto(tmp_path: Path) -> Iterator[int]:
-    """Eclipse's broker, by its port."""
+def mosquitto(tmp_path: Path) -> Iterator[tuple[int, int]]:
+    """Eclipse's broker, by its port and its process."""
     if MOSQUITTO is None:
         pytest.skip("mosquitto is not installed: no MQTT broker that is not ours")
     with socket.socket() as free:
@@ -185,36 +258,93 @@ def mosquitto(tmp_path: Path) -> Iterator[int]:
         assert running.stderr is not None
         while b"running" not in running.stderr.readline():
             assert running.poll() is None
-        yield port
+        yield port, running.pid
         running.terminate()
 
 
-def test_a_broker_hears_state_events_and_the_end(mosquitto: int) -> None:
-    heard: SimpleQueue[tuple[str, bytes, bool]] = SimpleQueue()
-    office = mqtt.Client(CallbackAPIVersion.VERSION2)
-    office.on_message = lambda _c, _d, message: heard.put(
-        (message.topic, bytes(message.payload), message.retain)
-    )
-    office.on_subscribe = lambda *_all: heard.put(("subscribed", b"", False))
-    office.connect("127.0.0.1", mosquitto)
-    office.subscribe("shop/#", 1)
-    office.loop_start()
-    assert heard.get(timeout=60)[0] == "subscribed"
-    broker = MqttBroker(table(mosquitto))
-    assert heard.get(timeout=60) == ("shop/gt75/available", b"online", False)
+class Office:
+    """Somebody at the broker who hears all of it."""
+
+    def __init__(self, port: int) -> None:
+        self._heard: SimpleQueue[tuple[str, bytes, bool]] = SimpleQueue()
+        self.client = mqtt.Client(CallbackAPIVersion.VERSION2)
+        self.client.on_message = lambda _c, _d, message: self._heard.put(
+            (message.topic, bytes(message.payload), message.retain)
+        )
+        self.client.on_subscribe = lambda *_all: self._heard.put(("subscribed", b"", False))
+        self.client.connect("127.0.0.1", port)
+        self.client.subscribe("shop/#", 1)
+        self.client.loop_start()
+        assert self.next()[0] == "subscribed"
+
+    def next(self) -> tuple[str, bytes, bool]:
+        """Topic, what is said, whether it was retained."""
+        return self._heard.get(timeout=60)
+
+    def close(self) -> None:
+        self.client.disconnect()
+        self.client.loop_stop()
+
+
+@pytest.fixture
+def office(mosquitto: tuple[int, int]) -> Iterator[Office]:
+    office = Office(mosquitto[0])
+    yield office
+    office.close()
+
+
+def test_a_broker_hears_state_events_and_the_end(mosquitto: tuple[int, int], office: Office) -> None:
+    broker = MqttBroker(table(mosquitto[0]))
+    assert office.next() == ("shop/gt75/available", b"online", False)
     broker.state(RUNNING)
-    topic, payload, _ = heard.get(timeout=60)
+    topic, payload, _ = office.next()
     assert (topic, json.loads(payload)) == ("shop/gt75/state", RUNNING)
     broker.tell(Announcement("part", "part 4 of pin.nc is done", RUNNING))
-    topic, payload, _ = heard.get(timeout=60)
+    topic, payload, _ = office.next()
     assert topic == "shop/gt75/event"
     assert json.loads(payload)["text"] == "part 4 of pin.nc is done"
     broker.close()
-    assert heard.get(timeout=60) == ("shop/gt75/available", b"offline", False)
-    office.unsubscribe("shop/#")
-    office.subscribe("shop/gt75/state", 1)  # who comes later sees the last state
-    while not (late := heard.get(timeout=60))[2]:
+    assert office.next() == ("shop/gt75/available", b"offline", False)
+    office.client.unsubscribe("shop/#")
+    office.client.subscribe("shop/gt75/state", 1)  # who comes later sees the last state
+    while not (late := office.next())[2]:
         pass
     assert json.loads(late[1]) == RUNNING
-    office.disconnect()
-    office.loop_stop()
+
+
+def test_a_broker_that_was_away_hears_online_state_and_the_newest_hundred(
+    mosquitto: tuple[int, int], office: Office, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    away: list[mqtt.Client] = []
+
+    def begins_later(client: mqtt.Client) -> None:
+        away.append(client)
+
+    with monkeypatch.context() as cable_out:
+        cable_out.setattr(mqtt.Client, "loop_start", begins_later)
+        broker = MqttBroker(table(mosquitto[0]))
+        broker.state(READY)
+        for number in range(HELD + 30):
+            broker.tell(Announcement("part", str(number), READY))
+    away[0].loop_start()
+    assert office.next() == ("shop/gt75/available", b"online", False)
+    assert office.next()[0] == "shop/gt75/state"
+    assert [json.loads(office.next()[1])["text"] for _ in range(HELD)] == [
+        str(number) for number in range(30, HELD + 30)
+    ]
+    broker.close()
+
+
+def test_a_desk_closes_beside_a_broker_that_is_frozen(mosquitto: tuple[int, int], office: Office) -> None:
+    port, process = mosquitto
+    broker = MqttBroker(table(port))
+    assert office.next()[1] == b"online"
+    os.kill(process, signal.SIGSTOP)
+    try:
+        for number in range(HELD + 30):
+            broker.tell(Announcement("part", str(number), READY))
+        broker.close()  # raises nothing, though what waits cannot go out
+    finally:
+        os.kill(process, signal.SIGCONT)
+    assert office.next()[0] == "shop/gt75/event"  # not offline: that is its last will's
+    broker.close()

@@ -1,0 +1,104 @@
+"""A web hook is told: each announcement is posted to an address, until it is taken or refused."""
+
+from __future__ import annotations
+
+import logging
+import threading
+from collections import deque
+from collections.abc import Callable
+from http import HTTPStatus
+from http.client import BadStatusLine, HTTPException
+from urllib.error import HTTPError, URLError
+from urllib.request import HTTPRedirectHandler, Request, build_opener
+
+from app.shopfloor.announcements import HELD, Announcement
+from app.shopfloor.status_file import Status
+
+_PATIENCE = 5.0  # s
+_LONGEST = 200  # characters of what the other side says that a sentence repeats
+_LATER = frozenset({HTTPStatus.REQUEST_TIMEOUT, HTTPStatus.TOO_MANY_REQUESTS})
+_log = logging.getLogger(__name__)
+
+
+class WebHook:
+    """Each announcement is posted as JSON, by a thread of its own, in their order.
+
+    A host that is away or has a fault of its own is asked again after ``again`` seconds. What it refuses
+    (4xx) or sends elsewhere (3xx) would be refused again: that one is given up.
+    """
+
+    def __init__(self, address: str, again: float, post: Callable[[str, bytes], None] | None = None) -> None:
+        self._address, self._again, self._post = address, again, post or posted
+        self._waiting: deque[Announcement] = deque(maxlen=HELD)
+        self._there, self._closing = threading.Event(), threading.Event()
+        self._failed = False
+        self._thread = threading.Thread(target=self._work, name="web-hook", daemon=True)
+        self._thread.start()
+
+    def state(self, status: Status) -> None:
+        """A web hook is told of what happens, not of every change."""
+
+    def tell(self, announcement: Announcement) -> None:
+        """Queue it."""
+        self._waiting.append(announcement)
+        self._there.set()
+
+    def close(self) -> None:
+        """What is under way goes out; nobody waits for it."""
+        self._closing.set()
+        self._there.set()
+
+    def _work(self) -> None:
+        while not self._closing.is_set():
+            self._there.wait()
+            self._there.clear()
+            while self._waiting:
+                self._until_taken(self._waiting.popleft())
+
+    def _until_taken(self, announcement: Announcement) -> None:
+        while not self._settled(announcement) and len(self._waiting) < HELD:  # else newer ones push it out
+            if self._closing.wait(self._again):
+                self._waiting.clear()
+                return
+
+    def _settled(self, announcement: Announcement) -> bool:
+        """Whether it is taken, or refused for good."""
+        try:
+            self._post(self._address, announcement.json())
+        except (URLError, HTTPException, OSError, ValueError) as error:
+            if not self._failed:
+                _log.warning("%s cannot be told: %s", self._address, _why(error))
+            self._failed = True
+            return isinstance(error, HTTPError) and error.code < 500 and error.code not in _LATER
+        self._failed = False
+        return True
+
+
+class _Stay(HTTPRedirectHandler):
+    """Goes nowhere else: urllib would ask there by GET, without what is to be told."""
+
+    def redirect_request(self, *_request: object, **_more: object) -> None:
+        """No other request: the answer stands as a refusal."""
+
+
+def posted(address: str, body: bytes) -> None:
+    """Post JSON to an address. Raises OSError, ValueError or HTTPException."""
+    request = Request(address, body, {"Content-Type": "application/json"}, method="POST")
+    try:
+        with build_opener(_Stay).open(request, timeout=_PATIENCE):
+            return
+    except HTTPError as error:
+        error.close()
+        raise
+
+
+def _why(error: Exception) -> str:
+    if isinstance(error, HTTPError):
+        to = error.headers.get("Location", "") if error.code < 400 else ""
+        where = f", moved to {to}: [announce] hook must name that address" if to else ""
+        why = f"it answers {error.code} {error.reason}{where}"
+    elif isinstance(error, BadStatusLine):
+        why = "what it answers is not HTTP"
+    else:
+        why = str(getattr(error, "reason", error))
+    return "".join(sign for sign in why if sign.isprintable())[:_LONGEST]
