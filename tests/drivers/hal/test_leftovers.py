@@ -35,7 +35,10 @@ def test_a_folder_in_use_stays_and_a_deserted_one_goes() -> None:
 def test_what_still_runs_is_waited_for_and_never_removed_under_it() -> None:
     folder, lock = new_folder()
     os.close(lock)
-    with subprocess.Popen(["sh", "-c", "read x; exit", str(folder)], stdin=subprocess.PIPE) as left:
+    still_runs = ["sh", "-c", "echo runs; read x; exit", str(folder)]
+    with subprocess.Popen(still_runs, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as left:
+        assert left.stdout
+        assert left.stdout.readline() == b"runs\n"  # a process that is just being begun has no command line yet
         clear_away(lambda: False)
         assert folder.exists()
 
