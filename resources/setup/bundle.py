@@ -67,8 +67,9 @@ def fetch_wheels(folder: Path, machine: str) -> None:
     """All wheels of the desk for every supported Python; pip checks each against its locked hash."""
     for python in PYTHONS:
         for locked in ("desk", "installer"):
-            words = ["--quiet", "--disable-pip-version-check", "--require-hashes", "--only-binary=:all:"]
-            words += [f"--python-version={python}", *platforms(machine), f"--dest={folder}"]
+            words = ["--quiet", "--disable-pip-version-check", "--only-binary=:all:"]
+            words += ["--require-hashes", "--no-deps", f"--dest={folder}"]
+            words += [f"--python-version={python}", *platforms(machine)]
             run(sys.executable, "-m", "pip", "download", *words, "-r", locked_file(locked))
 
 

@@ -190,6 +190,9 @@ not_fetched() {
     exit 2
 }
 
+# What is locked is whole, so pip resolves nothing: an older one would look at the newest coverage[toml] first, which has no hash.
+LOCKED="--require-hashes --no-deps"
+
 # python_environment SET: makes or renews the environment by locked-SET.txt when that or TurnDesk's own list has changed.
 python_environment() {
     locked="$ROOT/resources/setup/locked-$1.txt"
@@ -198,7 +201,8 @@ python_environment() {
     wanted=$(cat "$ROOT/pyproject.toml" "$locked" "$ROOT/setup.cfg" | cksum)
     [ -f "$stamp" ] && [ "$(cat "$stamp")" = "$wanted" ] && return
     say "Setting up Python packages in $PYTHON_ENV (about 130 MB to fetch, once)"
-    pip_install --require-hashes --only-binary :all: -r "$locked" || not_fetched
+    # shellcheck disable=SC2086
+    pip_install $LOCKED --only-binary :all: -r "$locked" || not_fetched
     pip_install --no-deps --no-build-isolation -e "$ROOT" || not_fetched
     printf '%s\n' "$wanted" >"$stamp"
 }

@@ -22,7 +22,7 @@ can_make_environment() { "$1" -c 'import venv'; }
 make_environment() {
     "$PYTHON" -m venv --without-pip "$PYTHON_ENV"
     # shellcheck disable=SC2086
-    PYTHONPATH=$(echo "$ROOT"/wheels/pip-*.whl) "$PYTHON_ENV/bin/python" -m pip install -q $FROM --require-hashes -r "$ROOT/locked-installer.txt"
+    PYTHONPATH=$(echo "$ROOT"/wheels/pip-*.whl) "$PYTHON_ENV/bin/python" -m pip install -q $FROM $LOCKED -r "$ROOT/locked-installer.txt"
 }
 place() { printf '%s' "$PYTHON_ENV"; }
 
@@ -41,7 +41,7 @@ find_python
 say "Setting up TurnDesk $VERSION in $PYTHON_ENV"
 right_environment || new_environment
 # shellcheck disable=SC2086
-pip_install $FROM --require-hashes -r "$ROOT/locked-desk.txt" || not_fetched
+pip_install $FROM $LOCKED -r "$ROOT/locked-desk.txt" || not_fetched
 # shellcheck disable=SC2086
 pip_install $FROM --no-deps --force-reinstall "$ROOT"/turndesk-*.whl || not_fetched
 cp -R "$ROOT/licences" "$ROOT/licences.md" "$ROOT/sbom.cdx.json" "$PYTHON_ENV/"

@@ -140,7 +140,7 @@ def main() -> int:
         return 1
     except KeyError as error:
         sys.stderr.write(
-            f"{error} is not installed here: pip install --require-hashes -r its locked file first\n"
+            f"{error} is not installed: pip install --require-hashes --no-deps -r its locked file first\n"
         )
         return 1
     return 0

@@ -1,8 +1,8 @@
 """Locks the Python packages by version and hash: ``python -m resources.setup.lock [--upgrade]``.
 
 From the requirements of ``pyproject.toml`` come the files ``locked-*.txt``, which the set-up gives to
-``pip install --require-hashes``: one for every supported Python, for Linux, macOS and Windows. Versions stay
-as they are unless ``--upgrade`` is said. It needs ``uv`` (``pipx install uv``) and a network.
+``pip install --require-hashes --no-deps``: one for every supported Python, for Linux, macOS and Windows.
+Versions stay as they are unless ``--upgrade`` is said. It needs ``uv`` (``pipx install uv``) and a network.
 """
 
 from __future__ import annotations

@@ -87,20 +87,36 @@ def test_who_may_not_install_is_told_what_to_ask_for(tmp_path: Path) -> None:
     )
 
 
+def wheel_in(shop: Path, name: str, version: str, needs: str = "") -> Path:
+    """An empty package in the folder of wheels, which may need another one."""
+    wheel = shop / "wheels" / f"{name}-{version}-py3-none-any.whl"
+    told = f"Metadata-Version: 2.1\nName: {name}\nVersion: {version}\n" + (
+        f"Requires-Dist: {needs}\n" if needs else ""
+    )
+    with zipfile.ZipFile(wheel, "w") as archive:
+        archive.writestr(f"{name}.py", "")
+        archive.writestr(f"{name}-{version}.dist-info/METADATA", told)
+        archive.writestr(f"{name}-{version}.dist-info/WHEEL", "Wheel-Version: 1.0\nRoot-Is-Purelib: true\n")
+        archive.writestr(f"{name}-{version}.dist-info/RECORD", "")
+    return wheel
+
+
+def lock(shop: Path, *wheels: Path) -> None:
+    """Locks these packages and no other."""
+    lines = []
+    for wheel in wheels:
+        name, version, _ = wheel.name.split("-", 2)
+        digest = hashlib.sha256(wheel.read_bytes()).hexdigest()
+        lines += [f"{name}=={version} \\", f"    --hash=sha256:{digest}"]
+    (shop / "resources/setup/locked-desk.txt").write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
 @pytest.fixture
 def shop(tmp_path: Path) -> Path:
     """A clone of a product that needs one package, its environment made, its packages in a folder."""
-    wheel = tmp_path / "wheels" / "tiny-1.0-py3-none-any.whl"
-    wheel.parent.mkdir()
-    with zipfile.ZipFile(wheel, "w") as archive:
-        archive.writestr("tiny.py", "")
-        archive.writestr("tiny-1.0.dist-info/METADATA", "Metadata-Version: 2.1\nName: tiny\nVersion: 1.0\n")
-        archive.writestr("tiny-1.0.dist-info/WHEEL", "Wheel-Version: 1.0\nRoot-Is-Purelib: true\n")
-        archive.writestr("tiny-1.0.dist-info/RECORD", "")
-    setup = tmp_path / "resources" / "setup"
-    setup.mkdir(parents=True)
-    digest = hashlib.sha256(wheel.read_bytes()).hexdigest()
-    (setup / "locked-desk.txt").write_text(f"tiny==1.0 \\\n    --hash=sha256:{digest}\n", encoding="utf-8")
+    (tmp_path / "wheels").mkdir()
+    (tmp_path / "resources" / "setup").mkdir(parents=True)
+    lock(tmp_path, wheel_in(tmp_path, "tiny", "1.0"))
     (tmp_path / "pyproject.toml").touch()
     (tmp_path / "setup.cfg").touch()
     version = f"{sys.version_info.major}.{sys.version_info.minor}"
@@ -114,6 +130,18 @@ def shop(tmp_path: Path) -> Path:
 def set_up(shop: Path, **environment: str) -> subprocess.CompletedProcess[str]:
     offline = {"PIP_NO_INDEX": "1", "PIP_FIND_LINKS": str(shop / "wheels"), "ROOT": str(shop)}
     return tell("python_environment desk", **offline | environment)
+
+
+@needs_pip
+def test_a_newer_release_of_what_is_locked_changes_nothing(shop: Path) -> None:
+    """A package asks for another with an extra, and the index has a newer one of that without a hash here."""
+    lock(shop, wheel_in(shop, "tiny", "1.0", "other[more]>=1"), wheel_in(shop, "other", "1.0"))
+    wheel_in(shop, "other", "2.0")
+    product = '[project]\nname = "turndesk"\nversion = "1"\n[tool.setuptools]\npy-modules = []\n'
+    (shop / "pyproject.toml").write_text(product, encoding="utf-8")
+    told = set_up(shop)
+    assert told.returncode == 0, told.stderr
+    assert (shop / ".venv" / ".turndesk-desk").exists()
 
 
 @needs_pip

@@ -38,7 +38,8 @@ def test_what_still_runs_is_waited_for_and_never_removed_under_it() -> None:
     still_runs = ["sh", "-c", "echo runs; read x; exit", str(folder)]
     with subprocess.Popen(still_runs, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as left:
         assert left.stdout
-        assert left.stdout.readline() == b"runs\n"  # a process that is just being begun has no command line yet
+        # A process that is just being begun has no command line yet.
+        assert left.stdout.readline() == b"runs\n"
         clear_away(lambda: False)
         assert folder.exists()
 
