@@ -139,14 +139,15 @@ class Machine(Rig):
         super().__post_init__()
         ports = self.sim.ports
         self.broken = {name: Breaking(getattr(ports, name)) for name in _PORTS}
-        self.sim = self.sim._replace(ports=dataclasses.replace(ports, **self.broken))
+        axes, spindle, io = (self.broken[name] for name in _PORTS)
+        self.sim = self.sim._replace(ports=dataclasses.replace(ports, axes=axes, spindle=spindle, io=io))
         self.executor = Executor(self.machine, self.sim.ports, self.events.append, self._passes)
         self.true_ports = ports
         self.pressed = self.jogged = self.homed = self.switched = False  # since the tick before
         self.unexpected = False  # a driver has raised what no driver may
         self.blind = False  # an encoder may tell what is not so
         self.jog_asked = 0.0
-        self.left = -1e9  # when the last state in which slides move was left
+        self.stood = -1e9  # when the last state in which slides move was left
         self.last_press = -1e9  # when a start was last asked for, by palms or from the screen
         self.fed_badly = self.stopped = self.powerless = 0.0
         self.announced = 0.0  # s for which the start of the spindle has stood in the snapshot
@@ -155,8 +156,9 @@ class Machine(Rig):
 
     # --- time ---------------------------------------------------------------------------------------------
 
-    def tick(self, dt: float = TICK) -> None:
+    def tick(self, dt: float | None = None) -> None:
         """One tick, and all that must hold after it."""
+        dt = self.every if dt is None else dt
         before, place = self.shot, self.sim.machine.true_position()
         self._setpoints(dt)
         self.clock.advance(dt)
@@ -217,7 +219,7 @@ class Machine(Rig):
 
     def _check(self, old: Snapshot, new: Snapshot, place: tuple[float, ...], dt: float) -> None:
         if old.state in MOVES and new.state not in MOVES:
-            self.left = new.t
+            self.stood = new.t
         told = any("SPINDLE STARTS" in text for text in old.announced)
         self.announced = self.announced + dt if told else 0.0
         self._nothing_moves_unasked(old, new, place, dt)
@@ -243,7 +245,7 @@ class Machine(Rig):
         if new.state is State.HOME and old.state is not State.HOME:
             assert self.homed
         way = math.dist(self.sim.machine.true_position()[:2], place[:2])
-        if new.state not in MOVES and new.t - self.left > SETTLES + dt:
+        if new.state not in MOVES and new.t - self.stood > SETTLES + dt:
             # How far a slide goes behind an encoder that stands is measured in test_following_error.
             assert way < STILL or self.blind, f"{way} mm in {new.state}"
 
@@ -278,7 +280,7 @@ class Machine(Rig):
         """At rest the place on the screen is the place of the slides, or the screen says that it is not."""
         if self.blind or new.state in MOVES or new.alarms or new.state in {State.ESTOP, State.DISABLED}:
             return
-        if new.t - self.left > SETTLES and all(new.homed):
+        if new.t - self.stood > SETTLES and all(new.homed):
             true = self.sim.machine.true_position()
             assert max(abs(a - b) for a, b in zip(new.actual, true, strict=True)) < 0.2, (new.actual, true)
 
@@ -306,7 +308,7 @@ class Machine(Rig):
 
     def _on_the_path(self, new: Snapshot) -> None:
         """Wherever a cycle was stopped: on a line or circle of its program."""
-        if new.state not in STOPPED or new.t - self.left < SETTLES or new.waiting_for == "THREAD":
+        if new.state not in STOPPED or new.t - self.stood < SETTLES or new.waiting_for == "THREAD":
             return
         x, z = new.demand[:2]
         off = min((_off(block, x, z) for block in self.blocks if block.moves), default=0.0)

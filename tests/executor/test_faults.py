@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Callable
 
 import pytest
 
@@ -12,7 +13,7 @@ from core.executor.snapshot import Snapshot, State
 from core.executor.watchdog import ExecutorThread
 from core.interpreter.actions import Collet, Dwell, SpindleRun
 from core.machine.machine_model import Machine
-from core.ports import ALL_UNKNOWN
+from core.ports import ALL_UNKNOWN, StationState
 from drivers.clocks import RealClock
 from tests.executor.made import Maker
 from tests.executor.rig import INCH, Rig, unhomed_machine
@@ -45,14 +46,14 @@ def test_an_estop_pressed_behind_the_look_at_the_station_is_one_and_no_loss_of_p
     rig.start("G90G94F300\nG01F20Z-2\nM30\n")
     rig.run(1.0)
     station = rig.sim.ports.station
-    look = type(station).snapshot
+    look = station.snapshot
 
-    def pressed_behind(port: object) -> object:
-        seen = look(port)
+    def pressed_behind() -> StationState:
+        seen = look()
         rig.sim.machine.press_estop()
         return seen
 
-    monkeypatch.setattr(type(station), "snapshot", pressed_behind)
+    monkeypatch.setattr(station, "snapshot", pressed_behind)
     rig.tick()
     monkeypatch.undo()
     rig.run(1.0)
@@ -179,10 +180,11 @@ def test_a_jammed_slide_stops_all() -> None:
 
 
 def test_a_stuck_encoder_and_a_drive_fault_stop_all() -> None:
-    for break_it, code in (
+    breaks: tuple[tuple[Callable[[Rig], None], str], ...] = (
         (lambda rig: rig.sim.machine.encoder_stuck("Z"), "following"),
         (lambda rig: rig.sim.machine.drive_fault("Z", "overcurrent"), "axis"),
-    ):
+    )
+    for break_it, code in breaks:
         rig = Rig()
         rig.start(LONG)
         rig.run(0.4)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 import pytest
@@ -11,19 +10,20 @@ import pytest
 from app.compose.machine_files import parse_machine
 from core.executor.commands import FeedHold
 from core.executor.snapshot import Snapshot, State
-from core.geometry.machine_travel import FloatArray, Travel
+from core.geometry.machine_travel import Travel
+from core.geometry.rotary_axes import Kinematics, PivotMove, Rotary, Slide
 from core.interpreter.actions import ProgramEnd
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.modal_state import Modal
 from tests.executor.rig import Rig
 from tests.machine.mill import MILL
 
+AXES = ("X", "Y", "Z", "A", "C")
 HOME = (0.0,) * 5
 
 
 def block(n: int, kind: Kind, feed: float, travel: Travel | None, end: bool = False) -> Block:
     """A block of a machine with five axes; mm/s, or degrees/s where only rotary axes turn."""
-    zeros = dict.fromkeys(("x0", "z0", "c0", "x", "z", "c", "offset_x", "offset_z"), 0.0)
     action = ProgramEnd(reset=True) if end else None
     return Block(
         n=n,
@@ -34,7 +34,14 @@ def block(n: int, kind: Kind, feed: float, travel: Travel | None, end: bool = Fa
         feed=feed,
         travel=travel,
         action=action,
-        **zeros,
+        x0=0.0,
+        z0=0.0,
+        c0=0.0,
+        x=0.0,
+        z=0.0,
+        c=0.0,
+        offset_x=0.0,
+        offset_z=0.0,
     )
 
 
@@ -65,7 +72,7 @@ def test_all_five_axes_arrive_together() -> None:
     rig = rig_with(line(1, HOME, there, 25.0))
     shots = seen(rig)
     rig.until(State.IDLE)
-    assert rig.shot.axes == ("X", "Y", "Z", "A", "C")
+    assert rig.shot.axes == AXES
     assert rig.shot.actual == pytest.approx(there, abs=2e-3)
     middle = np.array([shot.demand for shot in shots if 0.0 < shot.demand[0] < 30.0])
     assert len(middle) > 50
@@ -98,40 +105,26 @@ def test_a_hold_stays_on_the_line() -> None:
     assert at[[1, 3]] == pytest.approx(at[0] * np.array([0.5, 0.3]), abs=1e-9)
 
 
-@dataclass(frozen=True)
-class Swing:
-    """A quarter circle of X and Z about a point 50 mm off while A turns with it."""
-
-    length: float = 90.0
-    straight: bool = False
-    in_degrees: bool = True
-
-    def machine(self, share: FloatArray) -> FloatArray:
-        angle = np.radians(90.0 * share)
-        table = np.zeros((len(share), 5))
-        table[:, 0], table[:, 2], table[:, 3] = (
-            50.0 * np.sin(angle),
-            50.0 - 50.0 * np.cos(angle),
-            90.0 * share,
-        )
-        return table
-
-    def part(self, points: FloatArray) -> FloatArray:
-        return points[:, :3]
-
-    def nearest(self) -> float:
-        return 0.5
+TRUNNION = Rotary("A", True, (1.0, 0.0, 0.0), (0.0, 0.0, 50.0))  # its line lies 50 mm above the spot
+SLIDES = (
+    Slide("X", -500.0, 500.0, 250.0),
+    Slide("Y", -500.0, 500.0, 250.0),
+    Slide("Z", -500.0, 500.0, 250.0),
+)
 
 
 def test_a_way_out_of_proportion_is_followed_all_along() -> None:
-    swing = Swing()
-    travel = Travel(HOME, tuple(swing.machine(np.array([1.0]))[0].tolist()), swing.length, swing)
-    rig = rig_with(block(1, Kind.FEED, 30.0, travel))
+    """The tip stays on its spot of the workpiece while A swings it: a quarter circle of Y and Z."""
+    spot = (0.0, 0.0, 0.0)
+    table = Kinematics(SLIDES, (Rotary("C", True, (0.0, 0.0, 1.0), spot), TRUNNION), spot, order=AXES)
+    swing = PivotMove(table, {"A": 0.0, "C": 0.0}, {"A": 90.0, "C": 0.0}, spot, 0.0, 0.0, length=90.0)
+    rig = rig_with(block(1, Kind.FEED, 30.0, Travel(HOME, (0.0, -50.0, 50.0, 90.0, 0.0), 90.0, swing)))
     shots = seen(rig)
     took = rig.until(State.IDLE)
     assert 3.0 < took < 3.5  # 90 degrees at 30 degrees/s
-    x, _, z, a, _ = np.array([shot.demand for shot in shots]).T
-    off = np.hypot(x - 50.0 * np.sin(np.radians(a)), z - 50.0 + 50.0 * np.cos(np.radians(a)))
+    _, y, z, a, _ = np.array([shot.demand for shot in shots]).T
+    off = np.hypot(y + 50.0 * np.sin(np.radians(a)), z - 50.0 + 50.0 * np.cos(np.radians(a)))
+    assert a.max() == pytest.approx(90.0)
     assert off.max() < 2e-4
 
 

@@ -35,7 +35,7 @@ def wheeled(*inputs: str, per: int = 1) -> Machine:
     """The shipped lathe with a handwheel and these inputs beside it."""
     machine = load_machine()
     wheel = AnalogModel("handwheel", "wheel", 0.0, 1.0, counts_per_click=per)
-    wired = {name: InputModel(name, f"test {name}", "") for name in inputs}
+    wired = {name: InputModel(name, f"test {name}") for name in inputs}
     return dataclasses.replace(
         machine,
         inputs={**machine.inputs, **wired},
@@ -48,7 +48,7 @@ class WheelRig(Rig):
 
     page: Wheel | None = None
 
-    def tick(self, dt: float = TICK) -> None:
+    def tick(self, dt: float | None = None) -> None:
         if self.page is not None:
             self.executor.post(self.page)
         super().tick(dt)

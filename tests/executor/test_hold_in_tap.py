@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import pytest
@@ -102,7 +103,11 @@ def test_a_hold_before_the_tap_is_at_once() -> None:
 
 
 def test_reset_and_e_stop_do_not_wait() -> None:
-    for press in (lambda rig: rig.post(Reset()), lambda rig: rig.sim.machine.press_estop()):
+    presses: tuple[Callable[[Rig], None], ...] = (
+        lambda rig: rig.post(Reset()),
+        lambda rig: rig.sim.machine.press_estop(),
+    )
+    for press in presses:
         rig = tapping(RIGID)
         deep(rig, -3.0)
         rig.post(FeedHold())

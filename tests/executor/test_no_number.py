@@ -33,7 +33,13 @@ def test_a_position_that_is_no_number_stops_the_machine(
     def told() -> AxisSample:
         real = sample()
         x, _, *others = getattr(real, field)
-        return real._replace(**{field: (x, odd, *others)})
+        places = (x, odd, *others)
+        match field:
+            case "demand":
+                return real._replace(demand=places)
+            case "actual":
+                return real._replace(actual=places)
+        return real._replace(following_error=places)
 
     monkeypatch.setattr(rig.sim.ports.axes, "sample", told)
     rig.tick()

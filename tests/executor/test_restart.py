@@ -12,6 +12,7 @@ from app.searchto.searchto_plan import way_out_of
 from core.executor.commands import CycleStart, FeedHold, LoadJob, Prepare, Reset
 from core.executor.job import Job, Proof, make_job
 from core.executor.snapshot import Snapshot, Starts, State
+from core.interpreter.checkpoint import Leg
 from core.interpreter.restart.restart_approach import Choices
 from core.interpreter.restart.state_rebuild import StateRebuild
 from core.language.source import Source
@@ -202,7 +203,10 @@ def test_a_way_beyond_the_travel_is_found_by_the_proof() -> None:
     job = restart_job(rig, 8)
     begin = job.setup.begin
     assert begin is not None
-    far = tuple(step._replace(z=500.0) if getattr(step, "z", None) else step for step in begin.approach)
+    far = tuple(
+        step._replace(z=500.0) if isinstance(step, Leg) and step.z is not None else step
+        for step in begin.approach
+    )
     setup = replace(job.setup, begin=begin._replace(approach=far))
     report = prove(job.source, setup, rig.machine)
     assert any("beyond the travel limit" in each.message for each in report.errors)

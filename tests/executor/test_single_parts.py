@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import Any
 
 import pytest
 
@@ -23,13 +22,14 @@ from core.executor.commands import (
 from core.executor.drive_test_path import DriveTestPath, Limits, Shape
 from core.executor.homing_order import Homing
 from core.executor.jogging import jog_ramps
+from core.executor.machine_context import MachineContext
 from core.executor.raised_alarm import AlarmError
 from core.executor.snapshot import State
 from core.executor.spindle_control import SpindleAngle, SpindleDemand
 from core.executor.spindle_orientation import Orientation
 from core.executor.standstill import at_speed
 from core.executor.thread_path import ThreadPath
-from core.ports import Stop
+from core.ports import AxisSample, Stop
 from tests.executor.played_controller import context_of
 from tests.executor.rig import Rig
 from tests.executor.test_thread_curve import LIMITS, OUT, place, thread
@@ -179,8 +179,14 @@ class _Port:
     def run(self, rpm: float) -> None:
         self.told.append(rpm)
 
+    def coast(self) -> None:
+        self.told.append(0.0)
+
     def speed(self) -> float:
         return self.told[-1] if self.told else 0.0
+
+    def angle(self) -> None:
+        """It has no encoder."""
 
     def fault(self) -> str:
         return ""
@@ -271,72 +277,67 @@ def test_an_angle_that_the_drive_lets_slip_is_an_alarm_once() -> None:
 # --- homing -------------------------------------------------------------------------------------------------
 
 
-@dataclass
-class _Sample:
-    homed: tuple[bool, ...] = (False, False, True)
-    moving: bool = False
+LOST, FOUND = (False, False, True), (True, True, True)  # of X, Z and C
 
 
 @dataclass
-class _Axes:
-    axes: tuple[str, ...] = ("X", "Z", "C")
-    asked: list[str] = field(default_factory=list)
+class _Asked:
+    """What the homing asks of the axes."""
+
+    homed: list[str] = field(default_factory=list)
     stopped: list[Stop] = field(default_factory=list)
 
-    def home(self, name: str) -> None:
-        self.asked.append(name)
 
-    def stop(self, how: Stop) -> None:
-        self.stopped.append(how)
-
-
-def homing() -> tuple[Homing, Any, _Axes]:
+def homing(monkeypatch: pytest.MonkeyPatch) -> tuple[Homing, MachineContext, _Asked]:
     """Of the shipped lathe, X and Z lost."""
-    context, axes = context_of(None), _Axes()
-    context.ports = context.ports.__class__(**{**vars_of(context.ports), "axes": axes})
-    context.sample = _Sample()
-    return Homing(context), context, axes
+    context, asked = context_of(None), _Asked()
+    monkeypatch.setattr(context.ports.axes, "home", asked.homed.append)
+    monkeypatch.setattr(context.ports.axes, "stop", asked.stopped.append)
+    context.sample = sample(context, LOST)
+    return Homing(context), context, asked
 
 
-def vars_of(ports: Any) -> dict[str, Any]:
-    """Of a frozen dataclass with slots."""
-    return {name: getattr(ports, name) for name in ports.__dataclass_fields__}
+def sample(context: MachineContext, homed: tuple[bool, ...], *, moving: bool = False) -> AxisSample:
+    """What the axes say of themselves."""
+    return context.sample._replace(homed=homed, moving=moving)
 
 
-def test_the_next_axis_waits_until_the_one_before_stands() -> None:
-    order, context, axes = homing()
+def test_the_next_axis_waits_until_the_one_before_stands(monkeypatch: pytest.MonkeyPatch) -> None:
+    order, context, asked = homing(monkeypatch)
     assert order.begin("") == ""
     assert not order.step()
-    first = axes.asked[0]
+    first = asked.homed[0]
     for n in range(5):
-        context.now, context.sample = 0.01 * n, _Sample(moving=True)
+        context.now, context.sample = 0.01 * n, sample(context, LOST, moving=True)
         assert not order.step()
     found = {"X": (True, False, True), "Z": (False, True, True)}[first]
-    context.now, context.sample = 0.06, _Sample(homed=found, moving=True)
+    context.now, context.sample = 0.06, sample(context, found, moving=True)
     assert not order.step()
-    assert len(axes.asked) == 1  # found, and still braking
-    context.now, context.sample = 0.07, _Sample(homed=found)
+    assert len(asked.homed) == 1  # found, and still braking
+    context.now, context.sample = 0.07, sample(context, found)
     assert not order.step()
-    assert sorted(axes.asked) == ["X", "Z"]
-    context.now, context.sample = 0.08, _Sample(homed=(True, True, True), moving=True)
+    assert sorted(asked.homed) == ["X", "Z"]
+    context.now, context.sample = 0.08, sample(context, FOUND, moving=True)
     assert not order.step()
-    context.sample = _Sample(homed=(True, True, True))
+    context.sample = sample(context, FOUND)
     assert order.step()
 
 
-def test_homing_of_what_is_not_lost_or_not_there_does_not_begin_and_given_up_it_stops() -> None:
-    order, context, axes = homing()
+def test_homing_of_what_is_not_lost_or_not_there_does_not_begin_and_given_up_it_stops(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    order, context, asked = homing(monkeypatch)
     assert order.begin("Q") == "this machine has no axis Q to home"
-    context.sample = _Sample(homed=(True, True, True))
+    context.sample = sample(context, FOUND)
     assert order.begin("") == "every axis knows its position"
-    context.sample = _Sample()
+    context.sample = sample(context, LOST)
     order.begin("X")
     order.step()
     order.stop()
-    assert (axes.asked, axes.stopped) == (["X"], [Stop.RAMP_HOLD])
-    context.sample = _Sample(homed=(True, False, True))
+    assert (asked.homed, asked.stopped) == (["X"], [Stop.RAMP_HOLD])
+    context.sample = sample(context, (True, False, True))
     assert order.step()
-    assert axes.asked == ["X"]
+    assert asked.homed == ["X"]
 
 
 # --- outputs ------------------------------------------------------------------------------------------------

@@ -26,9 +26,10 @@ pytestmark = pytest.mark.long
 TOOLS = {4: ToolOffset()}
 V, A = 127.0, 3048.0  # of the shipped lathe
 START, DEPTH, FIRST = 0.237, 0.231, 0.025  # in; two passes
-FORMS = {
-    "P": (f"G33X{DEPTH}Z-.7I{FIRST}K%gP", START + 3 * FIRST),
-    "straight": (f"G33X{DEPTH}Z-.7I{FIRST}K%g", START + 3 * FIRST),
+OUT = START + 3 * FIRST  # in, where X is drawn out to
+FORMS: dict[str, tuple[str, float | None]] = {  # a pass, and where X is drawn out to where that is one place
+    "P": (f"G33X{DEPTH}Z-.7I{FIRST}K%gP", OUT),
+    "straight": (f"G33X{DEPTH}Z-.7I{FIRST}K%g", OUT),
     "taper": (f"G33X{DEPTH}Z-.7I{FIRST}K%gA.02P", None),
     "bore": (f"G33X{START + 0.006}Z-.7I{FIRST}K%gP", START - 3 * FIRST),
 }
@@ -70,9 +71,17 @@ class Slides:
         return [float(np.ptp(z[one] / self.lead + turns[one])) * self.lead for one in passes if len(one) > 3]
 
 
-def begun(rpm: int, lead: float, form: str, pot: float = 1.0, **kind: object) -> tuple[Rig, Slides]:
+def begun(
+    rpm: int,
+    lead: float,
+    form: str,
+    pot: float = 1.0,
+    *,
+    gear: bool = True,
+    clock_kind: type[StepClock] = StepClock,
+) -> tuple[Rig, Slides]:
     """A rig under way to the thread."""
-    rig = Rig(**kind)  # type: ignore[arg-type]
+    rig = Rig(gear=gear, clock_kind=clock_kind)
     rig.sim.machine.set_spindle_pot(pot)
     slides = Slides(rig, lead)
     coarse = f"G35F2\nG92X{START}Z.5\n" if lead > 0.2 else ""
@@ -85,22 +94,26 @@ def at_z(z: float) -> Callable[[Snapshot], bool]:
     return lambda shot: shot.block_text.startswith("G33") and shot.demand[1] < z * INCH
 
 
-SLOPES = {
+def down_and_up(rig: Rig, to: float) -> None:
+    rig.sim.machine.set_spindle_pot(to)
+    rig.run(0.3)
+    rig.sim.machine.set_spindle_pot(1.0)
+
+
+def load_and_back(rig: Rig, _: float) -> None:
+    rig.sim.machine.spindle_bog(0.55)
+    rig.run(0.25)
+    rig.sim.machine.spindle_bog(1.0)
+
+
+SLOPES: dict[str, Callable[[Rig, float], None]] = {
     "pot": lambda rig, to: rig.sim.machine.set_spindle_pot(to),
     "pot at 0": lambda rig, _: rig.sim.machine.set_spindle_pot(0.0),
     "load": lambda rig, to: rig.sim.machine.spindle_bog(to),
     "stall": lambda rig, _: rig.sim.machine.spindle_bog(0.0),
     "switch off": lambda rig, _: rig.sim.machine.set_spindle_auto(False),
-    "down and up": lambda rig, to: (
-        rig.sim.machine.set_spindle_pot(to),
-        rig.run(0.3),
-        rig.sim.machine.set_spindle_pot(1.0),
-    ),
-    "load and back": lambda rig, _: (
-        rig.sim.machine.spindle_bog(0.55),
-        rig.run(0.25),
-        rig.sim.machine.spindle_bog(1.0),
-    ),
+    "down and up": down_and_up,
+    "load and back": load_and_back,
     "up": lambda rig, _: rig.sim.machine.set_spindle_pot(1.0),
 }
 _PAIRS = [(60, 0.2), (150, 0.4), (300, 0.1), (300, 0.4), (600, 0.05), (600, 0.2), (1200, 0.1), (2500, 0.05)]
@@ -169,7 +182,7 @@ def test_a_drive_that_turns_the_wrong_way_is_a_lost_spindle(gear: bool) -> None:
     rig.until(State.FAULT)
     rig.run(0.5)
     assert rig.shot.alarms[0].code == "thread-lost"
-    assert rig.shot.demand[0] == pytest.approx(FORMS["P"][1] * INCH, abs=1e-4)
+    assert rig.shot.demand[0] == pytest.approx(OUT * INCH, abs=1e-4)
 
 
 @pytest.mark.parametrize("gear", [True, False], ids=["gear", "time"])
@@ -183,7 +196,7 @@ def test_the_tool_leaves_the_thread_by_x_alone_and_never_deeper(gear: bool) -> N
     leaving = np.flatnonzero(x > x[0] + 1e-6)[0]
     assert (x >= x[0] - 1e-6).all()
     assert np.ptp(z[leaving:]) < 1e-6
-    assert x[-1] == pytest.approx(FORMS["P"][1] * INCH, abs=1e-4)
+    assert x[-1] == pytest.approx(OUT * INCH, abs=1e-4)
 
 
 def test_the_alarm_tells_why_and_what_the_thread_is() -> None:
@@ -249,7 +262,7 @@ def test_a_hold_that_comes_as_the_pass_begins_acts_at_its_end(monkeypatch: pytes
         rig.post(FeedHold())
     rig.until(State.HOLD, State.FAULT)
     assert rig.shot.alarms == ()
-    assert rig.shot.demand[0] == pytest.approx(FORMS["P"][1] * INCH, abs=1e-4)
+    assert rig.shot.demand[0] == pytest.approx(OUT * INCH, abs=1e-4)
 
 
 def test_a_spindle_that_turns_the_other_way_at_its_full_speed_is_lost() -> None:

@@ -192,7 +192,7 @@ def test_the_pull_out_stays_in_step(gear: bool) -> None:
 def test_it_ends_where_the_block_says(gear: bool) -> None:
     rig = Rig(gear=gear)
     rig.start(HEAD + "G33X.2Z-.5I.025K.05PO\nM00\nM30\n", TOOLS)
-    ends: list[tuple[float, float]] = []
+    ends: list[tuple[float, ...]] = []
     rig.watch.append(lambda shot: ends.append(shot.demand[:2]) if shot.block_text.endswith("P") else None)
     rig.until(State.PROGRAM_STOP, State.FAULT)
     out = 0.312 - 0.2

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Callable
 
 import pytest
 
@@ -25,7 +26,7 @@ TIP = (3.7, -41.3)  # where the slides stand when the tip is on part zero
 def with_setter(setter: SetterModel = SETTER, *inputs: str, tip: tuple[float, float] = TIP) -> Machine:
     """The shipped lathe with a tool setter, and one tool whose tip is where only the simulation knows."""
     machine = load_machine()
-    wired = {name: InputModel(name, f"test {name}", "") for name in ("probe", *inputs)}
+    wired = {name: InputModel(name, f"test {name}") for name in ("probe", *inputs)}
     tables = {**machine.hardware.tables, "setter": setter, "sim": SimulatedTable(tips=(tip,))}
     hardware = dataclasses.replace(machine.hardware, tables=tables)
     return dataclasses.replace(machine, inputs={**machine.inputs, **wired}, hardware=hardware)
@@ -96,6 +97,7 @@ def test_the_place_of_the_touch(x: float, z: float, axis: str, sign: int, face: 
     touched = rig.shot.touched
     assert touched is not None
     assert touched.why == ""
+    assert touched.place is not None
     index = "XZ".index(axis)
     assert touched.place == pytest.approx(face + TIP[index], abs=0.0013 + 0.0003)  # a count, and 1 ms of way
     assert SETTER.face(axis, sign) == face
@@ -215,12 +217,13 @@ def test_a_setter_that_gives_way_is_told() -> None:
 
 
 def test_feed_hold_e_stop_and_another_key_end_it() -> None:
-    for act, why in (
+    acts: tuple[tuple[Callable[[TouchRig], None], str], ...] = (
         (lambda rig: rig.sim.machine.press_hold(), "feed hold"),
         (lambda rig: rig.post(Reset()), "reset"),
         (lambda rig: rig.post(Jog("Z", 1.0, LEASE)), "something else was asked for"),
         (lambda rig: rig.sim.machine.press_estop(), "E-STOP"),
-    ):
+    )
+    for act, why in acts:
         rig = ready()
         rig.hold()
         rig.run(0.2)
