@@ -34,14 +34,17 @@ def happened(before: Mapping[str, Any], now: Status) -> Iterator[Announcement]:
     state, was = str(now["state"]), before.get("state")
     if was is None:
         return
-    made, made_before = now.get("made"), before.get("made")
-    one_program = now.get("program") == before.get("program")
-    if isinstance(made, int) and isinstance(made_before, int) and made > made_before and one_program:
-        yield Announcement("part", f"part {made} of {now.get('program')} is done", now)
+    if _more(before.get("parts"), now.get("parts")):
+        yield Announcement("part", f"part {now.get('made')} of {now.get('program')} is done", now)
     if now.get("next_barred") and not before.get("next_barred"):
         yield Announcement("tool-life", str(now["next_barred"]), now)
     if state != was:
         yield from _changed(str(was), state, now)
+
+
+def _more(before: object, now: object) -> bool:
+    """Of the parts since the start: the program's own count is also read from the store, or typed."""
+    return isinstance(now, int) and isinstance(before, int) and now > before
 
 
 def _changed(was: str, state: str, now: Status) -> Iterator[Announcement]:
@@ -96,7 +99,8 @@ class Announcer:
         for announcement in happened(self._before, now):
             for told in self._told:
                 told.tell(announcement)
-        self._before = now
+        parts = now.get("parts")  # of a silent control nobody knows them: what it made meanwhile is told then
+        self._before = now if parts is not None else {**now, "parts": self._before.get("parts")}
 
 
 _ALWAYS_NEW = frozenset({"updated", "line", "time_left", "cycle_elapsed", "spindle_load"})

@@ -6,12 +6,14 @@ import json
 import logging
 import threading
 from collections import deque
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import paho.mqtt.client as mqtt
-from paho.mqtt.enums import CallbackAPIVersion
+from paho.mqtt.enums import CallbackAPIVersion, MQTTErrorCode
 
 from app.shopfloor.announcements import HELD, Announcement
+from app.shopfloor.network_causes import NO_ANSWER, Trouble, cause_of
 from app.shopfloor.status_file import Status
 from core.machine.shop_network_tables import AnnounceTable, broker_of
 
@@ -21,8 +23,23 @@ if TYPE_CHECKING:
 
 ONLINE, OFFLINE = "online", "offline"
 _SURE = 1  # quality of service: at least once
-_KEEP_ALIVE = 15  # s; half as much again without a sign of us, and the broker tells our last will
+KEEP_ALIVE = 15  # s; half as much again without a sign of us, and the broker tells our last will
+_SILENT = "Keep alive timeout"  # as paho calls it
 _log = logging.getLogger(__name__)
+
+
+class _Client(mqtt.Client):
+    """Paho's client, which keeps to itself why it could not connect."""
+
+    failed: Callable[[Exception], None]
+
+    def reconnect(self) -> MQTTErrorCode:
+        """Called by paho's thread, which goes on behind an OSError and ends with any other."""
+        try:
+            return super().reconnect()
+        except (OSError, ValueError) as error:  # ValueError: a name that can be none
+            self.failed(error)
+            raise OSError(str(error)) from error
 
 
 class MqttBroker:
@@ -31,20 +48,19 @@ class MqttBroker:
     def __init__(self, table: AnnounceTable) -> None:
         self._topic = table.topic.rstrip("/")
         self._state = b""
-        self._failed = False
         self._waiting: deque[Announcement] = deque(maxlen=HELD)
         self._handing = threading.Lock()  # the announcer's thread and paho's both hand over, in order
-        self._client = mqtt.Client(CallbackAPIVersion.VERSION2)
-        client = self._client
+        self._client = client = _Client(CallbackAPIVersion.VERSION2)
         if table.user:
             client.username_pw_set(table.user, table.password or None)
         client.will_set(f"{self._topic}/available", OFFLINE, _SURE, retain=True)
         client.reconnect_delay_set(1, max(1, round(table.again)))
         client.on_connect = self._connected
-        client.on_connect_fail = self._not_connected
+        client.on_disconnect = self._disconnected
         host, port = broker_of(table.mqtt)
-        self._at = f"{host}:{port}"
-        client.connect_async(host, port, _KEEP_ALIVE)
+        self._trouble = Trouble(_log, f"the broker {host}:{port}")
+        client.failed = lambda error: self._trouble.say(cause_of(error))
+        client.connect_async(host, port, KEEP_ALIVE)
         client.loop_start()
 
     def state(self, status: Status) -> None:
@@ -62,12 +78,13 @@ class MqttBroker:
         """Offline by our own word: a last will is told only where a connection breaks.
 
         To a broker that takes no word we say no good-bye either: it tells our last will when this process
-        has ended, and paho's thread, which would wait for it, ends with the process.
+        has ended. Paho's thread, which may wait for a broker that is away, ends with the process.
         """
-        if self._client.is_connected() and not self._said_offline():
-            return
-        self._client.disconnect()
-        self._client.loop_stop()
+        if not self._client.is_connected():
+            self._client.disconnect()
+        elif self._said_offline():
+            self._client.disconnect()
+            self._client.loop_stop()
 
     def _said_offline(self) -> bool:
         told = self._client.publish(f"{self._topic}/available", OFFLINE, _SURE, retain=True)
@@ -93,18 +110,22 @@ class MqttBroker:
         _more: Properties | None,
     ) -> None:
         if reason.is_failure:
-            self._tell_trouble(str(reason))
+            self._trouble.say(str(reason))
             return
-        self._failed = False
+        self._trouble.over()
         client.publish(f"{self._topic}/available", ONLINE, _SURE, retain=True)
         if self._state:
             client.publish(f"{self._topic}/state", self._state, _SURE, retain=True)
         self._hand_over()
 
-    def _not_connected(self, _client: mqtt.Client, _data: Any) -> None:
-        self._tell_trouble("no answer")
-
-    def _tell_trouble(self, why: str) -> None:
-        if not self._failed:
-            _log.warning("the broker %s cannot be told: %s", self._at, why)
-        self._failed = True
+    def _disconnected(
+        self,
+        _client: mqtt.Client,
+        _data: Any,
+        _flags: mqtt.DisconnectFlags,
+        reason: ReasonCode,
+        _more: Properties | None,
+    ) -> None:
+        """Also where a host takes the connection and says no word: paho gives it up behind the keep-alive."""
+        if reason.is_failure:
+            self._trouble.say(NO_ANSWER if str(reason) == _SILENT else "the connection is lost")

@@ -11,6 +11,7 @@ from urllib.error import HTTPError, URLError
 from urllib.parse import urlsplit, urlunsplit
 from urllib.request import ProxyHandler, build_opener
 
+from app.shopfloor.network_causes import cause_of
 from app.shopfloor.status_page import OtherDesk
 
 EVERY = 3.0  # s
@@ -39,18 +40,12 @@ def asked(address: str) -> OtherDesk:
         why = "it wants another token" if error.code == 403 else f"it answers {error.code} {error.reason}"
         return OtherDesk(name, trouble=why)
     except (URLError, HTTPException, OSError) as error:
-        return OtherDesk(name, trouble=_why(error))
+        return OtherDesk(name, trouble=cause_of(error))
     except (ValueError, RecursionError):
         return OtherDesk(name, trouble="what answers there is no desk")
     if not isinstance(found, dict):
         return OtherDesk(name, trouble="what answers there is no desk")
     return OtherDesk(name, {key: value for key, value in found.items() if _fits(key, value)})
-
-
-def _why(error: Exception) -> str:
-    """In the system's words, without their number."""
-    cause = getattr(error, "reason", error)
-    return str(getattr(cause, "strerror", None) or cause)
 
 
 _TEXTS = frozenset({"machine", "state", "execution", "program"})

@@ -12,10 +12,10 @@ from urllib.error import HTTPError, URLError
 from urllib.request import HTTPRedirectHandler, Request, build_opener
 
 from app.shopfloor.announcements import HELD, Announcement
+from app.shopfloor.network_causes import Trouble, cause_of, one_line
 from app.shopfloor.status_file import Status
 
 _PATIENCE = 5.0  # s
-_LONGEST = 200  # characters of what the other side says that a sentence repeats
 _LATER = frozenset({HTTPStatus.REQUEST_TIMEOUT, HTTPStatus.TOO_MANY_REQUESTS})
 _log = logging.getLogger(__name__)
 
@@ -31,7 +31,7 @@ class WebHook:
         self._address, self._again, self._post = address, again, post or posted
         self._waiting: deque[Announcement] = deque(maxlen=HELD)
         self._there, self._closing = threading.Event(), threading.Event()
-        self._failed = False
+        self._trouble = Trouble(_log, address)
         self._thread = threading.Thread(target=self._work, name="web-hook", daemon=True)
         self._thread.start()
 
@@ -66,11 +66,9 @@ class WebHook:
         try:
             self._post(self._address, announcement.json())
         except (URLError, HTTPException, OSError, ValueError) as error:
-            if not self._failed:
-                _log.warning("%s cannot be told: %s", self._address, _why(error))
-            self._failed = True
+            self._trouble.say(_why(error))
             return isinstance(error, HTTPError) and error.code < 500 and error.code not in _LATER
-        self._failed = False
+        self._trouble.over()
         return True
 
 
@@ -96,9 +94,5 @@ def _why(error: Exception) -> str:
     if isinstance(error, HTTPError):
         to = error.headers.get("Location", "") if error.code < 400 else ""
         where = f", moved to {to}: [announce] hook must name that address" if to else ""
-        why = f"it answers {error.code} {error.reason}{where}"
-    elif isinstance(error, BadStatusLine):
-        why = "what it answers is not HTTP"
-    else:
-        why = str(getattr(error, "reason", error))
-    return "".join(sign for sign in why if sign.isprintable())[:_LONGEST]
+        return one_line(f"it answers {error.code} {error.reason}{where}")
+    return "what it answers is not HTTP" if isinstance(error, BadStatusLine) else cause_of(error)

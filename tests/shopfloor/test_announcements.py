@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import errno
 import json
+import logging
 import os
 import shutil
 import signal
@@ -13,18 +15,23 @@ from collections.abc import Iterator
 from http.server import BaseHTTPRequestHandler, HTTPServer
 from pathlib import Path
 from queue import SimpleQueue
+from urllib.error import URLError
 
 import paho.mqtt.client as mqtt
 import pytest
 from paho.mqtt.enums import CallbackAPIVersion
 
+from app.shopfloor import mqtt_broker
 from app.shopfloor.announcements import HELD, Announcement, Announcer, happened
 from app.shopfloor.mqtt_broker import MqttBroker
+from app.shopfloor.network_causes import Trouble
 from app.shopfloor.status_file import Status
 from app.shopfloor.web_hook import WebHook
 from core.machine.shop_network_tables import AnnounceTable
 
-READY: Status = {"state": "READY", "program": "pin.nc", "made": 3, "stop": "", "waiting_for": ""}
+READY: Status = {
+    "state": "READY", "program": "pin.nc", "made": 3, "parts": 2, "stop": "", "waiting_for": ""
+}  # fmt: skip
 RUNNING: Status = {**READY, "state": "RUNNING"}
 
 
@@ -40,15 +47,17 @@ def test_the_first_look_tells_nothing() -> None:
 
 
 def test_a_part_is_done() -> None:
-    assert told(RUNNING, {**RUNNING, "made": 4}) == [("part", "part 4 of pin.nc is done")]
+    assert told(RUNNING, {**RUNNING, "made": 4, "parts": 3}) == [("part", "part 4 of pin.nc is done")]
 
 
-def test_another_program_with_a_greater_count_is_no_part() -> None:
-    assert told(READY, {**READY, "program": "nut.nc", "made": 90}) == []
+@pytest.mark.parametrize("now", [{"program": "nut.nc", "made": 90}, {"made": 4}])
+def test_a_count_that_is_read_or_typed_is_no_part(now: Status) -> None:
+    """Of another program; of the same one, told behind its loading: so after each start of the desk."""
+    assert told(READY, {**READY, **now}) == []
 
 
 def test_a_count_put_back_is_no_part() -> None:
-    assert told(READY, {**READY, "made": 0}) == []
+    assert told(READY, {**READY, "made": 0, "parts": 0}) == []
 
 
 def test_a_stop_and_an_alarm_say_why() -> None:
@@ -89,7 +98,7 @@ class Heard:
 
 def test_a_state_is_told_when_it_changes_and_not_with_every_second() -> None:
     looks = iter(
-        [READY, {**RUNNING, "time_left": 9.0}, {**RUNNING, "time_left": 8.0}, {**RUNNING, "made": 4}]
+        [READY, {**RUNNING, "time_left": 9.0}, {**RUNNING, "time_left": 8.0}, {**RUNNING, "parts": 3}]
     )
     heard = Heard()
     announcer = Announcer(lambda: next(looks), [heard])
@@ -98,6 +107,17 @@ def test_a_state_is_told_when_it_changes_and_not_with_every_second() -> None:
     announcer.close()
     assert heard.states == ["READY", "RUNNING", "RUNNING"]
     assert heard.events == ["runs", "part", "closed"]
+
+
+def test_a_part_that_is_made_while_the_control_is_silent_is_told_behind_it() -> None:
+    silent: Status = {**RUNNING, "state": "CONTROL SILENT", "made": None, "parts": None}
+    looks = iter([RUNNING, silent, silent, {**RUNNING, "made": 4, "parts": 3}, {**RUNNING, "parts": 3}])
+    heard = Heard()
+    announcer = Announcer(lambda: next(looks), [heard])
+    for _ in range(5):
+        announcer.once()
+    announcer.close()
+    assert heard.events == ["alarm", "part", "runs", "closed"]
 
 
 # --- a web hook -------------------------------------------------------------------------------------
@@ -191,7 +211,7 @@ def test_a_web_hook_that_was_away_hears_all_of_it_in_order(caplog: pytest.LogCap
     def post(_address: str, body: bytes) -> None:
         asked.put(json.loads(body)["text"])
         if next(away, False):
-            raise OSError(111, "Connection refused")
+            raise URLError(OSError(111, "Connection refused"))
 
     hook = WebHook("http://shop/hook", AT_ONCE, post)
     for text in ("first", "second"):
@@ -199,8 +219,36 @@ def test_a_web_hook_that_was_away_hears_all_of_it_in_order(caplog: pytest.LogCap
     assert [asked.get(timeout=60) for _ in range(5)] == ["first"] * 4 + ["second"]
     hook.close()
     assert [each.getMessage() for each in caplog.records] == [
-        "http://shop/hook cannot be told: [Errno 111] Connection refused"
+        "http://shop/hook cannot be told: Connection refused"
     ]
+
+
+def test_each_cause_is_told_once_until_somebody_was_told(caplog: pytest.LogCaptureFixture) -> None:
+    asked: SimpleQueue[str] = SimpleQueue()
+    answers = iter(["refused", "refused", "no route", "refused", "", "refused", ""])
+
+    def post(_address: str, body: bytes) -> None:
+        if why := next(answers):
+            raise OSError(1, why)
+        asked.put(json.loads(body)["text"])
+
+    hook = WebHook("http://shop/hook", AT_ONCE, post)
+    for text in ("first", "second"):
+        hook.tell(Announcement("stop", text, READY))
+        assert asked.get(timeout=60) == text
+    hook.close()
+    assert [each.getMessage().rpartition(": ")[2] for each in caplog.records] == [
+        "refused", "no route", "refused"
+    ]  # fmt: skip
+
+
+def test_a_host_that_says_something_else_each_time_does_not_fill_the_log(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    trouble = Trouble(logging.getLogger("hook"), "http://shop/hook")
+    for number in range(100):
+        trouble.say(str(number))
+    assert len(caplog.records) == 10
 
 
 def test_of_more_than_a_hundred_for_a_dead_hook_the_newest_are_kept() -> None:
@@ -239,6 +287,96 @@ def test_a_broker_that_is_away_keeps_nobody_waiting() -> None:
         for _ in range(300):
             broker.tell(Announcement("part", "", READY))
         broker.close()
+
+
+class Logged(logging.Handler):
+    """What the broker's side says, as it comes."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._said: SimpleQueue[str] = SimpleQueue()
+
+    def emit(self, record: logging.LogRecord) -> None:
+        self._said.put(record.getMessage())
+
+    def why(self, port: int) -> str:
+        """Why the broker at this port is not told; one of another test may say its last word yet."""
+        while not (said := self._said.get(timeout=60)).startswith(f"the broker 127.0.0.1:{port} "):
+            pass
+        return said.partition(" cannot be told: ")[2]
+
+
+@pytest.fixture
+def logged() -> Iterator[Logged]:
+    heard = Logged()
+    logger = logging.getLogger("app.shopfloor.mqtt_broker")
+    logger.addHandler(heard)
+    yield heard
+    logger.removeHandler(heard)
+
+
+def test_a_broker_that_refuses_the_connection_is_told_so(logged: Logged) -> None:
+    with socket.socket() as nobody:
+        nobody.bind(("127.0.0.1", 0))
+        port = nobody.getsockname()[1]
+        broker = MqttBroker(table(port))
+        assert logged.why(port) == "Connection refused"
+        broker.close()
+
+
+@pytest.mark.parametrize(
+    ("cause", "why"),
+    [
+        (socket.gaierror(socket.EAI_NONAME, "Name or service not known"), "Name or service not known"),
+        (OSError(errno.EHOSTUNREACH, "No route to host"), "No route to host"),
+        (TimeoutError("timed out"), "no answer"),
+        (UnicodeError("label empty or too long"), "label empty or too long"),
+    ],
+)
+def test_why_a_broker_cannot_be_reached(
+    cause: Exception, why: str, logged: Logged, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    tries: SimpleQueue[None] = SimpleQueue()
+
+    def refuse(_address: object, *_more: object, **_words: object) -> socket.socket:
+        tries.put(None)
+        raise cause
+
+    monkeypatch.setattr(socket, "create_connection", refuse)
+    broker = MqttBroker(table(1883))
+    assert logged.why(1883) == why
+    tries.get(timeout=60)
+    if isinstance(cause, ValueError):
+        tries.get(timeout=60)  # paho's thread goes on, though it knows no such error
+    broker.close()
+
+
+def test_what_takes_the_connection_and_says_no_word_is_told_of(
+    logged: Logged, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(mqtt_broker, "KEEP_ALIVE", 1)
+    with socket.create_server(("127.0.0.1", 0)) as other:
+        port = other.getsockname()[1]
+        broker = MqttBroker(table(port))
+        assert logged.why(port) == "no answer"
+        broker.close()
+
+
+def test_a_desk_closes_while_a_broker_does_not_answer(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A host that swallows everything keeps paho's thread waiting, not the desk."""
+    connecting, over = threading.Event(), threading.Event()
+
+    def swallowed(_address: object, *_more: object, **_words: object) -> socket.socket:
+        connecting.set()
+        over.wait()
+        raise TimeoutError("timed out")
+
+    monkeypatch.setattr(socket, "create_connection", swallowed)
+    broker = MqttBroker(table(1883))
+    assert connecting.wait(60)
+    broker.close()
+    assert not over.is_set()
+    over.set()
 
 
 MOSQUITTO = shutil.which("mosquitto") or shutil.which("mosquitto", path="/usr/sbin")
@@ -332,6 +470,22 @@ def test_a_broker_that_was_away_hears_online_state_and_the_newest_hundred(
     assert [json.loads(office.next()[1])["text"] for _ in range(HELD)] == [
         str(number) for number in range(30, HELD + 30)
     ]
+    broker.close()
+
+
+def test_a_broker_that_is_frozen_is_told_of(
+    mosquitto: tuple[int, int], office: Office, logged: Logged, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its computer takes each new connection, and nobody there says a word."""
+    monkeypatch.setattr(mqtt_broker, "KEEP_ALIVE", 1)
+    port, process = mosquitto
+    broker = MqttBroker(table(port))
+    assert office.next()[1] == b"online"
+    os.kill(process, signal.SIGSTOP)
+    try:
+        assert logged.why(port) == "no answer"
+    finally:
+        os.kill(process, signal.SIGCONT)
     broker.close()
 
 
