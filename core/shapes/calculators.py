@@ -14,7 +14,7 @@ from core.shapes.shape import Filled, Shape
 from core.shapes.shape_fields import Field, Kind, Proposal, Refusal, Value, Values, number, text
 from core.shapes.shape_setting import Setting
 from core.shapes.sketch import Dim, Sketch, cut, part, sketch
-from core.shapes.threading import THREAD, filled_depth, first_depth
+from core.shapes.threading import THREAD, filled_depth, first_depth, first_word
 from core.shapes.usual_fields import MOST_RPM, too_fast
 
 _INCHES, _MILLIMETRES = 12.0, 1000.0
@@ -208,10 +208,11 @@ def _first(values: Values, _setting: Setting) -> Value | None:
     return round(deep / math.sqrt(passes), 5) if passes and deep else None
 
 
-def _thread_lines(filled: Filled, _setting: Setting, code: Code) -> None:
+def _thread_lines(filled: Filled, setting: Setting, code: Code) -> None:
     infeed = filled.n("INFEED")
     c = "" if not infeed else "C" if infeed == 29.0 else f"C{plain(infeed)}"
-    words = f"{code.x(filled.n('ROOT') / 2.0)}{code.z(-filled.n('LONG'))}{code.x(first_depth(filled), 'I')}"
+    words = f"{code.x(filled.n('ROOT') / 2.0)}{code.z(-filled.n('LONG'))}"
+    words += code.x(first_word(filled, setting), "I")
     code.write(f"G33{words}K{plain(filled.n('PITCH'), 6)}{c}")
 
 
@@ -266,5 +267,6 @@ THREADS = Shape(
     THREAD.sketch,
     _thread_checks,
     noted=False,
+    first=THREAD.first,
     says=_thread_says,
 )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 
 _STEPS = {False: 0.00005, True: 0.0005}  # by metric: what a word is rounded to; a diameter twice of it
@@ -35,6 +36,12 @@ def rounded(value: float, *, metric: bool, twice: bool = False) -> float:
     """A length on the step of the control; ``twice``: on that of a diameter."""
     step = _STEPS[metric] * (2.0 if twice else 1.0)
     return round(value / step) * step
+
+
+def rounded_up(radius: float, *, metric: bool) -> float:
+    """A depth on the step of the control or above it: in passes of equal chip a hair less is a pass more."""
+    step = _STEPS[metric]
+    return math.ceil(radius / step - 1e-6) * step
 
 
 def in_comment(value: float, places: int = 5) -> str:

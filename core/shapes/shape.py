@@ -32,9 +32,10 @@ TOOL_WORD = "T"  # stands in the code of the line that has the comment, so not i
 class Shape:
     """``name`` begins the comment, so it holds letters and blanks only. ``cut`` writes the lines.
 
-    ``checks`` yield what the fields refuse of each other. ``contour``: it has a table of points, which is
-    read from its lines. ``ends`` are lines that belong to the end of the program, behind M30. Without a
-    comment (``noted``) its lines are no piece that is opened again. ``says``: what is to be told of them.
+    ``first`` yields why nothing can be proposed for other fields, ``checks`` what the fields refuse of each
+    other. ``contour``: it has a table of points, which is read from its lines. ``ends`` are lines that belong
+    to the end of the program, behind M30. Without a comment (``noted``) its lines are no piece that is opened
+    again. ``says``: what is to be told of them.
     """
 
     name: str
@@ -46,6 +47,7 @@ class Shape:
     contour: bool = False
     ends: Callable[[Filled], tuple[str, ...]] = field(default=lambda _filled: ())
     noted: bool = True
+    first: Callable[[Filled, Setting], Iterator[Refusal]] = field(default=_no_checks)
     says: Callable[[Filled, Setting], tuple[str, ...]] = field(default=lambda _filled, _setting: ())
 
     def field(self, word: str) -> Field | None:
@@ -78,6 +80,8 @@ class Filled:
 
     def refusals(self, setting: Setting) -> list[Refusal]:
         """Everything that is wrong, field by field; then what the fields refuse of each other."""
+        if first := list(self.shape.first(self, setting)):
+            return first
         said = (each.refusal(self.values.get(each.word)) for each in self.fields)
         found = [refused for refused in said if refused is not None]
         return found or [*self._tool(setting), *self.shape.checks(self, setting)]

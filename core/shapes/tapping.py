@@ -16,7 +16,7 @@ from core.shapes.shape_setting import Setting
 from core.shapes.sketch import Dim, Sketch, cut, part, sketch, tool
 from core.shapes.thread_limits import in_unit
 from core.shapes.thread_series import TAPERED, Series, size_of
-from core.shapes.threading import INSIDE, LEFT, RIGHT, class_choices, limits_of, series_of
+from core.shapes.threading import INSIDE, LEFT, RIGHT, class_choices, limits_of, series_of, unknown_name
 from core.shapes.usual_fields import MOST_RPM, too_deep, too_fast, tool_field
 
 _SLOW = 0.4  # of the speed of a drill: the flanks of a tap rub
@@ -69,9 +69,6 @@ def _tap(filled: Filled, setting: Setting, code: Code) -> None:
 
 def _checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
     series, pitch = series_of(filled.values), filled.n("PITCH")
-    if series is not Series.OWN and size_of(series, filled.t("SIZE")) is None:
-        yield Refusal("SIZE", f"{series} has no {filled.t('SIZE') or 'size'}: choose one with the arrows.")
-        return
     if series in TAPERED or series is Series.ACME:
         yield Refusal("SERIES", f"{series} is not tapped here: cut it with G33.")
     if pitch * setting.mm / 25.4 > _COARSEST:
@@ -140,6 +137,7 @@ TAP = Shape(
     _tap,
     _sketch,
     _checks,
+    first=unknown_name,
     says=_says,
 )
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from core.shapes.code_lines import Code
-from core.shapes.number_words import plain
+from core.shapes.number_words import plain, rounded_up
 from core.shapes.program_head import HEAD
 from core.shapes.shape import Filled, Shape
 from core.shapes.shape_fields import Field, Kind, size
@@ -41,7 +41,7 @@ def _rough_sketch(_filled: Filled) -> Sketch:
 def _thread(filled: Filled, setting: Setting, code: Code) -> None:
     r, pitch = filled.n("FROM") / 2.0, filled.n("PITCH")
     deep = 0.6134 * pitch  # of 60 degrees, ISO 68-1
-    first = deep / 8.0**0.5
+    first = rounded_up(deep / 8.0**0.5, metric=setting.metric)
     code.begin(filled.n("T"), filled.n("RPM"), r - first, 3.0 * pitch + setting.near)
     code.write(f"G33{code.x(r - deep)}{code.z(-filled.n('LONG'))}{code.x(first, 'I')}K{plain(pitch, 6)}PC")
     code.forget()

@@ -12,14 +12,16 @@ from dataclasses import dataclass
 from core.shapes.thread_series import METRIC, TAPERED, UNIFIED, Series, ThreadSize
 
 V60 = math.sqrt(3.0) / 2.0  # height of a sharp V of 60° in pitches
+_V55 = 0.960491  # the same of 55°
 _PIPE_HEIGHT = 0.8  # of an NPT thread, in pitches; ASME B1.20.1
-_WHITWORTH = 0.640327  # of a 55° thread; ISO 228-1
+_WHITWORTH = 2.0 / 3.0 * _V55  # height of a 55° thread, a sixth rounded off at crest and root; ISO 228-1
 _TAPER = 1.0 / 16.0  # on the diameter
 
 CLASSES = {
     "unified": (("2A", "1A", "3A"), ("2B", "1B", "3B")),
     "metric": (("6g", "6h", "4h", "8g"), ("6H", "5H", "7H", "6G")),
     "ACME": (("2G", "3G", "4G"), ("2G", "3G", "4G")),
+    "BSP": (("A", "B"), ()),
 }
 """Classes outside and inside; the first is the usual one."""
 
@@ -51,7 +53,14 @@ def classes(series: Series, *, inside: bool) -> tuple[str, ...]:
         return CLASSES["unified"][inside]
     if series in {Series.M, Series.MF}:
         return CLASSES["metric"][inside]
-    return CLASSES["ACME"][inside] if series is Series.ACME else ()
+    return CLASSES[series.value][inside] if series.value in CLASSES else ()
+
+
+def angle_of(series: Series) -> float | None:
+    """The angle between both flanks, degrees; None where the series does not say it."""
+    if series is Series.OWN:
+        return None
+    return 29.0 if series is Series.ACME else 55.0 if series in {Series.BSP, Series.BSPT} else 60.0
 
 
 def limits(series: Series, size: ThreadSize, tolerance: str, *, inside: bool, nose: float = 0.0) -> Limits:
@@ -62,7 +71,9 @@ def limits(series: Series, size: ThreadSize, tolerance: str, *, inside: bool, no
         return _metric(size, tolerance, nose, inside=inside)
     if series is Series.ACME:
         return _acme(size, tolerance, inside=inside)
-    return _pipe(series, size, inside=inside) if series in TAPERED else _whitworth(size)
+    if series in TAPERED:
+        return _pipe(series, size, nose, inside=inside)
+    return _parallel_pipe(size, tolerance, nose, inside=inside)
 
 
 def _middle(pair: tuple[float, float]) -> float:
@@ -139,6 +150,9 @@ _MINOR_6 |= {
     5.0: 710,
 }
 
+# Where the table has others than the formula: pitch diameter by pitch and range, major diameter by pitch.
+_PITCH_6 = {(0.5, 2.8): 75.0, (5.0, 45.0): 250.0}
+_MAJOR_6 = {4.0: 475.0}
 _PLACE_G = {0.35: 19, 0.4: 19, 0.45: 20, 0.5: 20, 0.6: 21, 0.7: 22, 0.75: 22, 0.8: 24, 1.0: 26, 1.25: 28}
 _PLACE_G |= {1.5: 32, 1.75: 34, 2.0: 38, 2.5: 42, 3.0: 48, 3.5: 53, 4.0: 60, 4.5: 63, 5.0: 71}
 
@@ -157,7 +171,7 @@ def _metric(size: ThreadSize, tolerance: str, nose: float, *, inside: bool) -> L
     grade, place = int(tolerance[0]), tolerance[1]
     low = max(step for step in _STEPS if step < d)
     mean = math.sqrt(low * _STEPS[_STEPS.index(low) + 1])
-    pitch_6 = _preferred(90.0 * p**0.4 * mean**0.1)
+    pitch_6 = _PITCH_6.get((p, low)) or _preferred(90.0 * p**0.4 * mean**0.1)
     away = _PLACE_G.get(p, round(15.0 + 11.0 * p)) / 1000.0
     shift = {"g": -away, "G": away}.get(place, 0.0)
     basic_pitch, basic_minor = d - 0.75 * V60 * p, d - 1.25 * V60 * p
@@ -169,7 +183,7 @@ def _metric(size: ThreadSize, tolerance: str, nose: float, *, inside: bool) -> L
         root = _v_root(_middle(pitch), p, nose, inside=True)
         return Limits((d + shift, math.inf), pitch, minor, _middle(minor), root)
     wide = _preferred(pitch_6 * _GRADES[grade]) / 1000.0
-    major_6 = _preferred(180.0 * p ** (2 / 3) - 3.15 / math.sqrt(p))
+    major_6 = _MAJOR_6.get(p) or _preferred(180.0 * p ** (2 / 3) - 3.15 / math.sqrt(p))
     major_wide = _preferred(major_6 * {4: 0.63, 6: 1.0, 8: 1.6}[grade]) / 1000.0
     major = d + shift - major_wide, d + shift
     pitch = basic_pitch + shift - wide, basic_pitch + shift
@@ -180,33 +194,63 @@ def _metric(size: ThreadSize, tolerance: str, nose: float, *, inside: bool) -> L
 # --- pipe threads, ACME
 
 
-def _whitworth(size: ThreadSize) -> Limits:
-    """ISO 228-1, at its basic profile: height .640327 P, 55°."""
-    d, p = size.diameter, size.pitch
-    pitch, minor = d - _WHITWORTH * p, d - 2.0 * _WHITWORTH * p
-    return Limits((d, d), (pitch, pitch), (minor, minor), d, minor, 55.0)
+_PIPE_PITCH = {28: 0.107, 19: 0.125, 14: 0.142, 11: 0.180}
+_PIPE_MINOR = {28: 0.282, 19: 0.445, 14: 0.541, 11: 0.640}
+"""ISO 228-1, mm, by turns an inch: pitch diameter inside and of class A (B: twice), minor diameter inside."""
 
 
-def _pipe(series: Series, size: ThreadSize, *, inside: bool) -> Limits:
+def _parallel_pipe(size: ThreadSize, tolerance: str, nose: float, *, inside: bool) -> Limits:
+    """ISO 228-1; inside there is one class."""
+    d, p, turns = size.diameter, size.pitch, round(25.4 / size.pitch)
+    wide, basic_pitch, basic_minor = _PIPE_PITCH[turns], d - _WHITWORTH * p, d - 2.0 * _WHITWORTH * p
+    if inside:
+        pitch = basic_pitch, basic_pitch + wide
+        minor = basic_minor, basic_minor + _PIPE_MINOR[turns]
+        root = _pipe_root(_middle(pitch), p, 55.0, nose, inside=True)
+        return Limits((d, math.inf), pitch, minor, _middle(minor), root, 55.0)
+    pitch, major = (
+        (basic_pitch - (wide if tolerance == "A" else 2.0 * wide), basic_pitch),
+        (d - 2.0 * wide, d),
+    )
+    root = _pipe_root(_middle(pitch), p, 55.0, nose, inside=False)
+    return Limits(major, pitch, (-math.inf, basic_minor), _middle(major), root, 55.0)
+
+
+def _pipe_root(pitch_diameter: float, pitch: float, angle: float, nose: float, *, inside: bool) -> float:
+    """Where a point of radius ``nose`` ends; 0: where the standard's own profile does."""
+    if nose:
+        sharp = _V55 if angle == 55.0 else V60
+        high = sharp * pitch - 2.0 * nose * (1.0 / math.sin(math.radians(angle / 2.0)) - 1.0)
+    else:
+        high = (_WHITWORTH if angle == 55.0 else _PIPE_HEIGHT) * pitch
+    return pitch_diameter + high if inside else pitch_diameter - high
+
+
+def _pipe(series: Series, size: ThreadSize, nose: float, *, inside: bool) -> Limits:
     """At the small end outside; inside at the mouth, which is the large one."""
     d, p = size.diameter, size.pitch
     if series is Series.NPT:
         small = d - (0.05 * d + 1.1) * p  # E0 of B1.20.1
-        half, angle = _PIPE_HEIGHT * p, 60.0
+        high, angle = _PIPE_HEIGHT, 60.0
     else:
         small = d - size.gauge * _TAPER - _WHITWORTH * p
-        half, angle = _WHITWORTH * p, 55.0
+        high, angle = _WHITWORTH, 55.0
     pitch = small + size.gauge * _TAPER if inside else small
-    outer, inner = pitch + half, pitch - half
-    crest, root = (inner, outer) if inside else (outer, inner)
+    outer, inner = pitch + high * p, pitch - high * p
+    crest = inner if inside else outer
+    root = _pipe_root(pitch, p, angle, nose, inside=inside)
     return Limits((outer, outer), (pitch, pitch), (inner, inner), crest, root, angle)
 
 
 def pipe_length(series: Series, size: ThreadSize) -> float:
-    """How long the full thread of a tapered pipe thread is: L2 of B1.20.1; 0 where it is to be said."""
+    """How long the full thread of a tapered pipe thread is; 0 where it is to be said.
+
+    L2 of B1.20.1; gauge length and fitting allowance of ISO 7-1.
+    """
     if series is Series.NPT:
         return (0.8 * size.diameter + 6.8) * size.pitch
-    return size.gauge + 2.5 * size.pitch if series is Series.BSPT else 0.0
+    turns = 2.75 if size.diameter < 50.0 else 3.25
+    return size.gauge + turns * size.pitch if series is Series.BSPT else 0.0
 
 
 def _acme(size: ThreadSize, tolerance: str, *, inside: bool) -> Limits:

@@ -11,12 +11,12 @@ from core.language.source import Dialect
 from core.part.tool_shape import ToolKind
 from core.shapes.code_lines import Code
 from core.shapes.cutting_data import Work, rpm
-from core.shapes.number_words import figure, plain
+from core.shapes.number_words import figure, plain, rounded_up
 from core.shapes.shape import Filled, Shape
 from core.shapes.shape_fields import Field, Kind, Proposal, Refusal, Value, Values, number, text
 from core.shapes.shape_setting import Setting
 from core.shapes.sketch import Dim, Sketch, cut, part, sketch
-from core.shapes.thread_limits import Limits, classes, in_unit, limits, pipe_length
+from core.shapes.thread_limits import Limits, angle_of, classes, in_unit, limits, pipe_length
 from core.shapes.thread_series import TAPERED, Series, size_of
 from core.shapes.usual_fields import MOST_RPM, too_fast, tool_field
 
@@ -102,6 +102,18 @@ def _passes(values: Values, setting: Setting) -> Value | None:
     return float(min(16, max(4, round(4 + 80 * pitch)))) if pitch else None
 
 
+def flank_angle(values: Values, setting: Setting) -> float:
+    """Between both flanks, by the series; of a thread of its own figures by the sheet of its tool."""
+    shape = setting.tool(number(values, "T"))
+    point = shape.point if shape is not None and shape.kind is ToolKind.THREADING else 0.0
+    return angle_of(series_of(values)) or point or 60.0
+
+
+def _infeed(values: Values, setting: Setting) -> Value | None:
+    """Along a flank, less half a degree at least: 29 of 60°, as the control has it by itself."""
+    return math.ceil(flank_angle(values, setting) / 2.0) - 1.0
+
+
 def _rpm(values: Values, setting: Setting) -> Value | None:
     lead = number(values, "PITCH") * number(values, "STARTS")
     across = number(values, "CREST")
@@ -128,6 +140,12 @@ def _run_up(values: Values, setting: Setting) -> Value | None:
 def first_depth(filled: Filled) -> float:
     """Per side: constant chip area, so the depth of N passes over the root of N."""
     return filled_depth(filled) / math.sqrt(max(1.0, filled.n("PASSES")))
+
+
+def first_word(filled: Filled, setting: Setting) -> float:
+    """The same as it is written."""
+    deep, coarse = first_depth(filled), _coarse_step(filled, setting)
+    return math.ceil(deep / coarse - 1e-6) * coarse if coarse else rounded_up(deep, metric=setting.metric)
 
 
 def filled_depth(filled: Filled) -> float:
@@ -159,7 +177,7 @@ def _thread(filled: Filled, setting: Setting, code: Code) -> None:
     outwards = -1.0 if inside else 1.0
     near = partial(_on_step, step=_coarse_step(filled, setting))
     starts = max(1, int(filled.n("STARTS")))
-    lead, first = filled.n("PITCH") * starts, near(first_depth(filled)) or first_depth(filled)
+    lead, first = filled.n("PITCH") * starts, first_word(filled, setting)
     begin, end = filled.n("RUNUP") - filled.n("AT"), -(filled.n("AT") + filled.n("LONG"))
     taper = filled.n("TAPER") / 2.0  # of the radius
     down = -outwards * taper * filled.n("RUNUP")  # at the start of a pass
@@ -215,7 +233,7 @@ def _checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
         yield Refusal("ROOT", f"In a bore the thread goes outwards: {root:g} is not more than {crest:g}.")
     if not inside and root >= crest:
         yield Refusal("ROOT", f"The thread goes inwards: {root:g} is not less than {crest:g}.")
-    sharp = pitch / 2.0 / math.tan(math.radians(_angle(filled) / 2.0))
+    sharp = pitch / 2.0 / math.tan(math.radians(flank_angle(filled.values, setting) / 2.0))
     if filled_depth(filled) > 1.02 * sharp:
         words = f"{filled_depth(filled):.4f} deep: flanks of a pitch of {pitch:.5g} meet at {sharp:.4f}"
         yield Refusal("ROOT", f"{words}. Look at both diameters.")
@@ -223,15 +241,17 @@ def _checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
         yield from _lead_checks(filled, setting)
     if filled.t("PULL") == NO or setting.dialect is Dialect.SINUMERIK:
         yield from _relief(filled)
+    yield from _flank_checks(filled, setting)
     yield from _by_sheet(filled, setting)
     yield from too_fast(filled, setting)
 
 
-def _angle(filled: Filled) -> float:
-    series = series_of(filled.values)
-    if series is Series.ACME:
-        return 29.0
-    return 55.0 if series in {Series.BSP, Series.BSPT} else 60.0
+def _flank_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
+    """Passes that come in flatter than the flank cut away what the last one leaves."""
+    angle, flank = filled.n("INFEED"), flank_angle(filled.values, setting) / 2.0
+    if angle > flank + 1e-9:
+        words = f"{angle:g}° is flatter than the flank of {flank:g}°: the first passes cut into it"
+        yield Refusal("INFEED", f"{words}. Type {math.floor(flank):g} or less.")
 
 
 def _lead_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
@@ -271,8 +291,9 @@ def _by_sheet(filled: Filled, setting: Setting) -> Iterator[Refusal]:
     shape, name = setting.tool(filled.n("T")), f"T{filled.n('T'):.0f}"
     if shape is None:
         return
-    if shape.kind is ToolKind.THREADING and shape.point and abs(shape.point - _angle(filled)) > 0.5:
-        words = f"{name} cuts {shape.point:g}°, this thread has {_angle(filled):g}°: take another insert."
+    angle = flank_angle(filled.values, setting)
+    if shape.kind is ToolKind.THREADING and shape.point and abs(shape.point - angle) > 0.5:
+        words = f"{name} cuts {shape.point:g}°, this thread has {angle:g}°: take another insert."
         yield Refusal("T", words)
     if shape.pitch and abs(shape.pitch / setting.mm - filled.n("PITCH")) > 0.02 * filled.n("PITCH"):
         words = f"{name} is made for a pitch of {shape.pitch / setting.mm:.5g}"
@@ -281,12 +302,14 @@ def _by_sheet(filled: Filled, setting: Setting) -> Iterator[Refusal]:
         yield Refusal("T", f"The bar of {name} does not go into {filled.n('CREST'):g}.")
 
 
-def _size_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
-    series = series_of(filled.values)
-    if series is not Series.OWN and size_of(series, filled.t("SIZE")) is None:
-        yield Refusal("SIZE", f"{series} has no {filled.t('SIZE') or 'size'}: choose one with the arrows.")
-    else:
-        yield from _checks(filled, setting)
+def unknown_name(filled: Filled, _setting: Setting) -> Iterator[Refusal]:
+    """A size or a class that the series has not: nothing is proposed then."""
+    series, allowed = series_of(filled.values), class_choices(filled.values)
+    size, tolerance = filled.t("SIZE"), filled.t("CLASS")
+    if series is not Series.OWN and size and size_of(series, size) is None:
+        yield Refusal("SIZE", f"{series} has no {size}: choose one with the arrows.")
+    elif filled.shape.field("CLASS") is not None and allowed and tolerance not in allowed:
+        yield Refusal("CLASS", f"CLASS {tolerance} is none of {', '.join(allowed)}: choose one.")
 
 
 def _sketch(filled: Filled) -> Sketch:
@@ -346,13 +369,14 @@ THREAD = Shape(
         Field("ROOT", "DIAMETER OF THE LAST PASS", Kind.DIAMETER, _from_limits("root")),
         Field("TAPER", "TAPER ON THE DIAMETER", Kind.RATIO, _taper, zero=True, most=1.0),
         Field("PASSES", "PASSES", Kind.COUNT, _passes, most=60),
-        Field("INFEED", "INFEED ANGLE", Kind.ANGLE, 29.0, most=30.0, zero=True),
+        Field("INFEED", "INFEED ANGLE", Kind.ANGLE, _infeed, most=30.0, zero=True),
         Field("RPM", "SPEED RPM", Kind.RPM, _rpm, most=MOST_RPM),
         Field("RUNUP", "RUN-UP", Kind.LENGTH, _run_up),
     ),
     _thread,
     _sketch,
-    _size_checks,
+    _checks,
+    first=unknown_name,
 )
 
 

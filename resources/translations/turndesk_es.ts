@@ -29760,11 +29760,6 @@
     </message>
     <message>
       <location filename="core/shapes/tapping.py" />
-      <source>%1 has no %2: choose one with the arrows.</source>
-      <translation>%1 no tiene %2: elija con las flechas.</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/tapping.py" />
       <source>%1 is not tapped here: cut it with G33.</source>
       <translation>%1 no se rosca aquí con macho: córtelo con G33.</translation>
     </message>
@@ -29875,6 +29870,11 @@
     </message>
     <message>
       <location filename="core/shapes/threading.py" />
+      <source>%1 has no %2: choose one with the arrows.</source>
+      <translation>%1 no tiene %2: elija con las flechas.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/threading.py" />
       <source>%1 is made for a pitch of %2</source>
       <translation>%1 está hecha para un paso de %2</translation>
     </message>
@@ -29890,6 +29890,16 @@
     </message>
     <message>
       <location filename="core/shapes/threading.py" />
+      <source>%1. Type %2 or less.</source>
+      <translation>%1. Escriba %2 o menos.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/threading.py" />
+      <source>%1° is flatter than the flank of %2°: the first passes cut into it</source>
+      <translation>%1° es más plano que el flanco de %2°: las primeras pasadas cortan dentro de él</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/threading.py" />
       <source>A lead of %1 is more than the control cuts, %2.</source>
       <translation>Un avance de rosca de %1 es más de lo que corta el control, %2.</translation>
     </message>
@@ -29902,6 +29912,11 @@
       <location filename="core/shapes/threading.py" />
       <source>At S%1 the slide needs %2 in/min, it has 300: S%3 or less.</source>
       <translation>Con S%1 el carro necesita %2 in/min y tiene 300: S%3 o menos.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/threading.py" />
+      <source>CLASS %1 is none of %2: choose one.</source>
+      <translation>La CLASE %1 no es ninguna de %2: elija una.</translation>
     </message>
     <message>
       <location filename="core/shapes/threading.py" />

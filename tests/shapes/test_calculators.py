@@ -164,6 +164,12 @@ def test_the_hole_before_a_tap() -> None:
     assert one.n("PITCH") == 1.5
 
 
+def test_the_hole_before_a_pipe_tap() -> None:
+    """G 1/2: minor diameter from 18.631 to 19.172 (ISO 228-1); drills of 18.9 to 19 are sold for it."""
+    one = filled(TAP, {"SERIES": "BSP", "SIZE": "1/2", "DEEP": 15.0}, MM)
+    assert TAP.says(one, MM) == ("the hole before it: 18.9",)
+
+
 @pytest.mark.parametrize(
     ("typed", "says"),
     [
