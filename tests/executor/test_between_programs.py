@@ -5,7 +5,15 @@ from __future__ import annotations
 import pytest
 
 from app.compose.machine_files import shipped_machine
-from core.executor.commands import FeedHold, ForceOutput, Reset, SpindleLimit, SpindleStop, UseOffsets
+from core.executor.commands import (
+    CycleStart,
+    FeedHold,
+    ForceOutput,
+    Reset,
+    SpindleLimit,
+    SpindleStop,
+    UseOffsets,
+)
 from core.executor.control_status import modal_given_up
 from core.executor.snapshot import State
 from core.interpreter.job_setup import SecondaryOffset, ToolOffset
@@ -162,3 +170,26 @@ def test_sinumerik_counts_x_in_diameters_at_power_up_and_behind_a_reset(machine:
     assert rig.shot.modal.diameter is diameter
     left = modal_given_up(Modal(diameter=not diameter), rig.machine.language)
     assert left.diameter is diameter
+
+
+@pytest.mark.parametrize(
+    ("machine", "name", "text", "diameter"),
+    [
+        ("sinumerik-modulo", "part.mpf", "G90 G71\nG0 X1\nM30\n", True),
+        ("gt75", "part.nc", "G90G94F300\nX.1\nM30\n", False),
+    ],
+)
+def test_a_program_begins_with_x_as_its_language_counts_it(
+    machine: str, name: str, text: str, diameter: bool
+) -> None:
+    """Before its first block has said anything: what the page shows of X must not jump for a tick."""
+    rig = Rig(machine=shipped_machine(machine))
+    shown: list[bool] = []
+    rig.ready()
+    rig.run(0.3)
+    rig.load(text, name=name)
+    rig.watch.append(lambda shot: shown.append(shot.modal.diameter))
+    rig.post(CycleStart())
+    rig.until(State.IDLE)
+    assert rig.shot.parts == 1
+    assert set(shown) == {diameter}

@@ -197,6 +197,34 @@ def test_loading_a_program_takes_a_prepared_restart_back() -> None:
     assert refused(rig) == "no restart is ready: search a line and confirm it"
 
 
+@pytest.mark.parametrize(("seconds", "starts"), [(0.3, False), (0.9, True)])
+def test_palms_in_one_slap_with_the_answer_start_no_restart(seconds: float, starts: bool) -> None:
+    """Both palms that came down with the key that has accepted the way there were not meant for it."""
+    rig = Rig()
+    broken_off(rig)
+    job = restart_job(rig, 8)
+    rig.run(1.0)
+    rig.post(Prepare(Starts.RESTART, job, proof_of(job, prove(job.source, job.setup, rig.machine))))
+    rig.run(seconds)
+    rig.sim.machine.press_start()
+    rig.run(0.1)
+    assert (rig.state is not State.IDLE) is starts
+    assert ("that was meant just now" in rig.shot.start_refused) is not starts
+
+
+def test_a_restart_that_is_taken_back_asks_for_no_second_look() -> None:
+    """Nothing is meant by it: the palms that come right behind are told that a restart is not ready."""
+    rig = Rig()
+    broken_off(rig)
+    rig.run(1.0)
+    rig.post(Prepare(Starts.RESTART))
+    rig.run(0.3)
+    rig.sim.machine.press_start()
+    rig.run(0.1)
+    assert rig.state is State.IDLE
+    assert rig.shot.start_refused == "no restart is ready: search a line and confirm it"
+
+
 def test_a_way_beyond_the_travel_is_found_by_the_proof() -> None:
     rig = Rig()
     broken_off(rig)

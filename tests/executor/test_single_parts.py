@@ -207,6 +207,16 @@ def test_a_command_is_sent_once_and_once_more_when_it_is_permitted_again() -> No
     assert port.told == [600.0, 600.0]
 
 
+def test_a_wait_for_the_speed_says_what_keeps_the_spindle() -> None:
+    """The operator where it is he, by what he can change; else only that it is waited for."""
+    context = context_of(None)
+    context.spindle.ask(SpindleDemand(600.0))
+    wait = at_speed(context)
+    assert wait.label() == "AT SPEED"
+    context.spindle.override = 0.0
+    assert wait.label() == "SPINDLE OVERRIDE AT 0"
+
+
 def test_the_time_limit_for_the_speed_counts_from_when_the_operator_lets_it_turn() -> None:
     """A minute with the pot at 0 is no alarm; then the timeout of the machine file counts whole."""
     context = context_of(None)

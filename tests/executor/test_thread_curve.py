@@ -67,6 +67,15 @@ def test_a_joint_is_rounded_off_as_far_as_half_of_the_acceleration_takes() -> No
     assert curve.at(4.0)[1] == pytest.approx(-4.0 - 0.25 / A, abs=1e-9)
 
 
+def test_where_x_changes_its_speed_more_than_z_x_says_how_far_a_joint_is_rounded() -> None:
+    """A cylinder goes over into 45 degrees outwards: from 0 to 1 mm/s of X at half of A/4 takes 8/A s."""
+    cone = [thread(1, 0.0, -4.0, 1.0), thread(2, -4.0, -8.0, 1.0, x=9.0)]
+    curve = curve_of(cone, MotionLimits(vmax=(127.0, 127.0, 1200.0), amax=(A / 4.0, A, 12000.0)))
+    assert curve.s[1] == pytest.approx(4.0 - 4.0 / A)
+    assert curve.s[-2] == pytest.approx(4.0 + 4.0 / A)
+    assert curve.at(4.0)[0] == pytest.approx(5.0 + 1.0 / A, abs=1e-9)
+
+
 def test_a_joint_that_changes_nothing_stays_as_it_is() -> None:
     same = [thread(1, 0.0, -4.0, 1.0), thread(2, -4.0, -6.0, 1.0)]
     assert curve_of(same, LIMITS).s.tolist() == [0.0, 4.0, 6.0]

@@ -241,6 +241,17 @@ def test_a_lost_spindle_never_goes_deeper(program: str, z: float, gear: bool) ->
     assert rig.shot.rpm_command == 0.0
 
 
+@pytest.mark.parametrize("z", [-0.2, -1.19], ids=["thread", "pull-out"])
+def test_a_lost_thread_is_left_once(gear: bool, z: float) -> None:
+    """While the tool is on its way out the spindle stays lost: nothing is begun anew by that."""
+    rig = Rig(gear=gear)
+    rig.start(EXTERNAL, TOOLS)
+    in_thread(rig, z)
+    rig.sim.machine.spindle_bog(0.2)
+    rig.until(State.FAULT)
+    assert rig.said("thread").count("spindle lost in a thread") == 1
+
+
 def test_a_pass_that_waits_for_the_index_does_not_begin_after_hold(gear: bool) -> None:
     rig = Rig(gear=gear)
     recorder = Recorder(rig, 0.2)

@@ -167,7 +167,7 @@ def test_a_thread_that_is_killed_leaves_nothing_on(error: type[BaseException]) -
     dog = Watchdog(thread, rig.executor.halt, (), lambda _: None)
     thread.start()
     kill(thread_of("executor"), error)
-    for _ in range(400):
+    for _ in range(30_000):
         if rig.executor.snapshot.alarms:
             break
         Waiting.pause()
@@ -197,6 +197,39 @@ class Waiting:
     @staticmethod
     def pause() -> None:
         threading.Event().wait(0.002)
+
+
+class Noting:
+    """A clock that stands still, and until when it was slept."""
+
+    def __init__(self) -> None:
+        self.until: list[float] = []
+
+    def now(self) -> float:
+        return 5.0
+
+    def sleep_until(self, t: float) -> None:
+        self.until.append(t)
+
+
+def test_between_two_ticks_it_sleeps_only_where_the_executor_has_not_rested(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """At rest the executor has slept by itself, until something rang: its tick must not come later still."""
+    rig, noting, enough = Simulated(), Noting(), threading.Event()
+    rested = [True, False, True]
+
+    def rest() -> bool:
+        if len(rested) == 1:
+            enough.set()
+        return rested.pop(0) if rested else True
+
+    monkeypatch.setattr(rig.executor, "rest", rest)
+    thread = ExecutorThread(rig.executor, noting, tick=0.01)
+    thread.start()
+    assert enough.wait(60.0)
+    thread.close()
+    assert noting.until == [5.01]
 
 
 def test_another_thread_that_ends_is_told_once() -> None:

@@ -299,6 +299,13 @@ def test_refused(text: str, code: str, names: str) -> None:
     assert names in ran.errors[0].message + ran.errors[0].hint
 
 
+@pytest.mark.parametrize(("text", "column"), [("M99", 1), ("L Z+2 FMAX M99", 1), ("CYCL CALL", 1)])
+def test_a_call_without_a_cycle_is_told_at_the_beginning_of_its_line(text: str, column: int) -> None:
+    (error, *_) = ran_of(text).errors
+    assert "No machining cycle" in error.message + error.hint
+    assert error.column == column
+
+
 def test_single_lip_drilling_enters_slowly() -> None:
     """Surface 1, start 5 below: at 50 rpm to 2 above it, coolant, 800 rpm to the bottom, out at 50 rpm."""
     speeds = {"q426": 4, "q427": 50, "q428": 800, "q429": 8, "q430": 9}

@@ -164,6 +164,14 @@ def test_passes_are_equal_and_no_deeper_than_mid() -> None:
     assert levels == [22.75, 18.5, 14.25, 10.0]
 
 
+def test_a_neck_before_the_shoulder_does_not_turn_the_cycle_round() -> None:
+    """Deep is the end of the contour that is so, whatever falls between: the passes go from right to left."""
+    neck = Source("NECK.spf", "G1 X20 Z0\nZ-10\nX16 Z-14\nZ-20\nX40\nM17", Dialect.SINUMERIK)
+    blocks = good(source(CUT + 'CYCLE95("NECK",2,,,,0.3,0.1,0.12,1)', neck))
+    ways = {b.z < b.z0 for b in blocks if b.line == 3 and b.kind is Kind.FEED and b.x == b.x0}
+    assert ways == {True}
+
+
 def test_the_contour_between_labels_and_inside() -> None:
     text = CUT + 'CYCLE95("AA:BB",3,,,,0.3,0.1,0.12,9)\nGOTOF CC\nAA: G1 X20 Z0\nZ-10\nBB: X40\nCC: Z5'
     assert material_left(good(text), 30, -5) == pytest.approx(10, abs=1e-6)

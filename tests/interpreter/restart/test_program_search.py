@@ -255,6 +255,15 @@ def test_a_line_in_metal_that_was_never_cut_is_refused_and_one_above_it_warned_o
     assert above.left_out == (10, 10)
 
 
+def test_on_a_lathe_what_was_left_out_is_no_matter_of_heights() -> None:
+    """Broken off in the cut of line 3; searched for is the line behind that of line 5."""
+    of = lathe("G54 G90 G94 G71 DIAMON\nG0 X60 Z5\nG1 Z-20 F100\nG0 X70\nG1 Z-30 F100\nG0 X80\nZ5\nM30\n")
+    cut = next(each for each in whole(of) if each.line == 3)
+    found = searched(of, 7, broken=Interruption(cut.n, 1, (30.0, -10.0, 0.0), cut.n))
+    assert isinstance(found, RestartPoint), found
+    assert (found.line, found.checkpoint.x, found.checkpoint.z) == (7, 40.0, -30.0)
+
+
 def test_comments_and_lines_behind_the_end_are_told_apart() -> None:
     text = PLATE.replace("3 Q1 = 0\n", "; a remark\n3 Q1 = 0\n")
     assert "a comment" in refused(mill(text), 4).why
