@@ -101,7 +101,7 @@ def test_a_screen_that_cannot_be_opened_is_one_line(
     }
     around = {**bare, "TURNDESK_HOME": str(tmp_path), **display}
     done = subprocess.run(
-        [sys.executable, "-c", CODE], env=around, capture_output=True, text=True, timeout=60, check=False
+        [sys.executable, "-c", CODE], env=around, capture_output=True, text=True, timeout=150, check=False
     )
     assert done.returncode == 2
     assert done.stderr.count("\n") == 1

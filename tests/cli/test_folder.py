@@ -88,6 +88,9 @@ def test_a_file_that_cannot_be_read_keeps_no_other_from_its_proof(
 # --- what is kept
 
 
+PAGE = 4096  # bytes, the least that a pipe holds
+
+
 def kept(home: Path) -> list[Path]:
     return sorted(path for path in (home / "proofs").glob("??/*"))
 
@@ -222,7 +225,7 @@ def test_a_worker_that_is_killed_once_loses_nothing(tmp_path: Path, offsets: Pat
     command = [sys.executable, "-m", "app.cli.main", "prove", str(tmp_path), "--json", "--no-cache",
                "--offsets", str(offsets)]  # fmt: skip
     around = {**os.environ, "TURNDESK_HOME": str(tmp_path / "home")}
-    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=around) as proving:
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=around, pipesize=PAGE) as proving:
         assert proving.stdout is not None
         lines = [proving.stdout.readline()]
         for worker in _workers(proving.pid)[:1]:
@@ -234,7 +237,11 @@ def test_a_worker_that_is_killed_once_loses_nothing(tmp_path: Path, offsets: Pat
 
 
 def _children(process: int) -> list[int]:
-    return [int(n) for n in Path(f"/proc/{process}/task/{process}/children").read_text().split()]
+    """None of one that has ended meanwhile."""
+    try:
+        return [int(n) for n in Path(f"/proc/{process}/task/{process}/children").read_text().split()]
+    except OSError:
+        return []
 
 
 def _workers(process: int) -> list[int]:
@@ -250,11 +257,13 @@ def test_ctrl_c_keeps_what_is_done_and_the_next_run_goes_on(tmp_path: Path, offs
     command = [sys.executable, "-m", "app.cli.main", "prove", str(folder), "--json",
                "--offsets", str(offsets), "--report", str(tmp_path / "report.html")]  # fmt: skip
     around = {**os.environ, "TURNDESK_HOME": str(home)}
-    # In the background of a shell Ctrl+C is ignored, and whoever is started inherits that.
+    # In the background of a shell Ctrl+C is ignored, and whoever is started inherits that. Its pipe holds a
+    # few lines: it waits for the test to read, however late that comes, and is not through before Ctrl+C.
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     with subprocess.Popen(
-        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=around, start_new_session=True
-    ) as proving:
+        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=around,
+        start_new_session=True, pipesize=PAGE,
+    ) as proving:  # fmt: skip
         signal.signal(signal.SIGINT, before)
         assert proving.stdout is not None
         assert proving.stderr is not None

@@ -105,7 +105,7 @@ def test_a_part_with_a_tool_whose_life_is_gone_is_refused(
             assert tool_lives.lives(connection) == {}  # nothing of it goes to a lathe's T7
         assert (life.parts, life.limit_seconds, life.stops) == (1, pytest.approx(0.06), True)
         assert life.seconds >= 0.09
-        store.write(lambda c: tool_lives.change_insert(c, 7, "fresh", Kind.MILL_TOOL)).result(5.0)
+        store.write(lambda c: tool_lives.change_insert(c, 7, "fresh", Kind.MILL_TOOL)).result(60)
         with store.read() as connection:
             fresh = tool_lives.lives(connection, Kind.MILL_TOOL)[7]
             (kept,) = tool_lives.insert_changes(connection, 9)

@@ -23,20 +23,20 @@ def made(home: Path) -> Path:
     """Ten parts of peg.nc, Ø 12.69 and 12.71 by turns in a tolerance of ± .05, and one of ring.nc."""
     row = FeatureRow(0, "peg.nc", "SPIGOT", "diameter", 12.7, -0.05, 0.05, "tool", 1, 1, 0, 1)
     with Store.open(home) as store:
-        of = store.write(lambda c: measured_parts.save_feature(c, row)).result(5)
+        of = store.write(lambda c: measured_parts.save_feature(c, row)).result(60)
         for part in range(1, 11):
             made = CycleRow(
                 f"c{part}", "peg.nc", part, "2026-01-01T00:00:00Z", "2026-01-01T00:01:00Z", 60.0 + part
             )
-            store.write(partial(part_cycles.save_cycle, row=made)).result(5)
+            store.write(partial(part_cycles.save_cycle, row=made)).result(60)
             store.count_part("peg.nc")
             reading = ReadingRow(0, of, part, 12.69 if part % 2 else 12.71, "in", "2026", "gauge", "mic")
-            store.write(partial(measured_parts.add_reading, row=reading)).result(5)
+            store.write(partial(measured_parts.add_reading, row=reading)).result(60)
         stop = StopRow("s", "c1", "peg.nc", "2026-01-01T00:00:30Z", 4.0, "FEED HOLD", 7)
-        store.write(lambda c: part_cycles.save_stop(c, stop)).result(5)
-        store.write(lambda c: tool_lives.set_limits(c, LifeRow(1, 50))).result(5)
-        store.set_tool(1, "wear", x=0.0, z=0.0, wear_x=-0.01).result(5)
-        store.count_part("ring.nc").result(5)
+        store.write(lambda c: part_cycles.save_stop(c, stop)).result(60)
+        store.write(lambda c: tool_lives.set_limits(c, LifeRow(1, 50))).result(60)
+        store.set_tool(1, "wear", x=0.0, z=0.0, wear_x=-0.01).result(60)
+        store.count_part("ring.nc").result(60)
     return home
 
 

@@ -31,7 +31,7 @@ def life(home: Path, number: int = 1) -> LifeRow:
 def limited(home: Path, parts: int, *, stops: bool) -> None:
     with Store.open(home) as store:
         row = LifeRow(1, limit_parts=parts, stops=stops)
-        store.write(lambda connection: tool_lives.set_limits(connection, row)).result(5.0)
+        store.write(lambda connection: tool_lives.set_limits(connection, row)).result(60)
 
 
 def test_a_run_at_the_machines_pace_counts_part_and_time_at_feed(
@@ -96,7 +96,7 @@ def test_a_tool_that_the_program_does_not_use_stops_nothing(
 ) -> None:
     limited(home, 1, stops=True)
     with Store.open(home) as store:
-        store.write(lambda connection: tool_lives.set_use(connection, 1, 5, 10.0)).result(5.0)
+        store.write(lambda connection: tool_lives.set_use(connection, 1, 5, 10.0)).result(60)
     path: Callable[[str], Path] = tmp_path.joinpath
     other = path("other.nc")
     other.write_text(TEXT.replace("T1", "T2"))

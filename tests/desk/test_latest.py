@@ -257,7 +257,7 @@ def test_two_workers_may_share_a_thread(worker: Latest) -> None:
 
 def _until(done: Callable[[], bool]) -> None:
     waiting = threading.Event()
-    for _ in range(2000):
+    for _ in range(12_000):
         if done():
             return
         waiting.wait(0.005)

@@ -10,7 +10,7 @@ import subprocess
 import sys
 import threading
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from drivers.clocks import RealClock
@@ -52,7 +52,8 @@ class Process:
         return {pid for pid in _alive() if mark in _environment(pid)}
 
     def feeder(self) -> int:
-        """The one process that it has started."""
+        """The one process that it has started; what is just being begun looks like who begins it."""
+        until(lambda: len(self.family()) == 2, self.family)
         (pid,) = self.family() - {self.popen.pid}
         return pid
 
@@ -65,7 +66,8 @@ def process(home: Path, module: str, *arguments: str) -> Iterator[Process]:
         yield made
     finally:
         for pid in made.family():
-            os.kill(pid, signal.SIGKILL)
+            with suppress(ProcessLookupError):  # a feeder without a control ends by itself
+                os.kill(pid, signal.SIGKILL)
         made.popen.wait()
         assert made.popen.stdout is not None
         made.popen.stdout.close()

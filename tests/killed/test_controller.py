@@ -12,16 +12,12 @@ from pathlib import Path
 import pytest
 
 import resources
+from tests.free_port import free_port
 from tests.killed.bench import PATIENCE, Process, process, until
 
 pytestmark = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="looks for processes in /proc")
 # 50.8 mm of X in 5.7 s
 PROGRAM = "G90G94\nM03S600\nM08\nG01X2.Z2.F30\nX0.Z0.\nM30\n"
-
-
-def free_port() -> int:
-    with socket.create_server(("127.0.0.1", 0)) as server:
-        return int(server.getsockname()[1])
 
 
 @pytest.fixture

@@ -34,7 +34,7 @@ class Recorded:
         for event in self.rig.events[self._heard :]:
             self.recorder.hear(event, self.store)
         self._heard = len(self.rig.events)
-        self.store.set_setting("settled", True).result(5)
+        self.store.set_setting("settled", True).result(60)
 
     @property
     def cycles(self) -> tuple[CycleRow, ...]:

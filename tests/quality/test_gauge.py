@@ -80,13 +80,13 @@ class Bench:
     def hears(self, enough: Callable[[list[Reading | str]], bool]) -> list[Reading | str]:
         """Look until it is enough."""
         found: list[Reading | str] = []
-        for _ in range(2000):
+        for _ in range(6000):
             found += self.wire.received()
             if enough(found):
                 return found
             if self.wire._thread is not None:
                 self.wire._thread.join(0.01)
-        raise AssertionError(f"not within 20 s: {found}")
+        raise AssertionError(f"not within 60 s: {found}")
 
 
 @pytest.fixture
@@ -99,7 +99,7 @@ def bench() -> Iterator[Bench]:
     yield bench
     bench.wire.close()
     if bench.wire._thread is not None:
-        bench.wire._thread.join(10.0)
+        bench.wire._thread.join(60.0)
         assert not bench.wire._thread.is_alive()
     for each in (bench.far, bench.near):
         if each >= 0:
@@ -137,7 +137,7 @@ def test_a_cable_that_is_pulled_is_told_and_f5_listens_again(bench: Bench) -> No
     (why,) = bench.hears(bool)
     assert str(why).startswith("THE GAUGE: ")
     assert "F5 LISTENS AGAIN" in str(why)
-    for _ in range(10_000):  # told first, then closed, by its own thread
+    for _ in range(60_000):  # told first, then closed, by its own thread
         if not bench.wire.open:
             break
         threading.Event().wait(0.001)

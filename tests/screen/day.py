@@ -137,7 +137,7 @@ class Day:
     def saved(self) -> None:
         """Wait for the disk, then look."""
         assert self.desk.book.store is not None
-        self.desk.book.store.write(lambda _connection: None).result(5.0)
+        self.desk.book.store.write(lambda _connection: None).result(60)
         self.run(2 * TICK)
 
     def _tick(self) -> None:
@@ -171,7 +171,7 @@ def begun(qtbot: QtBot, name: str = "", program: str = "") -> Iterator[Day]:
     window.resize(1024, 600)
     executor.tick()
     window.open_desk(desk)
-    with qtbot.waitExposed(window):
+    with qtbot.waitExposed(window, timeout=PATIENCE):
         window.show()
     window.activateWindow()
     try:

@@ -29,7 +29,7 @@ def window_on(qtbot: QtBot, desk: Desk, machine: FakeMachine) -> Iterator[MainWi
     """The window with a desk open in it; both are put away at the end, whatever the machine was at."""
     window = MainWindow(Look(DARK))
     window.resize(1024, 600)
-    with qtbot.waitExposed(window):
+    with qtbot.waitExposed(window, timeout=LIMIT):
         window.show()
     window.open_desk(desk)
     window.activateWindow()

@@ -38,7 +38,7 @@ def test_without_a_file_the_store_is_asked_anew_each_time(home: Path) -> None:
     offsets = chosen_offsets(None)
     assert offsets() == NONE
     with Store.open(home) as store:
-        store.set_tool(7, x=1.0, z=2.0, why="touched off").result(5)
+        store.set_tool(7, x=1.0, z=2.0, why="touched off").result(60)
     assert sorted(offsets()[0]) == [7]
 
 

@@ -34,7 +34,7 @@ def day(qtbot: QtBot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterat
     (folder / "cap.nc").write_text(CAP)
     monkeypatch.setenv("TURNDESK_HOME", str(tmp_path / "home"))
     with begun(qtbot, "peg.nc", PEG) as day:
-        day.store.set_tool(1, "test", x=-12.7, z=-50.8, nose_radius=0.4, quadrant=3).result(5)
+        day.store.set_tool(1, "test", x=-12.7, z=-50.8, nose_radius=0.4, quadrant=3).result(60)
         day.desk.book.read()
         day.run(0.02)
         day.key(Key.Key_D)
@@ -139,8 +139,8 @@ def test_what_is_missing_on_the_plate_is_named(day: Day) -> None:
     day.desk.book.change(
         Kind.TOOL, 2, {"x": -12.7, "z": -50.8, "nose_radius": 0.4, "quadrant": 3}, "touched off"
     )
-    day.store.write(lambda c: tool_lives.set_limits(c, LifeRow(2, 40, stops=True))).result(5)
-    day.store.write(lambda c: tool_lives.set_use(c, 2, 28, 100.0)).result(5)
+    day.store.write(lambda c: tool_lives.set_limits(c, LifeRow(2, 40, stops=True))).result(60)
+    day.store.write(lambda c: tool_lives.set_use(c, 2, 28, 100.0)).result(60)
     watch(day).parts.book.refresh()
     day.sees(lambda: lacking() == ["life for 12 of 50 parts"])
     day.key(Key.Key_F4)
@@ -150,12 +150,10 @@ def test_what_is_missing_on_the_plate_is_named(day: Day) -> None:
 
 
 def test_another_tip_than_when_it_ran_last_is_told(day: Day) -> None:
-    day.store.run_started("peg.nc").result(5)
+    day.store.run_started("peg.nc").result(60)
     started = day.store.runs()[0].started
     assert started is not None
-    day.qtbot.waitUntil(
-        lambda: utc_now() > started
-    )  # of one millisecond are what was set and what ran with it
+    day.sees(lambda: utc_now() > started)  # of one millisecond are what was set and what ran with it
     day.desk.book.change(Kind.TOOL, 1, {"nose_radius": 0.8, "quadrant": 2}, "another insert")
     added(day, "peg.nc", "3")
     day.sees(lambda: len(model(day).setup().rows) > 1)

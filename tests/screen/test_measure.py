@@ -24,7 +24,7 @@ from core.interpreter.elementary_blocks import Kind as BlockKind
 from core.interpreter.modal_state import Modal
 from tests.path.made import turned
 from tests.screen.colours import apart
-from tests.screen.hands import Hands
+from tests.screen.hands import LIMIT, Hands
 
 Key = Qt.Key
 SHIFT = Qt.KeyboardModifier.ShiftModifier
@@ -59,7 +59,7 @@ def view(qtbot: QtBot) -> Iterator[PathView]:
     FOUND.clear()
     made = PathView(Look(DARK, 12.0), picked=FOUND.append)
     made.resize(800, 500)
-    with qtbot.waitExposed(made):
+    with qtbot.waitExposed(made, timeout=LIMIT):
         made.show()
     made.activateWindow()
     made.show_picture(picture(SHAFT))

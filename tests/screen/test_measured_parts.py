@@ -31,7 +31,7 @@ def day(qtbot: QtBot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterat
     monkeypatch.setenv("TURNDESK_HOME", str(tmp_path / "home"))
     (tmp_path / "peg.nc").write_text(PEG)
     with begun(qtbot) as day:
-        day.store.set_tool(1, "test", x=-12.7, z=-50.8).result(5)
+        day.store.set_tool(1, "test", x=-12.7, z=-50.8).result(60)
         day.desk.book.read()
         day.run(0.02)
         day.key(Key.Key_D)
@@ -308,7 +308,7 @@ def test_what_another_hand_changed_is_not_taken_back_here(day: Day) -> None:
     day.key(Key.Key_F8)
     yes(day.window)
     day.sees(lambda: not day.desk.book.busy)
-    day.store.set_tool(1, "by hand", wear_z=0.01).result(5)
+    day.store.set_tool(1, "by hand", wear_z=0.01).result(60)
     day.key(Key.Key_F9)
     assert "ANOTHER CHANGE CAME AFTER IT" in day.prompt
     assert day.store.tools()[1].wear_z == 0.01

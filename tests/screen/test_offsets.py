@@ -131,7 +131,7 @@ def test_clear_asks_once_and_undo_brings_everything_back(hands: Hands, store: St
 def test_the_history_is_looked_through(hands: Hands, store: Store) -> None:
     for step in range(40):
         store.set_secondary(1, f"change {step}", z=step + 1.0)
-    store.write(lambda _connection: None).result(5)
+    store.write(lambda _connection: None).result(60)
     hands.key(Key.Key_F9)
     page = page_of(hands)
     hands.key(Key.Key_F5)
@@ -176,7 +176,7 @@ def renewals(hands: Hands) -> list[Renew]:
 
 
 def test_metric_when_the_control_is_metric(hands: Hands, store: Store) -> None:
-    store.set_secondary(1, "inch", z=2.54).result(5)
+    store.set_secondary(1, "inch", z=2.54).result(60)
     hands.desk.book = OffsetBook(store)
     hands.key(Key.Key_F9)
     modal = hands.machine.now.modal._replace(metric=True)
@@ -206,7 +206,7 @@ def test_a_tool_is_set_with_f8_and_refused_while_running(hands: Hands, store: St
 
 
 def test_wear_between_two_parts(hands: Hands, store: Store) -> None:
-    store.set_tool(1, "touched off", x=-12.7, z=-76.2).result(5)
+    store.set_tool(1, "touched off", x=-12.7, z=-76.2).result(60)
     hands.desk.book = OffsetBook(store)
     hands.load("pin")
     hands.key(Key.Key_F8)
@@ -225,7 +225,7 @@ def test_wear_between_two_parts(hands: Hands, store: Store) -> None:
 
 
 def test_a_remark_takes_the_letters_that_are_keys_elsewhere(hands: Hands, store: Store) -> None:
-    store.set_tool(1, "touched off", x=1.0, z=1.0).result(5)
+    store.set_tool(1, "touched off", x=1.0, z=1.0).result(60)
     hands.desk.book = OffsetBook(store)
     hands.key(Key.Key_F8)
     for _ in range(7):
@@ -241,7 +241,7 @@ def test_a_remark_takes_the_letters_that_are_keys_elsewhere(hands: Hands, store:
 
 def test_a_remark_is_written_by_a_finger(hands: Hands, store: Store) -> None:
     """The pad has figures; a text had no letters, and none of it could be typed."""
-    store.set_tool(1, "touched off", x=1.0, z=1.0).result(5)
+    store.set_tool(1, "touched off", x=1.0, z=1.0).result(60)
     hands.desk.book = OffsetBook(store)
     hands.window.resize(1024, 600)
     hands.key(Key.Key_F8)

@@ -20,6 +20,7 @@ from app.screen.look import Look
 from app.screen.theme import DARK, LIGHT
 from core.part.clamping import Clamping
 from tests.path.test_part_player import RAPID, SHAFT, Clock, picture
+from tests.screen.hands import LIMIT
 
 INCH = 25.4
 LEFT = Qt.MouseButton.LeftButton
@@ -31,7 +32,7 @@ def view(qtbot: QtBot) -> Iterator[PathView]:
     player = PartPlayer(clock=Clock())
     made = PathView(Look(DARK, 8.0), player=player)
     made.resize(800, 400)
-    with qtbot.waitExposed(made):
+    with qtbot.waitExposed(made, timeout=LIMIT):
         made.show()
     yield made
     made.hide()

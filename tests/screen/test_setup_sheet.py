@@ -88,7 +88,7 @@ def test_notes_stay_with_their_program(hands: Hands, journal: Journal) -> None:
     assert function.notes == []
     store = journal.book().store
     assert store is not None
-    store.rename_program("bushing.nc", "other.nc").result(5)
+    store.rename_program("bushing.nc", "other.nc").result(60)
     assert journal.setting("notes:other.nc") == ["SOFT JAWS", "BAR .02 OUT MORE"]
 
 

@@ -213,13 +213,13 @@ def test_a_backup_is_made_and_restored(hands: Hands, journal: Journal) -> None:
     hands.desk.book = journal.book()
     store = hands.desk.book.store
     assert store is not None
-    store.set_setting("mark", "before").result(5)
+    store.set_setting("mark", "before").result(60)
     page = open_function(hands, 6)
     hands.sees(lambda: len(page.table.sheet.rows) >= 1)
     hands.key(Key.Key_Return)
     hands.sees(lambda: "IS WHOLE AND ON THE DISK" in hands.prompt())
     hands.sees(lambda: len(page.table.sheet.rows) >= 2 and cells(page, 1)[1] == "RESTORE: IT IS WHOLE")
-    store.set_setting("mark", "after").result(5)
+    store.set_setting("mark", "after").result(60)
     hands.key(Key.Key_Down)
     hands.key(Key.Key_Return)
     assert hands.prompt().startswith("PRESS Y TO RESTORE")
@@ -235,7 +235,7 @@ def test_the_list_tells_what_a_backup_is_worth(hands: Hands, journal: Journal) -
     hands.desk.book = journal.book()
     store = hands.desk.book.store
     assert store is not None
-    store.set_tool(3, "x", x=1.0, z=0.0).result(5)
+    store.set_tool(3, "x", x=1.0, z=0.0).result(60)
     page = open_function(hands, 6)
     hands.sees(lambda: len(page.table.sheet.rows) >= 1)
     backups = page.model.current
@@ -244,7 +244,7 @@ def test_the_list_tells_what_a_backup_is_worth(hands: Hands, journal: Journal) -
     folder.mkdir(parents=True, exist_ok=True)
     journal.backup(folder / "2026-11-23-good.turndesk.db")
     (folder / "2026-11-22-bad.turndesk.db").write_bytes(b"no store any more")
-    store.set_tool(3, "x", x=2.0).result(5)
+    store.set_tool(3, "x", x=2.0).result(60)
     hands.key(Key.Key_F4)
     said = ["RESTORE: IT IS WHOLE", "NOTHING: IT IS DAMAGED"]
     hands.sees(lambda: [row.cells[1] for row in page.table.sheet.rows[1:3]] == said)

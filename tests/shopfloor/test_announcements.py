@@ -28,6 +28,7 @@ from app.shopfloor.network_causes import Trouble
 from app.shopfloor.status_file import Status
 from app.shopfloor.web_hook import WebHook
 from core.machine.shop_network_tables import AnnounceTable
+from tests.free_port import free_port
 
 READY: Status = {
     "state": "READY", "program": "pin.nc", "made": 3, "parts": 2, "stop": "", "waiting_for": ""
@@ -387,9 +388,7 @@ def mosquitto(tmp_path: Path) -> Iterator[tuple[int, int]]:
     """Eclipse's broker, by its port and its process."""
     if MOSQUITTO is None:
         pytest.skip("mosquitto is not installed: no MQTT broker that is not ours")
-    with socket.socket() as free:
-        free.bind(("127.0.0.1", 0))
-        port = free.getsockname()[1]
+    port = free_port()
     config = tmp_path / "mosquitto.conf"
     config.write_text(f"listener {port} 127.0.0.1\nallow_anonymous true\n")
     with subprocess.Popen([MOSQUITTO, "-c", str(config)], stderr=subprocess.PIPE) as running:

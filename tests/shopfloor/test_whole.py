@@ -26,6 +26,7 @@ from drivers.mtconnect.mtconnect_table import MtconnectTable
 from tests.cli.conftest import Turndesk, home, turndesk
 from tests.drivers.mtconnect.agent import FakeAgent, kinds_of
 from tests.executor.rig import Rig
+from tests.free_port import free_port
 
 __all__ = ["home", "turndesk"]
 
@@ -172,12 +173,6 @@ def machine_file(folder: Path, port: int, **changes: str) -> Path:
     return path
 
 
-def free_port() -> int:
-    with socket.create_server(("127.0.0.1", 0)) as wire:
-        port: int = wire.getsockname()[1]
-    return port
-
-
 def threads() -> list[str]:
     return [thread.name for thread in threading.enumerate() if thread.name in {"mtconnect", "status"}]
 
@@ -186,7 +181,7 @@ def test_the_screen_program_tells_from_its_start_to_its_end(home: Path, tmp_path
     port = free_port()
     desk = build_desk(str(machine_file(tmp_path, port)))
     try:
-        with socket.create_connection(("127.0.0.1", port), 5.0) as wire:
+        with socket.create_connection(("127.0.0.1", port), 60.0) as wire:
             assert b"|execution|STOPPED|" in wire.recv(65536)
     finally:
         desk.close()
@@ -194,7 +189,7 @@ def test_the_screen_program_tells_from_its_start_to_its_end(home: Path, tmp_path
     status = json.loads((home / "status.json").read_text())
     assert (status["machine"], status["available"]) == ("GT-75", False)  # the control has ended
     with pytest.raises(ConnectionError):
-        socket.create_connection(("127.0.0.1", port), 5.0)
+        socket.create_connection(("127.0.0.1", port), 60.0)
 
 
 def test_a_port_that_is_taken_is_said_and_the_machine_runs(home: Path, tmp_path: Path) -> None:
@@ -237,7 +232,7 @@ def test_where_the_file_does_not_want_it_nothing_listens(
     try:
         assert threads() == ["status"]
         with pytest.raises(ConnectionError):
-            socket.create_connection(("127.0.0.1", port), 5.0)
+            socket.create_connection(("127.0.0.1", port), 60.0)
     finally:
         desk.close()
 
@@ -262,7 +257,7 @@ def test_a_run_without_a_screen_in_real_time_is_told(turndesk: Turndesk, tmp_pat
     def listen() -> None:
         while not over.is_set():
             try:
-                wire = socket.create_connection(("127.0.0.1", port), 5.0)
+                wire = socket.create_connection(("127.0.0.1", port), 60.0)
             except ConnectionError:  # not open yet
                 continue
             with wire:

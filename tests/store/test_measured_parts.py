@@ -26,12 +26,12 @@ SPIGOT = FeatureRow(0, "pin.nc", "SPIGOT", "diameter", 12.7, -0.02, 0.02, "tool"
 
 
 def feature(store: Store, row: FeatureRow = SPIGOT) -> int:
-    return store.write(lambda c: measured_parts.save_feature(c, row)).result(5)
+    return store.write(lambda c: measured_parts.save_feature(c, row)).result(60)
 
 
 def read(store: Store, of: int, part: int, value: float) -> int:
     row = ReadingRow(0, of, part, value, "mm", "", "typed", "")
-    return store.write(lambda c: measured_parts.add_reading(c, row)).result(5)
+    return store.write(lambda c: measured_parts.add_reading(c, row)).result(60)
 
 
 def readings(store: Store, program: str = "pin.nc", limit: int = 100) -> list[ReadingRow]:
@@ -41,7 +41,7 @@ def readings(store: Store, program: str = "pin.nc", limit: int = 100) -> list[Re
 
 def cycle(store: Store, key: str, part: int, **more: object) -> None:
     row = CycleRow(key, "pin.nc", part, f"2026-01-01T00:0{key}:00Z")._replace(**more)  # type: ignore[arg-type]
-    store.write(lambda c: part_cycles.save_cycle(c, row)).result(5)
+    store.write(lambda c: part_cycles.save_cycle(c, row)).result(60)
 
 
 def test_a_feature_and_its_readings_in_the_order_of_taking(store: Store) -> None:
@@ -59,17 +59,17 @@ def test_a_reading_that_is_taken_out_counts_no_more_and_stays_in_the_file(store:
     of = feature(store)
     wrong = read(store, of, 1, 99.0)
     read(store, of, 1, 12.7)
-    store.write(lambda c: measured_parts.void_reading(c, wrong)).result(5)
+    store.write(lambda c: measured_parts.void_reading(c, wrong)).result(60)
     assert [row.value for row in readings(store)] == [12.7]
     with pytest.raises(StoreError, match="taken out already"):
-        store.write(lambda c: measured_parts.void_reading(c, wrong)).result(5)
+        store.write(lambda c: measured_parts.void_reading(c, wrong)).result(60)
     with store.read() as connection:
         assert connection.execute("SELECT count(*) FROM part_readings").fetchone() == (2,)
 
 
 def test_a_retired_feature_frees_its_name_and_takes_no_reading(store: Store) -> None:
     of = feature(store)
-    store.write(lambda c: measured_parts.retire_feature(c, of)).result(5)
+    store.write(lambda c: measured_parts.retire_feature(c, of)).result(60)
     with pytest.raises(StoreError, match="not measured any more"):
         read(store, of, 1, 12.7)
     assert feature(store) != of
@@ -99,10 +99,10 @@ def test_a_reading_that_is_no_number(store: Store) -> None:
 def test_a_reading_knows_with_which_offsets_its_part_was_made(store: Store) -> None:
     """Part 1 before the wear, part 2 begun before it and ended after, part 3 after; part 9 is unknown."""
     of = feature(store)
-    store.set_tool(3, "touched off", x=1.0, z=2.0).result(5)
+    store.set_tool(3, "touched off", x=1.0, z=2.0).result(60)
     cycle(store, "1", 1)
     cycle(store, "2", 0)
-    store.set_tool(3, "wear", wear_x=-0.01).result(5)
+    store.set_tool(3, "wear", wear_x=-0.01).result(60)
     cycle(store, "2", 2, ended="2026-01-01T00:03:00Z")
     cycle(store, "3", 3)
     for part in (1, 2, 3, 9):
@@ -116,13 +116,13 @@ def test_a_reading_knows_with_which_offsets_its_part_was_made(store: Store) -> N
 
 
 def test_corrections_stand_between_the_parts(store: Store) -> None:
-    store.set_tool(3, "touched off", x=1.0, z=2.0).result(5)
+    store.set_tool(3, "touched off", x=1.0, z=2.0).result(60)
     for part in (1, 2):
         cycle(store, str(part), part)
-    store.set_tool(3, "wear", wear_x=-0.01).result(5)
+    store.set_tool(3, "wear", wear_x=-0.01).result(60)
     cycle(store, "3", 3)
-    store.set_tool(3, "remark", remark="new").result(5)
-    store.set_secondary(4, "D", x=0.02).result(5)
+    store.set_tool(3, "remark", remark="new").result(60)
+    store.set_secondary(4, "D", x=0.02).result(60)
     with store.read() as connection:
         rows = part_cycles.corrections(connection, "pin.nc", 100)
     assert [(row.kind, row.number, row.was_x, row.x, row.part) for row in rows] == [
@@ -135,7 +135,7 @@ def test_cycles_and_stops(store: Store) -> None:
     cycle(store, "1", 0)
     cycle(store, "1", 1, ended="2026-01-01T00:02:00Z", seconds=58.5, outcome="COMPLETE")
     stop = StopRow("s1", "1", "pin.nc", "2026-01-01T00:01:30Z", 4.5, "FEED HOLD", 7)
-    store.write(lambda c: part_cycles.save_stop(c, stop)).result(5)
+    store.write(lambda c: part_cycles.save_stop(c, stop)).result(60)
     with store.read() as connection:
         (row,) = part_cycles.cycles(connection, "pin.nc", 10)
         assert (row.part, row.seconds, row.load) == (1, 58.5, None)
@@ -154,12 +154,12 @@ def test_the_cycles_of_a_day_are_those_of_all_programs(store: Store) -> None:
 
 
 def test_an_insert_is_changed_and_what_it_made_is_remembered(store: Store) -> None:
-    store.write(lambda c: tool_lives.set_limits(c, LifeRow(3, 50, 1800.0, 0.8, True))).result(5)
-    store.write(lambda c: tool_lives.set_use(c, 3, 50, 1200.5)).result(5)
+    store.write(lambda c: tool_lives.set_limits(c, LifeRow(3, 50, 1800.0, 0.8, True))).result(60)
+    store.write(lambda c: tool_lives.set_use(c, 3, 50, 1200.5)).result(60)
     with store.read() as connection:
         assert tool_lives.lives(connection) == {3: LifeRow(3, 50, 1800.0, 0.8, True, 50, 1200.5)}
-    store.write(lambda c: tool_lives.change_insert(c, 3, "spent")).result(5)
-    store.write(lambda c: tool_lives.change_insert(c, 7, "by eye")).result(5)
+    store.write(lambda c: tool_lives.change_insert(c, 3, "spent")).result(60)
+    store.write(lambda c: tool_lives.change_insert(c, 7, "by eye")).result(60)
     with store.read() as connection:
         assert tool_lives.lives(connection)[3] == LifeRow(3, 50, 1800.0, 0.8, True, 0, 0.0)
         told = [
@@ -175,13 +175,13 @@ def test_a_tool_that_is_none_has_no_life(store: Store, number: int) -> None:
         lambda c: tool_lives.change_insert(c, number, ""),
     ):
         with pytest.raises(StoreError, match="there is no tool"):
-            store.write(operation).result(5)
+            store.write(operation).result(60)
 
 
 def test_all_of_it_goes_with_another_name(store: Store) -> None:
     read(store, feature(store), 1, 12.7)
     cycle(store, "1", 1)
-    store.rename_program("pin.nc", "axle.nc").result(5)
+    store.rename_program("pin.nc", "axle.nc").result(60)
     assert [row.value for row in readings(store, "axle.nc")] == [12.7]
     assert readings(store) == []
     with store.read() as connection:
@@ -191,7 +191,7 @@ def test_all_of_it_goes_with_another_name(store: Store) -> None:
 def test_features_of_two_programs_are_not_mixed_by_a_name(store: Store) -> None:
     feature(store)
     feature(store, SPIGOT._replace(program="axle.nc"))
-    store.rename_program("pin.nc", "axle.nc").result(5)
+    store.rename_program("pin.nc", "axle.nc").result(60)
     with store.read() as connection:
         assert [row.program for row in measured_parts.features(connection)] == ["axle.nc", "pin.nc"]
 

@@ -66,7 +66,7 @@ def test_another_process_is_refused_too(store: Store, folder: Path) -> None:
         "try:\n    Store.open(Path(sys.argv[1]))\nexcept StoreError as error:\n    sys.exit(str(error))\n"
     )
     done = subprocess.run(
-        [sys.executable, "-c", code, str(folder)], capture_output=True, text=True, check=False, timeout=60
+        [sys.executable, "-c", code, str(folder)], capture_output=True, text=True, check=False, timeout=150
     )
     assert done.returncode == 1
     assert "in use by another TurnDesk" in done.stderr

@@ -24,7 +24,7 @@ def test_best_and_latest_cycle(store: Store) -> None:
     for seconds in (31.5, 29.25, 30.0):
         store.cycle_finished("pin.nc", seconds)
     store.run_started("pin.nc")
-    store.run_ended("pin.nc", "COMPLETE").result(5)
+    store.run_ended("pin.nc", "COMPLETE").result(60)
     (row,) = store.runs()
     assert (row.cycles, row.best, row.latest, row.outcome) == (3, 29.25, 30.0, "COMPLETE")
     assert row.started is not None
@@ -32,7 +32,7 @@ def test_best_and_latest_cycle(store: Store) -> None:
 
 def test_a_program_that_was_only_counted_or_only_proved_is_there_too(store: Store) -> None:
     store.count_part("counted.nc")
-    store.program_proved("proved.nc", "PROVED", 12.5).result(5)
+    store.program_proved("proved.nc", "PROVED", 12.5).result(60)
     rows = {row.program: row for row in store.runs()}
     assert (rows["counted.nc"].parts, rows["counted.nc"].best) == (1, None)
     assert (rows["proved.nc"].proof, rows["proved.nc"].planned) == ("PROVED", 12.5)
@@ -42,7 +42,7 @@ def test_everything_goes_with_another_name(store: Store) -> None:
     store.save_program("old.nc", b"M30", "test")
     store.count_part("old.nc")
     store.cycle_finished("old.nc", 10.0)
-    store.rename_program("old.nc", "new.nc").result(5)
+    store.rename_program("old.nc", "new.nc").result(60)
     assert [row.program for row in store.runs()] == ["new.nc"]
     assert store.parts("new.nc") == 1
     assert store.load_program("new.nc") == b"M30"
@@ -52,22 +52,22 @@ def test_everything_goes_with_another_name(store: Store) -> None:
 def test_versions_under_the_new_name_are_not_mixed_with_those_of_the_old(store: Store) -> None:
     store.save_program("old.nc", b"old", "test")
     store.save_program("new.nc", b"deleted long ago", "test")
-    store.rename_program("old.nc", "new.nc").result(5)
+    store.rename_program("old.nc", "new.nc").result(60)
     assert store.load_program("new.nc") == b"deleted long ago"
     assert store.load_program("old.nc") == b"old"
 
 
 @pytest.mark.parametrize("name", ["", "a/b", "..", " x"])
 def test_a_name_that_is_none_is_refused_and_nothing_is_changed(store: Store, name: str) -> None:
-    store.count_part("pin.nc").result(5)
+    store.count_part("pin.nc").result(60)
     with pytest.raises(StoreError, match="cannot name a program"):
-        store.rename_program("pin.nc", name).result(5)
+        store.rename_program("pin.nc", name).result(60)
     assert store.parts("pin.nc") == 1
 
 
 def test_events_of_some_kinds(store: Store) -> None:
     for kind, text in (("alarm", "Z"), ("start", "pin"), ("alarm", "spindle"), ("end", "pin")):
-        store.log_event(kind, text).result(5)
+        store.log_event(kind, text).result(60)
     assert [event.text for event in store.events(kinds={"alarm"})] == ["spindle", "Z"]
     assert [event.text for event in store.events("SPIN", kinds={"alarm", "end"})] == ["spindle"]
     assert len(store.events()) == 4
@@ -79,7 +79,7 @@ def test_an_export_has_them_for_a_spreadsheet(store: Store, tmp_path: Path) -> N
     store.cycle_finished("pin.nc", 30.5)
     store.run_ended("pin.nc", 'ALARM 102, "X"')
     store.count_part("pin.nc")
-    store.program_proved("ring.nc", "2 ERRORS: line 4", None).result(5)
+    store.program_proved("ring.nc", "2 ERRORS: line 4", None).result(60)
     export(store, tmp_path / "out")
     with (tmp_path / "out" / "runs.csv").open(newline="", encoding="utf-8") as file:
         pin, ring = csv.DictReader(file)

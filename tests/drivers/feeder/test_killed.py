@@ -10,6 +10,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -79,7 +80,8 @@ def shop(tmp_path: Path) -> Iterator[Shop]:
     finally:
         for pid in (control.pid, made.feeder):
             if pid and _alive(pid):
-                os.kill(pid, signal.SIGKILL)
+                with suppress(ProcessLookupError):  # a feeder without a control ends by itself
+                    os.kill(pid, signal.SIGKILL)
         control.wait()
         assert control.stdout is not None
         control.stdout.close()

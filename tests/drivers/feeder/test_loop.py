@@ -50,7 +50,7 @@ def served() -> Iterator[tuple[socket.socket, Simulation, threading.Thread]]:
 def assert_off(sim: Simulation) -> None:
     """The drives lose power with the next step of the model."""
     clock = sim.ports.clock
-    end = clock.now() + 5.0
+    end = clock.now() + 60.0
     while sim.ports.axes.sample().enabled:
         assert clock.now() < end
 

@@ -21,11 +21,12 @@ def test_closing_in_a_restart_leaves_no_broken_thread_and_no_feeder(monkeypatch:
     feeder.line.fault = "gone"  # as after a feeder that has ended
     first.kill()
     feeder.line.restart()
-    (opening,) = [each for each in threading.enumerate() if each.name == "reopening"]
-    while feeder.process is first and opening.is_alive():
-        opening.join(0.01)
+    opening = [each for each in threading.enumerate() if each.name == "reopening"]
+    while feeder.process is first and any(each.is_alive() for each in opening):
+        opening[0].join(0.01)
     feeder.close()
-    opening.join()
+    for each in opening:
+        each.join()
     assert not died
     assert feeder.process is not first
     assert feeder.process.poll() is not None

@@ -19,6 +19,7 @@ from drivers.clocks import RealClock, StepClock
 from drivers.lookalikes.grblhal_firmware import Firmware
 from tests.drivers.grblhal.bench import quirky
 from tests.drivers.grblhal.test_like_the_simulator import AS_IT_COMES
+from tests.free_port import free_port
 
 _VARIABLE = "TURNDESK_GRBLHAL_SIM"
 SIMULATOR = os.environ.get(_VARIABLE, "")
@@ -50,8 +51,7 @@ class Real:
     """The simulator on a socket of this computer."""
 
     def __init__(self, folder: Path) -> None:
-        with socket.create_server(("127.0.0.1", 0)) as free:
-            port = free.getsockname()[1]
+        port = free_port()
         self._process = subprocess.Popen(
             [SIMULATOR, "-p", str(port), "-e", str(folder / "eeprom")],
             cwd=folder,

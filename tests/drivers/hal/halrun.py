@@ -21,7 +21,7 @@ _WRAPPER = """#!/bin/sh
 [ "$1" = -f ] && chown -R {nobody}:{nobody} "$(dirname "$2")"
 exec setpriv --reuid={nobody} --regid={nobody} --clear-groups env HOME={home} {halrun} "$@"
 """
-_PATIENCE = 200  # tenths of a second
+_PATIENCE = 600  # tenths of a second
 _TRIED = "loadrt threads name1=t period1=1000000\nloadrt streamer depth=8 cfg=f\nstart\n"
 
 
@@ -78,7 +78,7 @@ def why_not() -> str:
             capture_output=True,
             text=True,
             check=False,
-            timeout=60,
+            timeout=150,
         )
     said = (done.stderr or done.stdout).strip().splitlines()
     return "" if done.returncode == 0 else f"LinuxCNC's HAL does not run here: {' / '.join(said[-2:])}"

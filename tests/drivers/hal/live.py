@@ -158,7 +158,9 @@ class LiveLathe:
     # --- processes ----------------------------------------------------------------------------------------
 
     def kill(self, word: str, how: signal.Signals = signal.SIGKILL) -> None:
-        """The one of its processes that has this word at the end of one of its arguments."""
+        """The one of its processes that has this word at the end of one of its arguments; what is just being
+        begun still has those of who begins it."""
+        self.until(lambda _: len(self.processes(word)) == 1)
         (pid,) = self.processes(word)
         os.kill(pid, how)
 

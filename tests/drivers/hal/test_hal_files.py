@@ -120,5 +120,5 @@ def load(folder: Path, name: str, text: str) -> subprocess.CompletedProcess[str]
     script = place / "whole.hal"
     script.write_text(without_board(text, stand_in) + "start\nshow sig\n", encoding="utf-8")
     return subprocess.run(
-        ["halrun", "-f", str(script)], capture_output=True, text=True, check=False, timeout=60, cwd=place
+        ["halrun", "-f", str(script)], capture_output=True, text=True, check=False, timeout=150, cwd=place
     )

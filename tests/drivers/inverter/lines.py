@@ -24,7 +24,7 @@ from tests.drivers.inverter.inverter_lookalikes import (
 )
 from tests.drivers.ptys import open_pty
 
-WAIT = 20.0  # s for what must happen at once on a computer that is not busy
+WAIT = 60.0  # s for what must happen at once on a computer that is not busy
 
 
 class Pair:

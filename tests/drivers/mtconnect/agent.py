@@ -43,7 +43,7 @@ class FakeAgent:
         if self.receive:
             self.wire.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, self.receive)
         self.wire.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)  # as the C++ agent does
-        self.wire.settimeout(5.0)
+        self.wire.settimeout(60.0)
         self.wire.connect(address)
         self.send(b"* PING\n")
         self._heard = self._pinged = self.clock.now()

@@ -15,7 +15,7 @@ from tests.drivers.mtconnect.agent import FakeAgent
 
 BEGIN = datetime(2026, 1, 31, 23, 59, 58, 500_000, tzinfo=UTC)
 HEARTBEAT = 10.0
-_TURNS = 2000
+_TURNS = 60_000  # of a millisecond, or less
 
 
 def lathe(name: str = "GT75") -> Component:

@@ -187,7 +187,7 @@ def test_a_computer_that_vanishes_is_noticed_by_its_silence(
 
 
 def test_a_person_with_a_terminal_need_not_ping(bench: Bench) -> None:
-    with socket.create_connection(bench.adapter.address, 5.0) as wire:
+    with socket.create_connection(bench.adapter.address, 60.0) as wire:
         bench.until(lambda: bench.adapter.agents == 1)
         for _ in range(1000):
             bench.silent_look()
@@ -197,7 +197,7 @@ def test_a_person_with_a_terminal_need_not_ping(bench: Bench) -> None:
 
 def test_one_that_is_gone_before_it_is_let_in_costs_nothing(bench: Bench) -> None:
     for _ in range(20):
-        wire = socket.create_connection(bench.adapter.address, 5.0)
+        wire = socket.create_connection(bench.adapter.address, 60.0)
         wire.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, b"\x01\x00\x00\x00\x00\x00\x00\x00")
         wire.close()  # a reset instead of an end
         bench.silent_look()
@@ -208,7 +208,7 @@ def test_one_that_is_gone_before_it_is_let_in_costs_nothing(bench: Bench) -> Non
 def test_there_is_room_for_so_many_and_no_more(bench: Bench) -> None:
     for _ in range(MOST):
         bench.agent()
-    with socket.create_connection(bench.adapter.address, 5.0) as wire:
+    with socket.create_connection(bench.adapter.address, 60.0) as wire:
         wire.sendall(b"* PING\n")
         bench.until(lambda: bench.adapter.counts.refused == 1)
         assert b"|" not in wire.recv(100)  # nothing of the machine
@@ -225,7 +225,7 @@ def test_who_pings_takes_the_place_of_who_never_did(bench: Bench) -> None:
     """Half-open connections and port scanners must not lock the agents out."""
     silent = []
     for taken in range(1, MOST + 1):
-        silent.append(socket.create_connection(bench.adapter.address, 5.0))
+        silent.append(socket.create_connection(bench.adapter.address, 60.0))
         bench.until(partial(_serves, bench, taken))
     agents = [bench.agent() for _ in range(MOST)]
     assert all(agent.values["execution"] == "READY" for agent in agents)
@@ -238,7 +238,7 @@ def test_who_pings_takes_the_place_of_who_never_did(bench: Bench) -> None:
 def test_who_waits_at_the_door_and_never_pings_is_sent_away(bench: Bench) -> None:
     for _ in range(MOST):
         bench.agent()
-    with socket.create_connection(bench.adapter.address, 5.0) as wire:
+    with socket.create_connection(bench.adapter.address, 60.0) as wire:
         bench.until(lambda: len(bench.adapter._links) == MOST + 1)
         for _ in range(51):
             bench.silent_look()
@@ -253,7 +253,7 @@ def test_closing_hangs_up_on_everybody() -> None:
     bench.close()
     assert [agent.wire for agent in agents] == [None, None]
     with pytest.raises(ConnectionError):
-        socket.create_connection(address, 5.0)
+        socket.create_connection(address, 60.0)
 
 
 def refusing(bind: str, port: int) -> str:

@@ -51,7 +51,7 @@ def test_it_tells_until_it_is_closed_and_leaves_nothing() -> None:
     thread = AdapterThread(one)
     thread.start()
     address = one.address
-    with socket.create_connection(address, 5.0) as wire:
+    with socket.create_connection(address, 60.0) as wire:
         assert b"execution|READY" in wire.recv(65536)
         machine.state = "STOPPED"  # the last word, whether a look comes before the end or not
         thread.close()
@@ -59,7 +59,7 @@ def test_it_tells_until_it_is_closed_and_leaves_nothing() -> None:
     assert not thread.alive
     assert threads() == []
     with pytest.raises(ConnectionError):
-        socket.create_connection(address, 5.0)
+        socket.create_connection(address, 60.0)
 
 
 def test_closing_twice_is_closing_once() -> None:
@@ -85,7 +85,7 @@ def test_should_it_fail_agents_are_hung_up_on(caplog: pytest.LogCaptureFixture) 
     one = adapter(machine)
     thread = AdapterThread(one)
     thread.start()
-    with socket.create_connection(one.address, 5.0) as wire:
+    with socket.create_connection(one.address, 60.0) as wire:
         wire.recv(65536)
         machine.broken.set()
         all_of(wire)

@@ -123,7 +123,7 @@ class JogBench:
 
     def saved(self) -> None:
         """Wait for the disk, then look."""
-        self.store.write(lambda _connection: None).result(5.0)
+        self.store.write(lambda _connection: None).result(60)
         self.run(2 * TICK)
 
     # --- hands ---------------------------------------------------------------------------------------

@@ -8,12 +8,13 @@ from pathlib import Path
 import pytest
 from pytestqt.qtbot import QtBot
 
+from tests.screen.hands import LIMIT
 from tests.screen.jog.bench import JogBench, bench_on, opened
 
 
 def _open(qtbot: QtBot, folder: Path, *, absolute: bool = True, **more: bool) -> Iterator[JogBench]:
     bench = bench_on(folder, absolute=absolute, **more)
-    qtbot.waitExposed(bench.window)
+    qtbot.waitExposed(bench.window, timeout=LIMIT)
     opened(bench)
     yield bench
     bench.window.put_away()

@@ -10,6 +10,7 @@ from pytestqt.qtbot import QtBot
 
 from app.screen import page_table
 from core.executor.snapshot import State
+from tests.screen.hands import LIMIT
 from tests.screen.jog.bench import INCH, SHIFT, JogBench, Key
 from tests.screen.yes import twist_out
 
@@ -89,14 +90,14 @@ def test_a_missed_release_ends_with_the_silence_of_the_key(jog: JogBench) -> Non
 def test_the_window_that_loses_the_keyboard(jog: JogBench, qtbot: QtBot) -> None:
     at = moving(jog)
     other = QDialog()
-    with qtbot.waitActive(other):
+    with qtbot.waitActive(other, timeout=LIMIT):
         other.show()
         other.activateWindow()
     stands(jog, at)
     other.close()
     other.deleteLater()
     jog.window.activateWindow()
-    qtbot.waitUntil(jog.window.isActiveWindow)
+    qtbot.waitUntil(jog.window.isActiveWindow, timeout=LIMIT)
     jog.run(0.3)
     assert "KEYBOARD WENT ELSEWHERE" in jog.prompt
     jog.up(Key.Key_Left)
@@ -111,7 +112,7 @@ def test_a_dialog_of_the_window(jog: JogBench, qtbot: QtBot) -> None:
     at = moving(jog)
     dialog = QDialog(jog.window)
     dialog.setModal(True)
-    with qtbot.waitExposed(dialog):
+    with qtbot.waitExposed(dialog, timeout=LIMIT):
         dialog.show()
     stands(jog, at)
     dialog.close()

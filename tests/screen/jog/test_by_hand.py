@@ -13,6 +13,7 @@ from pytestqt.qtbot import QtBot
 from app.jog.hand_functions import WORDS
 from app.screen import page_table
 from core.executor.snapshot import State
+from tests.screen.hands import LIMIT
 from tests.screen.jog.bench import SHIFT, JogBench, Key
 from tests.screen.yes import twist_out
 
@@ -255,7 +256,7 @@ def test_a_window_that_loses_the_keyboard_ends_the_jog_and_takes_nothing_up(
     jog.down(Key.Key_Left)
     jog.run(0.5)
     other = QDialog()
-    with qtbot.waitActive(other):
+    with qtbot.waitActive(other, timeout=LIMIT):
         other.show()
         other.activateWindow()
     jog.run(0.5)
@@ -263,7 +264,7 @@ def test_a_window_that_loses_the_keyboard_ends_the_jog_and_takes_nothing_up(
     other.close()
     other.deleteLater()
     jog.window.activateWindow()
-    qtbot.waitUntil(jog.window.isActiveWindow)
+    qtbot.waitUntil(jog.window.isActiveWindow, timeout=LIMIT)
     jog.run(0.5)
     assert (jog.shot.demand, jog.shot.state) == (stands, State.IDLE)
 

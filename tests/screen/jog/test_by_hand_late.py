@@ -13,6 +13,7 @@ from app.jog.skim_cut import CutStep
 from app.screen import page_table
 from core.executor.commands import CycleStart
 from core.executor.snapshot import Starts, State
+from tests.screen.hands import LIMIT
 from tests.screen.jog import bench
 from tests.screen.jog.bench import JogBench, Key, opened
 from tests.screen.jog.test_by_hand import chosen, palms, proved
@@ -30,7 +31,7 @@ def mill(qtbot: QtBot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Itera
 
     monkeypatch.setattr(bench, "shipped", shipped)
     built = bench.bench_on(tmp_path)
-    qtbot.waitExposed(built.window)
+    qtbot.waitExposed(built.window, timeout=LIMIT)
     opened(built)
     yield built
     built.window.put_away()

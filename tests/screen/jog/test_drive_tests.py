@@ -11,6 +11,7 @@ from pytestqt.qtbot import QtBot
 from app.jog.drive_test_view import DriveTestPage
 from app.screen import page_table
 from core.executor.snapshot import State
+from tests.screen.hands import LIMIT
 from tests.screen.jog.bench import INCH, SHIFT, JogBench, Key
 from tests.screen.yes import twist_out
 
@@ -149,7 +150,7 @@ def test_the_window_that_loses_the_keyboard_ends_it(jog: JogBench, page: DriveTe
     ramp(jog)
     asked_and_held(jog)
     other = QDialog()
-    with qtbot.waitActive(other):
+    with qtbot.waitActive(other, timeout=LIMIT):
         other.show()
         other.activateWindow()
     stands(jog)

@@ -87,7 +87,7 @@ def test_two_tools_are_set_by_touching(jog: JogBench) -> None:
 
 def set_two(jog: JogBench) -> None:
     jog.store.set_tool(1, "x", x=-5.0, z=-50.0, wear_x=0.1)
-    jog.store.set_tool(2, "x", x=3.0, z=-40.0).result(5)
+    jog.store.set_tool(2, "x", x=3.0, z=-40.0).result(60)
     jog.desk.book.read()
     jog.type("t")
     jog.enter("1")
