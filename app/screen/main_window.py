@@ -62,6 +62,7 @@ class MainWindow(QWidget):
         super().__init__()
         self._closed = closed
         self._meant = False  # to leave, whatever is lost by it
+        self._untaken = ""  # what was said of the last character that an entry did not take
         self.look = look
         self.frame: Frame | None = None
         self.ahead: PagesAhead | None = None
@@ -333,7 +334,8 @@ class MainWindow(QWidget):
         if not text.isprintable() or not text or stops or not frame.has_field():
             return False
         if not event.isAutoRepeat():
-            frame.desk.say(tr("AN ENTRY HAS THE KEYBOARD, AND DOES NOT TAKE {key} HERE").format(key=text))
+            self._untaken = tr("AN ENTRY HAS THE KEYBOARD, AND DOES NOT TAKE {key} HERE").format(key=text)
+            frame.desk.say(self._untaken)
             self.refresh()
         return True
 
@@ -342,6 +344,8 @@ class MainWindow(QWidget):
         key = typed_of(event)
         if not key or (event.isAutoRepeat() and key not in TYPED_AGAIN) or not frame.page.typed(key):
             return False
+        if frame.desk.notice == self._untaken:
+            frame.desk.clear()  # the next key was taken
         self.refresh()
         return True
 

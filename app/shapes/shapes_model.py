@@ -28,7 +28,7 @@ from core.shapes.pieces import (
 from core.shapes.program_head import HEAD
 from core.shapes.shape import Shape
 from core.shapes.shape_setting import Setting, Shop
-from core.shapes.shape_table import HELPERS, SHAPES_OF
+from core.shapes.shape_table import HELPERS, HELPERS_OF, SHAPES_OF
 
 FORMS_OF = {dialect: {**table, "X": PROFILE} for dialect, table in SHAPES_OF.items()}
 """The forms by the language of the program."""
@@ -101,10 +101,7 @@ class Shapes:
         if not written_in(name):
             return tr("SHAPES ARE WRITTEN IN OMNITURN OR SINUMERIK: THIS PROGRAM SPEAKS ANOTHER LANGUAGE")
         dialect = dialect_of(name)
-        if dialect is not Dialect.OMNITURN:
-            if table is not FORMS:
-                return tr("CALCULATORS AND TEMPLATES WRITE OMNITURN: THIS PROGRAM SPEAKS ANOTHER LANGUAGE")
-            table = FORMS_OF[dialect]
+        table = (HELPERS_OF if table is HELPERS else FORMS_OF)[dialect]
         self.new = replace(self.new, dialect=dialect)
         self.worker.ask(lambda _request: self.fetch(), self._have_shop, self._no_shop)
         self.notice, self.asked, self.form, self.table = "", None, None, table
@@ -120,7 +117,7 @@ class Shapes:
     @property
     def of_shapes(self) -> bool:
         """Whether the list is that of shapes, not of calculators and templates."""
-        return self.table is not HELPERS
+        return all(self.table is not each for each in HELPERS_OF.values())
 
     @property
     def keys_of_list(self) -> tuple[str, ...]:

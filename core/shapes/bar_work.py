@@ -76,10 +76,15 @@ LOOP = Shape(
 )
 
 
-def _sinumerik_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
+def no_chuck(setting: Setting, word: str) -> Iterator[Refusal]:
+    """A machine on which a SINUMERIK program cannot open the chuck; told at this field."""
     if setting.shop.chuck is None:
         words = "No M code of this machine opens and closes the chuck: bind two to the output collet"
-        yield Refusal("FEEDS", f"{words} under [m_codes] of the machine file.")
+        yield Refusal(word, f"{words} under [m_codes] of the machine file.")
+
+
+def _sinumerik_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
+    yield from no_chuck(setting, "FEEDS")
     yield from _checks(filled, setting)
 
 

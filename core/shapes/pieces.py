@@ -133,7 +133,7 @@ def _with_head(values: Values, now: Setting) -> Setting:
         now,
         metric=values.get("UNIT") == MM,
         diameter=values.get("WORDS") != RADIUS,
-        clear=clear if isinstance(clear, float) else now.clear,
+        change_z=clear if isinstance(clear, float) else now.change_z,
         bar=bar if isinstance(bar, float) else 0.0,
         material=material if isinstance(material, str) else "",
     )

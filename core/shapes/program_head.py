@@ -9,7 +9,7 @@ from core.shapes.cutting_data import MATERIALS
 from core.shapes.number_words import plain
 from core.shapes.shape import Filled, Shape
 from core.shapes.shape_fields import Field, Kind, Proposal, Value, Values, text
-from core.shapes.shape_setting import Setting
+from core.shapes.shape_setting import CLEAR, Setting
 from core.shapes.sketch import Dim, Sketch, part, sketch
 
 INCH, MM = "INCH", "METRIC"
@@ -57,7 +57,7 @@ HEAD = Shape(
         Field("MATERIAL", "MATERIAL", Kind.CHOICE, "STEEL", tuple(MATERIALS)),
         Field("BAR", "BAR DIAMETER", Kind.DIAMETER, 0.0, zero=True),
         Field("COOLANT", "COOLANT", Kind.CHOICE, _YES, (_YES, _NO)),
-        Field("CLEAR", "TOOLS CHANGE AT Z", Kind.LENGTH, _length(1.0, 25.0)),
+        Field("CLEAR", "TOOLS CHANGE AT Z", Kind.LENGTH, _length(CLEAR[False], CLEAR[True])),
         Field("RAPID", "RAPID", Kind.RATE, _length(300.0, 7620.0)),
     ),
     _cut,

@@ -83,6 +83,8 @@ class Field:
 
     def _wrong_word(self, value: str | None) -> str:
         if value is None:
+            if self.kind is Kind.NAME:
+                return f"{self.label} is not said: type it, or choose one with the arrows."
             return f"{self.label} is not said: type it."
         if self.choices and value not in self.choices:
             return f"{self.label} {value} is none of {', '.join(self.choices)}: choose one."

@@ -9,6 +9,7 @@ from core.language.source import Dialect
 from core.part.tool_shape import ToolShape
 
 _NEAR = {False: 0.1, True: 2.5}  # by metric: how near a rapid comes to the part
+CLEAR = {False: 1.0, True: 25.0}  # by metric: Z where tools change, where nobody has said it
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,7 +29,8 @@ class Shop:
 
 @dataclass(frozen=True, slots=True)
 class Setting:
-    """Lengths in the unit of the program. ``clear`` is Z where tools change, ``bar`` the bar's diameter.
+    """Lengths in the unit of the program. ``change_z`` is Z where tools change, 0 where nobody has said it,
+    ``bar`` the bar's diameter.
 
     ``called``: the shape stands in a subroutine, ``used`` are the tools before it,
     ``free_sub`` the first number that no subroutine of the program has, or no labelled contour of SINUMERIK.
@@ -36,7 +38,7 @@ class Setting:
 
     metric: bool = False
     diameter: bool = True
-    clear: float = 1.0
+    change_z: float = 0.0
     bar: float = 0.0
     material: str = ""
     called: bool = False
@@ -49,6 +51,11 @@ class Setting:
     def near(self) -> float:
         """How near a rapid comes to the part."""
         return _NEAR[self.metric]
+
+    @property
+    def clear(self) -> float:
+        """Z where tools change."""
+        return self.change_z or CLEAR[self.metric]
 
     @property
     def mm(self) -> float:

@@ -20,12 +20,18 @@ from core.shapes.live_tools import (
 from core.shapes.parting import PART_OFF
 from core.shapes.program_head import HEAD, SINUMERIK_HEAD
 from core.shapes.shape import Shape
-from core.shapes.shape_fields import Field, Kind, Value, Values, number
-from core.shapes.shape_setting import Setting
+from core.shapes.sinumerik_helpers import (
+    SINUMERIK_BAR_FEED,
+    SINUMERIK_ROUGH,
+    SINUMERIK_SPEED,
+    SINUMERIK_START,
+    SINUMERIK_THREADING,
+    SINUMERIK_THREADS,
+)
 from core.shapes.tapping import SINUMERIK_TAP, TAP
 from core.shapes.templates import BAR_FEED, ROUGH, START, THREADING, TOOL_CHANGE
 from core.shapes.threading import SINUMERIK_THREAD, THREAD
-from core.shapes.turning import BORE, EDGE, FACE, TAPER, TURN
+from core.shapes.turning import BORE, EDGE, FACE, LABEL, TAPER, TURN
 
 # H, E and Space stop the machine on every page: they open nothing.
 SHAPES: dict[str, Shape] = {
@@ -58,24 +64,24 @@ HELPERS: dict[str, Shape] = {
 }
 """Calculators and templates: forms that write lines without a comment."""
 
+SINUMERIK_HELPERS: dict[str, Shape] = {
+    "T": TRIANGLE,
+    "R": SINUMERIK_THREADS,
+    "F": SINUMERIK_SPEED,
+    "N": SINUMERIK_START,
+    "C": TOOL_CHANGE,
+    "G": SINUMERIK_ROUGH,
+    "D": SINUMERIK_THREADING,
+    "B": SINUMERIK_BAR_FEED,
+}
 
-def _next_label(_values: Values, setting: Setting) -> Value | None:
-    return float(setting.free_sub)
-
-
-_LABEL = Field(
-    "LABEL",
-    "NUMBER OF THE CONTOUR",
-    Kind.COUNT,
-    _next_label,
-    most=9999,
-    only=lambda v: number(v, "ROUGH") > 0,
-)
+HELPERS_OF = {Dialect.OMNITURN: HELPERS, Dialect.SINUMERIK: SINUMERIK_HELPERS}
+"""By the language of the program."""
 
 
 def _labelled(shape: Shape) -> Shape:
     """A contour that CYCLE95 finds by its labels."""
-    return replace(shape, fields=(*shape.fields, _LABEL))
+    return replace(shape, fields=(*shape.fields, LABEL))
 
 
 SINUMERIK_SHAPES: dict[str, Shape] = {

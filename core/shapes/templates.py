@@ -11,6 +11,7 @@ from core.shapes.shape_setting import Setting
 from core.shapes.sketch import Sketch, cut, part, sketch, tool
 from core.shapes.usual_fields import MOST_RPM, bar, next_tool
 
+V60_DEEP = 0.6134  # of a thread of 60 degrees, in pitches; ISO 68-1
 _TOOL = Field("T", "TOOL", Kind.TOOL, lambda _v, s: float(next_tool(s)), most=32)
 _SPEED = Field("RPM", "SPEED RPM", Kind.RPM, 1000.0, most=MOST_RPM)
 _ACROSS = Field("FROM", "DIAMETER", Kind.DIAMETER, lambda v, s: bar(v, s) or (25.0 if s.metric else 1.0))
@@ -21,7 +22,8 @@ def _bar(_filled: Filled) -> Sketch:
 
 
 def _change(filled: Filled, setting: Setting, code: Code) -> None:
-    code.rapid(z=setting.clear)
+    if setting.used:  # before the first tool Z counts from another place
+        code.rapid(z=setting.clear)
     code.begin(filled.n("T"), filled.n("RPM"), filled.n("FROM") / 2.0, setting.near)
 
 
@@ -40,7 +42,7 @@ def _rough_sketch(_filled: Filled) -> Sketch:
 
 def _thread(filled: Filled, setting: Setting, code: Code) -> None:
     r, pitch = filled.n("FROM") / 2.0, filled.n("PITCH")
-    deep = 0.6134 * pitch  # of 60 degrees, ISO 68-1
+    deep = V60_DEEP * pitch
     first = rounded_up(deep / 8.0**0.5, metric=setting.metric)
     code.begin(filled.n("T"), filled.n("RPM"), r - first, 3.0 * pitch + setting.near)
     code.write(f"G33{code.x(r - deep)}{code.z(-filled.n('LONG'))}{code.x(first, 'I')}K{plain(pitch, 6)}PC")

@@ -154,22 +154,33 @@ def filled_depth(filled: Filled) -> float:
 
 
 def _cycle97(filled: Filled, _setting: Setting, code: Code) -> None:
-    """CYCLE97 in passes of equal chip. It stops where the thread ends, so it needs a relief there."""
-    inside, lead = filled.t("SIDE") == INSIDE, filled.n("PITCH") * max(1.0, filled.n("STARTS"))
-    begin, end = -filled.n("AT"), -(filled.n("AT") + filled.n("LONG"))
-    outwards = -1.0 if inside else 1.0
-    crest = filled.n("CREST")
-    far = crest + outwards * filled.n("TAPER") * filled.n("LONG")
+    """It stops where the thread ends, so it needs a relief there."""
+    crest, far = filled.n("CREST"), _far(filled)
     turns = "M04" if filled.t("HAND") == LEFT else "M03"
-    code.begin(filled.n("T"), filled.n("RPM"), max(crest, far) / 2.0 if not inside else 0.0, None, turns)
-    ends = (figure(v) for v in (begin, end, crest, far, filled.n("RUNUP"), 0.0))
-    depth, angle, passes = (figure(v) for v in (filled_depth(filled), filled.n("INFEED"), filled.n("PASSES")))
-    kind, starts = "4" if inside else "3", figure(max(1.0, filled.n("STARTS")))
-    words = (figure(lead, 6), "", *ends, depth, "0", angle, "0", passes, "0", kind, starts)
-    code.rapid(z=begin + filled.n("RUNUP"))
+    inside = filled.t("SIDE") == INSIDE
+    code.begin(filled.n("T"), filled.n("RPM"), 0.0 if inside else max(crest, far) / 2.0, None, turns)
+    code.rapid(z=filled.n("RUNUP") - filled.n("AT"))
+    write_cycle97(filled, code)
+    code.away()
+
+
+def _far(filled: Filled) -> float:
+    """The diameter before it is cut where a tapered thread ends."""
+    outwards = -1.0 if filled.t("SIDE") == INSIDE else 1.0
+    return filled.n("CREST") + outwards * filled.n("TAPER") * filled.n("LONG")
+
+
+def write_cycle97(filled: Filled, code: Code) -> None:
+    """CYCLE97 in passes of equal chip."""
+    starts = max(1.0, filled.n("STARTS"))
+    begin, end = -filled.n("AT"), -(filled.n("AT") + filled.n("LONG"))
+    ends = (begin, end, filled.n("CREST"), _far(filled), filled.n("RUNUP"), 0.0)
+    depth, angle, passes = filled_depth(filled), filled.n("INFEED"), math.ceil(filled.n("PASSES") - 1e-6)
+    kind = 4.0 if filled.t("SIDE") == INSIDE else 3.0
+    figures = (*ends, depth, 0.0, angle, 0.0, passes, 0.0, kind, starts)
+    words = (figure(filled.n("PITCH") * starts, 6), "", *map(figure, figures))
     code.write(f"CYCLE97({', '.join(words)})")
     code.forget()
-    code.away()
 
 
 def _thread(filled: Filled, setting: Setting, code: Code) -> None:
@@ -239,7 +250,8 @@ def _checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
         yield Refusal("ROOT", f"{words}. Look at both diameters.")
     if setting.dialect is Dialect.OMNITURN:
         yield from _lead_checks(filled, setting)
-    if filled.t("PULL") == NO or setting.dialect is Dialect.SINUMERIK:
+    pulls = filled.t("PULL") == YES or filled.shape.field("RELIEF") is None
+    if not pulls:
         yield from _relief(filled)
     yield from _flank_checks(filled, setting)
     yield from _by_sheet(filled, setting)

@@ -41,6 +41,14 @@ _RFEED = feed_field(Work.TURN, "RFEED", "FEED OF ROUGHING", only=_roughs)
 _COMP = Field("COMP", "NOSE COMPENSATION D", Kind.OFFSET, 0.0, zero=True, most=32)
 
 
+def _next_label(_values: Values, setting: Setting) -> Value | None:
+    return float(setting.free_sub)
+
+
+LABEL = Field("LABEL", "NUMBER OF THE CONTOUR", Kind.COUNT, _next_label, most=9999, only=_roughs)
+"""Of a contour that CYCLE95 finds by its labels."""
+
+
 def begin_spindle(filled: Filled, setting: Setting, code: Code, x: float, z: float | None) -> None:
     """Tool, spindle and the way to the part; constant surface speed where it is asked for."""
     code.edge = filled.n("COMP") or 1.0

@@ -24,7 +24,7 @@ from core.language.sinumerik.cycle_names import CYCLES, CYCLES_OUTSIDE
 from core.language.sinumerik.word_table import FUNCTIONS, M_FUNCTIONS, OUTSIDE, WORDS
 from core.language.source import Dialect
 from core.shapes.shape_fields import Field, choice_text
-from core.shapes.shape_table import HELPERS, SHAPES, SINUMERIK_SHAPES
+from core.shapes.shape_table import HELPERS, SHAPES, SINUMERIK_HELPERS, SINUMERIK_SHAPES
 from core.shapes.thread_series import Series
 from resources.translations.reading import marked, texts_of
 
@@ -309,7 +309,8 @@ def _of_books() -> list[str]:
 
 def _of_shapes() -> list[str]:
     """Names of shapes and of their fields: many are single words."""
-    shapes = (*SHAPES.values(), *SINUMERIK_SHAPES.values(), *HELPERS.values(), PROFILE)
+    tables = (SHAPES, SINUMERIK_SHAPES, HELPERS, SINUMERIK_HELPERS)
+    shapes = (*(shape for table in tables for shape in table.values()), PROFILE)
     fields = [field for shape in shapes for field in shape.fields]
     labels = {field.label for field in fields if len(field.label) > 1}
     choices = {choice_text(field, choice) for field in fields for choice in _in_words(field)}

@@ -13040,11 +13040,6 @@
     </message>
     <message>
       <location filename="app/shapes/shapes_model.py" />
-      <source>CALCULATORS AND TEMPLATES WRITE OMNITURN: THIS PROGRAM SPEAKS ANOTHER LANGUAGE</source>
-      <translation>CALCULADORAS Y PLANTILLAS ESCRIBEN OMNITURN: ESTE PROGRAMA HABLA OTRO LENGUAJE</translation>
-    </message>
-    <message>
-      <location filename="app/shapes/shapes_model.py" />
       <source>CHANGED BY HAND IN THE TEXT, AND TAKEN OVER: {fields}</source>
       <translation>CAMBIADO A MANO EN EL TEXTO Y TOMADO DE ALLÍ: {fields}</translation>
     </message>
@@ -29745,13 +29740,33 @@
     </message>
     <message>
       <location filename="core/shapes/shape_fields.py" />
+      <source>%1 is not said: type it, or choose one with the arrows.</source>
+      <translation>%1 no está dicho: escríbalo, o elija con las flechas.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/shape_fields.py" />
       <source>%1 is not said: type it.</source>
       <translation>%1 no está dicho: escríbalo.</translation>
     </message>
     <message>
-      <location filename="core/shapes/shape_table.py" />
-      <source>NUMBER OF THE CONTOUR</source>
-      <translation>NÚMERO DEL CONTORNO</translation>
+      <location filename="core/shapes/sinumerik_helpers.py" />
+      <source>CYCLE95 ROUGHING</source>
+      <translation>DESBASTE CYCLE95</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/sinumerik_helpers.py" />
+      <source>G94 F%1 is the same feed</source>
+      <translation>G94 F%1 es el mismo avance</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/sinumerik_helpers.py" />
+      <source>THREAD CYCLE97</source>
+      <translation>ROSCA CYCLE97</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/sinumerik_helpers.py" />
+      <source>tool, run-up, passes by constant chip area</source>
+      <translation>útil, arranque, pasadas de viruta constante</translation>
     </message>
     <message>
       <location filename="core/shapes/tapping.py" />
@@ -30047,6 +30062,11 @@
       <location filename="core/shapes/turning.py" />
       <source>It faces from %1 inwards: %2 is not less.</source>
       <translation>Refrenta desde %1 hacia dentro: %2 no es menos.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/turning.py" />
+      <source>NUMBER OF THE CONTOUR</source>
+      <translation>NÚMERO DEL CONTORNO</translation>
     </message>
     <message>
       <location filename="core/shapes/turning.py" />

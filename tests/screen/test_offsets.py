@@ -107,6 +107,8 @@ def test_signs_and_c_belong_to_the_entry_and_not_to_the_switches(hands: Hands, s
     hands.type("sodrt")  # no letter is a switch while figures are typed
     assert not hands.machine.now.single_block
     assert hands.prompt() == "AN ENTRY HAS THE KEYBOARD, AND DOES NOT TAKE t HERE"
+    hands.type("1")  # the next one that it takes answers nothing
+    assert "DOES NOT TAKE" not in hands.prompt()
 
 
 def test_clear_asks_once_and_undo_brings_everything_back(hands: Hands, store: Store) -> None:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from app.compose.machine_setup import setup_for
-from app.shapes.shapes_model import Shapes
+from app.shapes.shapes_model import FORMS, Shapes
 from core.interpreter.dialects import ReadProgram
 from core.interpreter.elementary_blocks import Kind
 from core.interpreter.job_setup import Setup, ToolOffset
@@ -292,7 +292,7 @@ def strike(shapes: Shapes, keys: str) -> None:
         if key == "§":
             shapes.write()
         else:
-            assert shapes.typed({"⏎": "Enter"}.get(key, key)), (key, shapes.prompt())
+            assert shapes.typed({"⏎": "Enter", "↑": "Up"}.get(key, key)), (key, shapes.prompt())
 
 
 def test_the_forms_write_the_language_of_the_program(desk: Shapes) -> None:
@@ -313,6 +313,6 @@ def test_a_program_without_a_head_asks_for_it(desk: Shapes) -> None:
     assert (desk.form, "PRESS N" in desk.notice) == (None, True)
 
 
-def test_what_is_written_in_the_other_language_alone_is_refused(desk: Shapes) -> None:
-    assert desk.open("x.mpf", "", 1, HELPERS).startswith("CALCULATORS AND TEMPLATES WRITE OMNITURN")
-    assert desk.open("x.h", "", 1).startswith("SHAPES ARE WRITTEN IN OMNITURN OR SINUMERIK")
+def test_a_language_that_the_forms_do_not_write_is_refused(desk: Shapes) -> None:
+    for table in (FORMS, HELPERS):
+        assert desk.open("x.h", "", 1, table).startswith("SHAPES ARE WRITTEN IN OMNITURN OR SINUMERIK")
