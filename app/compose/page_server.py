@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import logging
 import os
 import socket
 import threading
@@ -15,7 +16,8 @@ if TYPE_CHECKING:
     from _typeshed.wsgi import WSGIApplication
 
 _THREADS = 3  # that answer browsers
-_WAITING = 30  # connections
+_WAITING = 100  # connections
+_SILENT = 10  # s after which a browser that neither asks nor reads is given up
 _TURN = 0.5  # s
 
 
@@ -32,6 +34,7 @@ class PageServer:
         self._between = between
         self._channels: dict[int, Any] = {}
         self._workers = ThreadedTaskDispatcher()
+        self._workers.queue_logger.setLevel(logging.ERROR)  # that one browser waits for another is no warning
         self._workers.set_thread_count(_THREADS)
         create_server(
             page,
@@ -39,7 +42,8 @@ class PageServer:
             _dispatcher=self._workers,
             sockets=[listening],
             ident="",
-            channel_timeout=15,
+            channel_timeout=_SILENT,
+            cleanup_interval=_SILENT // 2,
             connection_limit=_WAITING,
             max_request_body_size=1,
         )

@@ -6,20 +6,22 @@ import json
 import threading
 import time
 from collections.abc import Callable, Sequence
+from dataclasses import replace
+from http import HTTPStatus
 from http.client import HTTPException
 from urllib.error import HTTPError, URLError
 from urllib.parse import urlsplit, urlunsplit
 from urllib.request import ProxyHandler, build_opener
 
-from app.shopfloor.network_causes import cause_of
-from app.shopfloor.status_page import OtherDesk
+from app.desk.translation import tr
+from app.shopfloor.network_causes import cause_of, one_line
+from app.shopfloor.status_page import NOT_YET, OtherDesk
 
 EVERY = 3.0  # s
 LOOKED_AT = 15.0  # s after which nobody looks any more
 STALE = 10.0  # s after which what was heard is not true any more
 _PATIENCE = 2.0  # s
 _LARGEST = 1e9  # of its figures; JSON as Python reads it has Infinity and NaN
-_NOT_YET = "not asked yet"
 _MOST = 100_000  # bytes
 _ASK = build_opener(ProxyHandler({}))  # desks of one shop are not asked by way of a proxy
 
@@ -32,23 +34,28 @@ def status_address(address: str) -> str:
 
 def asked(address: str) -> OtherDesk:
     """One desk, asked now; waits for two seconds at most for each piece of its answer."""
-    name = urlsplit(address).netloc.rpartition("@")[2]
+    name = _name(address)
     try:
         with _ASK.open(status_address(address), timeout=_PATIENCE) as answer:
             found = json.loads(answer.read(_MOST))
     except HTTPError as error:
-        why = "it wants another token" if error.code == 403 else f"it answers {error.code} {error.reason}"
-        return OtherDesk(name, trouble=why)
+        return OtherDesk(name, trouble=_refused(error))
     except (URLError, HTTPException, OSError) as error:
         return OtherDesk(name, trouble=cause_of(error))
     except (ValueError, RecursionError):
-        return OtherDesk(name, trouble="what answers there is no desk")
+        return OtherDesk(name, trouble=tr("what answers there is no desk"))
     if not isinstance(found, dict):
-        return OtherDesk(name, trouble="what answers there is no desk")
+        return OtherDesk(name, trouble=tr("what answers there is no desk"))
     return OtherDesk(name, {key: value for key, value in found.items() if _fits(key, value)})
 
 
-_TEXTS = frozenset({"machine", "state", "execution", "program"})
+def _refused(error: HTTPError) -> str:
+    if error.code == HTTPStatus.FORBIDDEN:
+        return tr("it wants another token")
+    return one_line(tr("it answers {answer}").format(answer=f"{error.code} {error.reason}"))
+
+
+_TEXTS = frozenset({"machine", "state", "execution", "program", "stop", "waiting_for"})
 _FIGURES = frozenset({"line", "made", "time_left", "last_cycle", "spindle_load"})
 
 
@@ -72,12 +79,11 @@ class OtherDesks:
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         self._ask, self._clock = ask, clock
-        self._heard = {
-            each: (clock(), OtherDesk(urlsplit(each).netloc, trouble=_NOT_YET)) for each in addresses
-        }
+        self._names = {each: _name(each) for each in addresses}  # with that of the machine, once it is known
+        self._heard = {each: self._not_yet(each, clock()) for each in addresses}
         self._looked = threading.Event()
         self._closing = threading.Event()
-        self._last = clock()
+        self._last = -LOOKED_AT
         self._threads = [
             threading.Thread(target=self._keep, args=(each,), name="other-desks", daemon=True)
             for each in addresses
@@ -90,7 +96,10 @@ class OtherDesks:
 
     def look(self) -> Sequence[OtherDesk]:
         """What was heard of each."""
-        self._last = now = self._clock()
+        now = self._clock()
+        if now - self._last > LOOKED_AT:  # nobody has asked meanwhile: that is no silence of theirs
+            self._heard.update({each: self._not_yet(each, now) for each in self._heard})
+        self._last = now
         self._looked.set()
         return tuple(_if_fresh(desk, now - at) for at, desk in self._heard.values())
 
@@ -99,18 +108,28 @@ class OtherDesks:
         self._closing.set()
         self._looked.set()
 
+    def _not_yet(self, address: str, now: float) -> tuple[float, OtherDesk]:
+        return now, OtherDesk(self._names[address], state=NOT_YET)
+
     def _keep(self, address: str) -> None:
         while not self._closing.is_set():
             self._looked.wait()
             heard = self._ask(address)
-            self._heard[address] = self._clock(), heard
+            if heard.status is not None and (machine := heard.status.get("machine")):
+                self._names[address] = f"{machine} ({_name(address)})"
+            self._heard[address] = self._clock(), replace(heard, address=self._names[address])
             if self._clock() - self._last > LOOKED_AT:
                 self._looked.clear()
             self._closing.wait(EVERY)
 
 
+def _name(address: str) -> str:
+    """Without what only the two desks need to know."""
+    return urlsplit(address).netloc.rpartition("@")[2]
+
+
 def _if_fresh(desk: OtherDesk, age: float) -> OtherDesk:
     """Of a desk that was not heard for ``age`` s nobody knows how it is."""
-    if age <= STALE or desk.trouble == _NOT_YET:
+    if age <= STALE:
         return desk
-    return OtherDesk(desk.address, trouble=f"not heard for {age:.0f} s")
+    return OtherDesk(desk.address, trouble=tr("not heard for {age} s").format(age=round(age)))

@@ -1,6 +1,7 @@
 """The page for the office and the telephone: one desk, and those beside it. It shows; it takes no orders.
 
 A WSGI application: ``/`` the page, ``/now`` what of it changes, ``status.json``, ``part.png``, ``alarm.svg``.
+People read it in the language of the screen; ``status.json``, which programs read, has one language.
 """
 
 from __future__ import annotations
@@ -16,29 +17,33 @@ from http.cookies import CookieError, SimpleCookie
 from string import Template
 from typing import TYPE_CHECKING, Any
 from urllib.parse import parse_qs
+from zlib import crc32
 
 from app.desk.formats import duration
+from app.desk.translation import spoken, tr
 from app.shopfloor.status_file import Status
 from resources import status_page_file
 
 if TYPE_CHECKING:
     from _typeshed.wsgi import StartResponse, WSGIEnvironment
 
-COOKIE = "turndesk"
+COOKIE = "turndesk-"  # and the port: a browser keeps one name for all ports of a computer
 _NO_ORDERS = b"this page takes no orders\n"
 _NO_TOKEN = b"open this page with ?token= and the token of the machine file\n"
 _GOOD = frozenset({"RUNNING", "WAITING", "READY", "JOG", "HOMING"})
 _BAD = frozenset({"ALARM", "E-STOP", "CONTROL SILENT", "NO ANSWER"})
+NOT_YET = "…"  # nobody has asked it yet
 Headers = list[tuple[str, str]]
 
 
 @dataclass(frozen=True, slots=True)
 class OtherDesk:
-    """Another desk as it was last heard; ``status`` None: it does not answer, ``trouble`` says why."""
+    """Another desk as it was last heard; ``status`` None: nothing is known of it, ``trouble`` says why."""
 
     address: str
     status: Mapping[str, Any] | None = None
     trouble: str = ""
+    state: str = "NO ANSWER"  # where nothing is known of it
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,13 +76,21 @@ class StatusPage:
         kind, body = make(self)
         if not body:
             return HTTPStatus.NOT_FOUND, [_TEXT], b"there is none now\n"
-        kept = [("Set-Cookie", f"{COOKIE}={given}; HttpOnly; SameSite=Strict; Path=/")] if given else []
+        cookie = f"{_cookie(environ)}={given}; HttpOnly; SameSite=Strict; Path=/"
+        kept = [("Set-Cookie", cookie)] if given else []
         return HTTPStatus.OK, [("Content-Type", kind), *kept], body
 
     def page(self) -> tuple[str, bytes]:
         """The whole page."""
         frame = Template(status_page_file("page.html").decode())
-        page = frame.substitute(title=escape(self.machine), now=self._now())
+        page = frame.substitute(
+            title=escape(self.machine),
+            language=spoken(),
+            lost=escape(tr("NO ANSWER: what stands below is old")),
+            now=self._now(),
+            part=_picture("part", "part.png", self.picture(), tr("The part of the program on the desk")),
+            alarm=_picture("alarm", "alarm.svg", self.alarm(), tr("Following errors before the last alarm")),
+        )
         return "text/html; charset=utf-8", page.encode()
 
     def now(self) -> tuple[str, bytes]:
@@ -106,7 +119,9 @@ class StatusPage:
 
     def _now(self) -> str:
         others = "".join(_other(each) for each in self.others())
-        return _desk(self.status()) + (f'<section class="others">{others}</section>' if others else "")
+        drawn = f'<i id="drawn" data-part="{_mark(self.picture())}" data-alarm="{_mark(self.alarm())}"></i>'
+        beside = f'<section class="others">{others}</section>' if others else ""
+        return f"{_desk(self.status())}{drawn}{beside}"
 
 
 _PAGES: dict[str, Callable[[StatusPage], tuple[str, bytes]]] = {
@@ -125,10 +140,14 @@ def _given(environ: WSGIEnvironment) -> str:
     query = parse_qs(environ.get("QUERY_STRING", "")).get("token", [""])[0]
     bearer = environ.get("HTTP_AUTHORIZATION", "").removeprefix("Bearer ")
     try:
-        cookie = SimpleCookie(environ.get("HTTP_COOKIE", "")).get(COOKIE)
+        cookie = SimpleCookie(environ.get("HTTP_COOKIE", "")).get(_cookie(environ))
     except CookieError:
         cookie = None
     return query or bearer or (cookie.value if cookie is not None else "")
+
+
+def _cookie(environ: WSGIEnvironment) -> str:
+    return f"{COOKIE}{environ.get('SERVER_PORT', '')}"
 
 
 # --- HTML ---------------------------------------------------------------------------------------------
@@ -138,68 +157,91 @@ def _look(state: str) -> str:
     return "good" if state in _GOOD else "bad" if state in _BAD else "doubt"
 
 
+def _mark(picture: bytes) -> str:
+    """By which a browser sees that it is another one than before; empty: there is none."""
+    return f"{crc32(picture):x}" if picture else ""
+
+
+def _picture(name: str, address: str, picture: bytes, words: str) -> str:
+    """The drawing with its words below; hidden while there is none."""
+    mark = _mark(picture)
+    source = f'src="{address}?{mark}"' if mark else ""
+    hidden = "" if mark else " hidden"
+    image = f'<img {source} alt="{escape(words)}">'
+    return f'<figure id="{name}"{hidden}>{image}<figcaption>{escape(words)}</figcaption></figure>'
+
+
 def _desk(status: Status) -> str:
-    state, alarms = str(status["state"]), status["alarms"]
-    why = str(status["stop"] or status["waiting_for"] or "")
-    rows = "".join(
-        f"<tr><th>{escape(name)}</th><td>{escape(text)}</td></tr>" for name, text in _figures(status) if text
-    )
-    told = "".join(
-        f'<p class="alarm">{escape(str(each["number"] or each["code"]))} {escape(each["text"])}'
-        f"<br>{escape(each['remedy'])}</p>"
-        for each in (alarms if isinstance(alarms, list) else [])
-    )
-    return (
-        f'<p class="state {_look(state)}">{escape(state)}</p><p class="why">{escape(why)}</p>{told}'
-        f'<table>{rows}</table>{_stops(status)}<p class="made">{escape(_local(status["updated"]))}</p>'
-    )
+    alarms = status["alarms"]
+    told = "".join(_alarm(each) for each in (alarms if isinstance(alarms, list) else []))
+    made = f'<p class="made">{escape(_local(status["updated"]))}</p>'
+    return f"{_head(status)}{told}{_table(_figures(status))}{_stops(status)}{made}"
 
 
-def _local(at: object) -> str:
-    """A moment in ISO 8601 as the clock of this desk shows it; what is none stays as it is."""
+def _alarm(alarm: Mapping[str, Any]) -> str:
+    number, text, remedy = alarm["number"] or alarm["code"], alarm["text"], alarm["remedy"]
+    words = f"{escape(str(number))} {escape(tr(text))}<br>{escape(tr(remedy))}"
+    return f'<p class="alarm">{words}</p>'
+
+
+def _head(status: Mapping[str, Any], trouble: str = "") -> str:
+    """The state, and why."""
+    state = str(status.get("state") or status.get("execution") or "?")
+    why = trouble or str(status.get("stop") or status.get("waiting_for") or "")
+    said = f'<p class="why">{escape(tr(why))}</p>' if why else ""
+    return f'<p class="state {_look(state)}">{escape(tr(state))}</p>{said}'
+
+
+def _local(at: object, *, short: bool = False) -> str:
+    """A moment in ISO 8601 as the clock of this desk shows it; what is none stays as it is.
+
+    ``short``: without the date where that is today's, without seconds where it is not.
+    """
     try:
-        return f"{datetime.fromisoformat(str(at)).astimezone():%Y-%m-%d %H:%M:%S}"
+        here = datetime.fromisoformat(str(at)).astimezone()
     except ValueError:
         return str(at)
+    if not short:
+        return f"{here:%Y-%m-%d %H:%M:%S}"
+    return f"{here:%H:%M:%S}" if here.date() == datetime.now().date() else f"{here:%Y-%m-%d %H:%M}"
 
 
 def _figures(status: Mapping[str, Any]) -> list[tuple[str, str]]:
     left, last = status.get("time_left"), status.get("last_cycle")
     made, line, load = status.get("made"), status.get("line"), status.get("spindle_load")
     return [
-        ("Program", str(status.get("program") or "")),
-        ("Line", str(line) if line else ""),
-        ("Parts", str(made) if made is not None else ""),
-        ("Time left", duration(left) if left is not None else ""),
-        ("Last cycle", duration(last) if last else ""),
-        ("Spindle load", f"{load} %" if load is not None else ""),
+        (tr("Program"), str(status.get("program") or "")),
+        (tr("Line"), str(line) if line else ""),
+        (tr("Parts"), str(made) if made is not None else ""),
+        (tr("Time left"), duration(left) if left is not None else ""),
+        (tr("Last cycle"), duration(last) if last else ""),
+        (tr("Spindle load"), f"{load} %" if load is not None else ""),
     ]
+
+
+def _table(rows: list[tuple[str, str]]) -> str:
+    cells = "".join(f"<tr><th>{escape(name)}</th><td>{escape(text)}</td></tr>" for name, text in rows if text)
+    return f"<table>{cells}</table>" if cells else ""
 
 
 def _stops(status: Status) -> str:
     stops = status["stops"]
     if not isinstance(stops, list) or not stops:
         return ""
-    rows = "".join(
-        f"<tr><td>{escape(_local(each['at']))}</td><td>{escape(each['reason'])}</td>"
-        f"<td>{duration(each['seconds'])}</td></tr>"
-        for each in stops
-    )
-    return f"<h2>Last stops</h2><table>{rows}</table>"
+    rows = "".join(map(_stop, stops))
+    return f"<h2>{escape(tr('Last stops'))}</h2><table>{rows}</table>"
+
+
+def _stop(stop: Mapping[str, Any]) -> str:
+    at, reason, lasted = _local(stop["at"], short=True), stop["reason"], duration(stop["seconds"])
+    since, stood = (f'<td class="time">{escape(each)}</td>' for each in (at, lasted))
+    return f"<tr>{since}<td>{escape(tr(reason))}</td>{stood}</tr>"
 
 
 def _other(desk: OtherDesk) -> str:
-    found = desk.status
-    name = str(found.get("machine") or desk.address) if found is not None else desk.address
-    state = str(found.get("state") or found.get("execution") or "?") if found is not None else "NO ANSWER"
-    rows = "".join(
-        f"<tr><th>{escape(title)}</th><td>{escape(text)}</td></tr>"
-        for title, text in (_figures(found) if found is not None else [])
-        if text
-    )
-    why = f'<p class="why">{escape(desk.trouble)}</p>' if desk.trouble else ""
-    head = f'<h2>{escape(name)}</h2><p class="state {_look(state)}">{escape(state)}</p>'
-    return f"<article>{head}{why}<table>{rows}</table></article>"
+    found = desk.status if desk.status is not None else {"state": desk.state}
+    name = str(found.get("machine") or desk.address)
+    return f"<article><h2>{escape(name)}</h2>{_head(found, desk.trouble)}{_table(_figures(found))}</article>"
 
 
 _TEXT = ("Content-Type", "text/plain; charset=utf-8")

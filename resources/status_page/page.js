@@ -1,13 +1,18 @@
 "use strict";
 // What does not come any more is said: an old figure on a wall is worse than none.
 const PICTURES = { part: "part.png", alarm: "alarm.svg" };
-let looks = 0;
+const shown = marks(); // what the page came with
 
-for (const name in PICTURES) {
-  const picture = document.getElementById(name);
-  picture.addEventListener("error", () => { picture.hidden = true; });
-  picture.addEventListener("load", () => { picture.hidden = false; });
-  picture.hidden = picture.complete && picture.naturalWidth === 0; // it was not there before we listened
+function marks() {
+  return { ...document.getElementById("drawn").dataset };
+}
+
+function show(name, mark) {
+  if (shown[name] === mark) return;
+  shown[name] = mark;
+  const figure = document.getElementById(name);
+  figure.hidden = mark === "";
+  if (mark !== "") figure.querySelector("img").src = `${PICTURES[name]}?${mark}`;
 }
 
 async function look() {
@@ -17,12 +22,10 @@ async function look() {
     if (!answer.ok) throw new Error(answer.statusText);
     document.getElementById("now").innerHTML = await answer.text();
     lost.hidden = true;
+    const now = marks();
+    for (const name in PICTURES) show(name, now[name]);
   } catch {
     lost.hidden = false;
-  }
-  looks += 1;
-  if (looks % 15 === 0) {
-    for (const name in PICTURES) document.getElementById(name).src = `${PICTURES[name]}?${looks}`;
   }
   setTimeout(look, 2000);
 }

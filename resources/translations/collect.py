@@ -65,7 +65,10 @@ ROOMS = (
     *("core/alarms", "core/executor", "core/store", "core/interpreter"),
     *("core/language", "core/proving", "core/geometry", "core/motion", "core/part", COMPOSING),
     *("core/drawings", "core/quality", "core/records", "core/shapes", "core/sharing", "core/access"),
+    "app/shopfloor",
 )
+# Where much is told to programs: what is marked alone.
+MARKED_ALONE = frozenset({"app/shopfloor"})
 # Scripts and tables that no screen shows, and what the console is told where there is no screen.
 APART = frozenset(
     {
@@ -112,6 +115,7 @@ ALSO = (
     "in/min",
     "in/rev",
     "IN/OUT",
+    *("NO ANSWER", "no answer"),  # of the page for the office
     "JOB",
     "TRY",
     # Of what a backup differs in.
@@ -268,7 +272,8 @@ def texts() -> dict[str, str]:
                 room != COMPOSING or path.name in COMPOSED
             ):
                 tree = ast.parse(path.read_text(encoding="utf-8"))
-                read = {text for text in texts_of(tree) if _is_read(text, loud)}
+                texts = texts_of(tree) if room not in MARKED_ALONE else ()
+                read = {text for text in texts if _is_read(text, loud)}
                 for text in sorted(read | set(marked(tree))):
                     found.setdefault(text, str(path.relative_to(HOUSE)))
     return {

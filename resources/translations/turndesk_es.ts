@@ -2300,6 +2300,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>NO ANSWER</source>
+      <translation>SIN RESPUESTA</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>NOT COUNTED AS A PART: %1; %2 s</source>
       <translation>NO CONTADO COMO PIEZA: %1; %2 s</translation>
     </message>
@@ -2597,11 +2602,6 @@
       <location filename="" />
       <source>Prints; nothing is printed here, which is said.</source>
       <translation>Imprime; aquí no se imprime nada, lo que se dice.</translation>
-    </message>
-    <message>
-      <location filename="" />
-      <source>Program</source>
-      <translation>Programa</translation>
     </message>
     <message>
       <location filename="" />
@@ -4447,6 +4447,11 @@
       <location filename="" />
       <source>motion</source>
       <translation>movimiento</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>no answer</source>
+      <translation>sin respuesta</translation>
     </message>
     <message>
       <location filename="" />
@@ -13282,6 +13287,61 @@
       <location filename="app/sharing/sharing_view.py" />
       <source>ELSEWHERE</source>
       <translation>EN OTROS PUESTOS</translation>
+    </message>
+    <message>
+      <location filename="app/shopfloor/other_desks.py" />
+      <source>it answers {answer}</source>
+      <translation>responde {answer}</translation>
+    </message>
+    <message>
+      <location filename="app/shopfloor/other_desks.py" />
+      <source>it wants another token</source>
+      <translation>quiere otro token</translation>
+    </message>
+    <message>
+      <location filename="app/shopfloor/other_desks.py" />
+      <source>not heard for {age} s</source>
+      <translation>sin noticias desde hace {age} s</translation>
+    </message>
+    <message>
+      <location filename="app/shopfloor/other_desks.py" />
+      <source>what answers there is no desk</source>
+      <translation>lo que responde allí no es ningún puesto</translation>
+    </message>
+    <message>
+      <location filename="app/shopfloor/status_page.py" />
+      <source>Following errors before the last alarm</source>
+      <translation>Errores de seguimiento antes de la última alarma</translation>
+    </message>
+    <message>
+      <location filename="app/shopfloor/status_page.py" />
+      <source>Last cycle</source>
+      <translation>Último ciclo</translation>
+    </message>
+    <message>
+      <location filename="app/shopfloor/status_page.py" />
+      <source>Last stops</source>
+      <translation>Últimos paros</translation>
+    </message>
+    <message>
+      <location filename="app/shopfloor/status_page.py" />
+      <source>NO ANSWER: what stands below is old</source>
+      <translation>SIN RESPUESTA: lo que está abajo es viejo</translation>
+    </message>
+    <message>
+      <location filename="app/shopfloor/status_page.py" />
+      <source>Program</source>
+      <translation>Programa</translation>
+    </message>
+    <message>
+      <location filename="app/shopfloor/status_page.py" />
+      <source>The part of the program on the desk</source>
+      <translation>La pieza del programa cargado</translation>
+    </message>
+    <message>
+      <location filename="app/shopfloor/status_page.py" />
+      <source>Time left</source>
+      <translation>Tiempo que falta</translation>
     </message>
     <message>
       <location filename="app/special/access_levels.py" />

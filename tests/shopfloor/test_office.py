@@ -7,12 +7,13 @@ import socket
 import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
+from urllib.parse import urlsplit
 
 import numpy as np
 import pytest
@@ -24,6 +25,8 @@ from app.compose.machine_status import conditions_of_device, device_of
 from app.compose.office import AlarmDrawing, PartPicture
 from app.compose.page_server import PageServer, listening_at
 from app.programs.preview import Thumbnail
+from app.screen.language import speak_in
+from app.shopfloor import other_desks
 from app.shopfloor.alarm_drawing import HIGH, alarm_drawing
 from app.shopfloor.floor_reading import FloorReader
 from app.shopfloor.office_status import STOPS, OfficeLook
@@ -67,7 +70,7 @@ def get(
     wsgi: StatusPage, path: str = "/", method: str = "GET", **more: str
 ) -> tuple[str, dict[str, str], str]:
     answer: list[Any] = []
-    environ = {"REQUEST_METHOD": method, "PATH_INFO": path, **more}
+    environ = {"REQUEST_METHOD": method, "PATH_INFO": path, "SERVER_PORT": "8317", **more}
 
     def begin(
         status: str, headers: list[tuple[str, str]], _error: object = None, /
@@ -90,7 +93,7 @@ def test_times_are_those_of_the_clock_in_the_shop(monkeypatch: pytest.MonkeyPatc
         monkeypatch.undo()
         time.tzset()
     assert ">2026-11-23 06:00:00<" in body  # made at 09:00 UTC
-    assert "<td>2026-11-23 05:00:00</td>" in body
+    assert ">2026-11-23 05:00</td>" in body
 
 
 # --- who may look -----------------------------------------------------------------------------------
@@ -112,7 +115,7 @@ def test_a_wrong_token_is_refused_everywhere() -> None:
     [
         {"QUERY_STRING": f"token={TOKEN}"},
         {"HTTP_AUTHORIZATION": f"Bearer {TOKEN}"},
-        {"HTTP_COOKIE": f"other=1; turndesk={TOKEN}"},
+        {"HTTP_COOKIE": f"other=1; turndesk-8317={TOKEN}"},
     ],
 )
 def test_the_token_opens_it(brought: dict[str, str]) -> None:
@@ -120,6 +123,13 @@ def test_the_token_opens_it(brought: dict[str, str]) -> None:
     assert status == "200 OK"
     assert "RUNNING" in body
     assert "HttpOnly" in headers["Set-Cookie"]
+
+
+def test_two_desks_of_one_computer_keep_their_tokens_apart() -> None:
+    """To a browser the port is no part of where a cookie belongs."""
+    kept = get(page(TOKEN), QUERY_STRING=f"token={TOKEN}")[1]["Set-Cookie"].partition("=")[0]
+    other = get(page("another-desk-1"), QUERY_STRING="token=another-desk-1", SERVER_PORT="8318")[1]
+    assert (kept, other["Set-Cookie"].partition("=")[0]) == ("turndesk-8317", "turndesk-8318")
 
 
 def test_a_broken_cookie_is_no_token() -> None:
@@ -193,6 +203,38 @@ def test_what_a_program_is_called_is_text() -> None:
     assert "2:10" in body  # 130 s the last cycle
 
 
+def test_the_page_says_which_picture_belongs_to_what_it_shows() -> None:
+    """Else that of the program before would stand beside another name for as long as it is not asked for."""
+    pictures = [b""]
+    shown = StatusPage("GT-75", "", lambda: STATUS, lambda: (), lambda: pictures[0], lambda: b"")
+    assert '<figure id="part" hidden>' in get(shown)[2]
+    assert 'data-part=""' in get(shown, "/now")[2]
+    marks = []
+    for pictures[0] in (b"a pin", b"a nut", b"a pin"):
+        marks.append(get(shown, "/now")[2].partition('data-part="')[2].partition('"')[0])
+        assert f'src="part.png?{marks[-1]}"' in get(shown)[2]
+    assert marks[0] == marks[2] != marks[1]
+
+
+def test_what_happened_today_has_no_date() -> None:
+    now = datetime.now().astimezone()
+    told: Status = {**STATUS, "stops": [{"at": now.isoformat(), "reason": "FEED HOLD", "seconds": 5}]}
+    assert f'<td class="time">{now:%H:%M:%S}</td>' in get(page(status=told))[2]
+
+
+def test_the_page_is_read_in_the_language_of_the_screen() -> None:
+    speak_in("es")
+    try:
+        body, told = get(page(status={**STATUS, "stop": "GUARD OPEN"}))[2], get(page(), "/status.json")[2]
+    finally:
+        speak_in("en")
+    assert '<html lang="es">' in body
+    assert ">EN MARCHA<" in body
+    assert ">Tiempo que falta<" in body
+    assert ">RUNNING<" not in body
+    assert json.loads(told) == STATUS  # which programs read
+
+
 def test_the_same_for_a_script() -> None:
     assert json.loads(get(page(), "/status.json")[2]) == STATUS
 
@@ -247,6 +289,38 @@ def served(wsgi: StatusPage) -> Iterator[str]:
         server.close()
 
 
+def test_browsers_that_ask_half_a_question_keep_nobody_waiting() -> None:
+    """Forty of them; without a token, as anybody in the network could."""
+    with served(page()) as address, ExitStack() as half:
+        host = urlsplit(address)
+        for _ in range(40):
+            asking = half.enter_context(socket.create_connection((host.hostname, host.port)))
+            asking.sendall(b"GET /?tok")
+        assert asked(address).trouble == ""
+
+
+def test_browsers_that_wait_for_each_other_are_not_told_to_the_log(caplog: pytest.LogCaptureFixture) -> None:
+    go_on, under_way = threading.Event(), threading.Semaphore(0)
+
+    def slow() -> Status:
+        under_way.release()
+        go_on.wait(60)
+        return STATUS
+
+    waits = StatusPage("GT-75", "", slow, lambda: (), lambda: b"", lambda: b"")
+    with served(waits) as address, ExitStack() as open_ones:
+        host = urlsplit(address)
+        for _ in range(6):
+            asking = open_ones.enter_context(socket.create_connection((host.hostname, host.port)))
+            asking.sendall(b"GET /status.json HTTP/1.0\r\n\r\n")
+        for _ in range(3):
+            assert under_way.acquire(timeout=60)
+        go_on.set()
+        for _ in range(3):
+            assert under_way.acquire(timeout=60)
+    assert caplog.records == []
+
+
 def test_a_desk_shows_another_one() -> None:
     with served(page(TOKEN)) as address:
         heard = asked(f"{address}?token={TOKEN}")
@@ -298,9 +372,9 @@ def test_the_address_of_the_status() -> None:
 def test_other_desks_are_asked_while_somebody_looks() -> None:
     heard = OtherDesk("lathe2", {"state": "READY"})
     asking = OtherDesks(("http://lathe2:8317",), lambda _address: heard)
-    assert asking.look()[0].trouble == "not asked yet"
+    assert (asking.look()[0].state, asking.look()[0].trouble) == ("…", "")
     asking.start()
-    while asking.look()[0] is not heard:
+    while asking.look()[0].status != heard.status:
         pass
     asking.close()
 
@@ -333,9 +407,9 @@ def test_a_desk_that_hangs_keeps_nobody_from_hearing_of_the_others() -> None:
     asking.look()
     asking.start()
     try:
-        while asking.look()[1] is not healthy:
+        while asking.look()[1].status is not healthy.status:
             pass
-        assert asking.look()[0].trouble == "not asked yet"
+        assert asking.look()[0].state == "…"
     finally:
         hangs.set()
         asking.close()
@@ -344,11 +418,53 @@ def test_a_desk_that_hangs_keeps_nobody_from_hearing_of_the_others() -> None:
 def test_what_was_heard_long_ago_is_not_told_as_of_now() -> None:
     now = [0.0]
     asking = OtherDesks(("http://lathe2:8317",), lambda _address: OtherDesk("lathe2"), lambda: now[0])
+    asking.look()
     asking._heard["http://lathe2:8317"] = 0.0, OtherDesk("lathe2", {"state": "RUNNING"})
     now[0] = 10.0
     assert asking.look()[0].status == {"state": "RUNNING"}
     now[0] = 10.5
     assert (asking.look()[0].status, asking.look()[0].trouble) == (None, "not heard for 10 s")
+
+
+def test_a_desk_that_never_answers_is_told_behind_a_while() -> None:
+    now = [100.0]
+    asking = OtherDesks(("http://lathe2:8317",), lambda _address: OtherDesk("lathe2"), lambda: now[0])
+    assert asking.look()[0].state == "…"
+    now[0] = 110.5
+    assert (asking.look()[0].state, asking.look()[0].trouble) == ("NO ANSWER", "not heard for 10 s")
+
+
+def test_a_desk_that_dies_keeps_its_name(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(other_desks, "EVERY", 0.001)
+    dies, answers = threading.Event(), iter([OtherDesk("lathe2", {"machine": "LATHE 2", "state": "READY"})])
+
+    def ask(_address: str) -> OtherDesk:
+        if (heard := next(answers, None)) is not None:
+            return heard
+        dies.wait()
+        return OtherDesk("lathe2", trouble="Connection refused")
+
+    asking = OtherDesks(("http://lathe2:8317",), ask)
+    asking.look()
+    asking.start()
+    while asking.look()[0].status is None:
+        pass
+    dies.set()
+    while asking.look()[0].status is not None:
+        pass
+    asking.close()
+    shown = get(page(others=tuple(asking.look())))[2]
+    assert "<h2>LATHE 2 (lathe2:8317)</h2>" in shown
+    assert "Connection refused" in shown
+
+
+def test_who_looks_after_a_night_sees_no_desk_that_is_dead_because_nobody_asked() -> None:
+    now = [0.0]
+    asking = OtherDesks(("http://lathe2:8317",), lambda _address: OtherDesk("lathe2"), lambda: now[0])
+    asking.look()
+    asking._heard["http://lathe2:8317"] = 0.0, OtherDesk("lathe2", {"state": "RUNNING"})
+    now[0] = 30_000.0
+    assert (asking.look()[0].status, asking.look()[0].state) == (None, "…")
 
 
 def test_a_port_that_is_taken_is_told() -> None:
