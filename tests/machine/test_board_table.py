@@ -55,6 +55,7 @@ STEP, SERVO, BUS, PORT = "mesa-7i76e", "mesa-7i97", "ethercat", "parport"
         (BUS, 'product = "0x0000003c"', 'product = "60"', "board.axis.X.product", "ethercat slaves -v"),
         (BUS, "velocity_per_rpm = 68.2666667 ", "# ", "board.spindle.velocity_per_rpm", "60FF counts"),
         (BUS, "channel = 2", "channel = 1", "board.spindle.channel", "board.axis.Z.channel has it"),
+        (BUS, "channel = 2\n", "", "board.spindle.channel", "missing; expected the drive's place on the bus"),
         (PORT, 'step = "parport.0.pin-02-out"', "", "board.axis.X.step", "the pin of its steps"),
         (PORT, "vmax = 50 ", "vmax = 200 ", "axis.X.vmax", "base_us = 50 make 16667 at the most"),
         (PORT, 'phase_b = "parport.0.pin-15-in"', "", "board.spindle.phase_b", "missing"),
@@ -97,6 +98,13 @@ INPUT = "hm2_7i76e.0.7i76.0.0.input"
         (PORT, "parport.0.pin-08-out", "parport.0.pin-02-out", "io.out.coolant", "board.axis.X.step has it"),
         (PORT, "parport.0.pin-11-in", "parport.0.pin-14-in", "io.in.collet_closed", "no such pin"),
         (
+            STEP,
+            '"x-pos-fb"',
+            f'"x-pos-fb"\nenable = "{INPUT}-12"',
+            "hal.axes.X.enable",
+            "or leave it out: hal",
+        ),
+        (
             PORT,
             'pwm = "parport.0.pin-17-out"',
             'pwm = "parport.0.pin-15-in"',
@@ -108,6 +116,34 @@ INPUT = "hm2_7i76e.0.7i76.0.0.input"
 def test_pins_that_the_board_has_not(name: str, old: str, new: str, path: str, expected: str) -> None:
     (found,) = refused(changed(name, (old, new)))
     assert (found.path, expected in str(found)) == (path, True), found
+
+
+@pytest.mark.parametrize(
+    ("name", "old", "new", "path"),
+    [
+        (STEP, "channel = 1\n", 'channel = "one"\n', "board.axis.Z.channel"),
+        (STEP, "step_ns = 5000 ", 'step_ns = "slow" ', "board.axis.X.step_ns"),
+        (STEP, "full_speed = 3500 ", 'full_speed = "fast" ', "board.spindle.full_speed"),
+        (STEP, "encoder_ppr = 1024 ", 'encoder_ppr = "many" ', "spindle.encoder_ppr"),
+        (PORT, '"0x378"\nbase_us = 50 ', '"0x378"\nbase_us = "fifty" ', "board.base_us"),
+        (BUS, 'vendor = "0x0000026c" ', "vendor = 620 ", "board.axis.X.vendor"),
+        (SERVO, "[board.axis.Z]\nchannel = 1\n", "[board.axis]\nZ = 1\n[board.axis.Q]\n", "board.axis.Z"),
+    ],
+)
+def test_a_value_that_is_none_is_told_once(name: str, old: str, new: str, path: str) -> None:
+    """Nothing is made of it: no rate of steps, no scale and no second channel is missed behind it."""
+    with pytest.raises(MachineFileError) as caught:
+        parse_machine(changed(name, (old, new)), "test.toml")
+    assert [each.path for each in caught.value.errors if "Q" not in each.path] == [path], caught.value.errors
+
+
+def test_a_board_without_hal_has_nobody_to_drive() -> None:
+    text = resources.machine_file("gt75.toml") + '\n[board]\nkind = "sim"\n'
+    with pytest.raises(MachineFileError) as caught:
+        parse_machine(text, "test.toml")
+    (error, *_) = caught.value.errors
+    assert error.path == "hal"
+    assert "missing; [board] is what lies behind the pins that [hal] names" in str(error)
 
 
 def test_a_pot_is_refused_where_the_board_has_none() -> None:
@@ -159,6 +195,56 @@ def test_all_enables_are_on_one_signal() -> None:
     (net,) = [line for line in found if line.startswith("net machine-on ")]
     for pin in ("pid.x.enable", "stepgen.01.enable", "output-00", "output-15"):
         assert pin in net
+
+
+VFD = """driver = "vfd"
+[spindle.vfd]
+family = "delta-vfdb"
+port = "/dev/ttyUSB1"
+baud = 9600
+parity = "N"
+stop = 2
+hz_per_rpm = 0.01667
+# """
+
+
+def without_spindle(name: str, *, encoder: bool) -> str:
+    """The shipped file with the spindle on an inverter of its own line; what the board has of one is out."""
+    head, said = changed(name, ('driver = "hal" ', VFD)).split("[hal.spindle]\n")
+    pins, board = said.split("[board]\n")
+    board, ours = board.split("[board.spindle]\n")
+    kept = ("position", "velocity", "index_enable", "phase_", "encoder", "reversed") if encoder else ()
+    of = [
+        "".join(f"{line}\n" for line in part.splitlines() if line.startswith(kept)) for part in (pins, ours)
+    ]
+    if not encoder:
+        head = head.replace("encoder_ppr = ", "encoder_ppr = 0  # ", 1)
+        of = ["", ""]
+    return f"{head}[hal.spindle]\n{of[0]}\n[board]\n{board}[board.spindle]\n{of[1]}"
+
+
+@pytest.mark.parametrize(
+    ("name", "turned", "read"),
+    [
+        (STEP, ("spinout",), ("encoder.00",)),
+        (SERVO, ("pwmgen.04",), ("encoder.02",)),
+        (BUS, ("cia402.spindle", "spindle-per-s"), ()),
+        (PORT, ("pwmgen",), ("encoder",)),
+    ],
+)
+@pytest.mark.parametrize("encoder", [True, False])
+def test_of_a_spindle_that_the_board_does_not_turn_its_encoder_is_left_or_nothing(
+    name: str, turned: tuple[str, ...], read: tuple[str, ...], encoder: bool
+) -> None:
+    if name == BUS and encoder:
+        pytest.skip("its encoder is the spindle drive's own")
+    found = lines(without_spindle(name, encoder=encoder))
+    for word in turned:
+        assert not [line for line in found if word in line]
+    for word in read:
+        assert bool([line for line in found if word in line]) is encoder
+    assert bool([line for line in found if "spindle" in line]) is encoder
+    assert [line for line in found if "pid.x" in line or "stepgen.0" in line or "cia402.x" in line]
 
 
 def test_an_inverter_on_its_own_line_leaves_the_analog_output_free() -> None:

@@ -44,8 +44,9 @@ is_oriented = "near.0.out"
 """
 
 
-def hal_machine(*, homing: bool = False, lamps: str = "", orients: bool = False) -> Machine:
-    """The shipped lathe with an operator station of its own; with ``homing`` its Z only counts.
+def hal_text(*, homing: bool = False, lamps: str = "", orients: bool = False) -> str:
+    """The machine file of the shipped lathe with an operator station of its own; with ``homing`` its Z only
+    counts.
 
     ``lamps``: lines of [io.out] besides its own. ``orients``: HAL brings its spindle to an angle.
     """
@@ -62,7 +63,12 @@ def hal_machine(*, homing: bool = False, lamps: str = "", orients: bool = False)
     if homing:
         head, z = text.split("[axis.Z]")
         text = f"{head}[axis.Z]{z.replace('absolute = true', _HOMED, 1)}"
-    return parse_machine(text, "gt75-hal.toml")
+    return text
+
+
+def hal_machine(*, homing: bool = False, lamps: str = "", orients: bool = False) -> Machine:
+    """The machine of that file."""
+    return parse_machine(hal_text(homing=homing, lamps=lamps, orients=orients), "gt75-hal.toml")
 
 
 _GONE = Fault(told=0.05, rests=0.5, says="the bridge to HAL has ended", unknown=ALL_UNKNOWN)

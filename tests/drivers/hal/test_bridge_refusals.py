@@ -1,0 +1,255 @@
+"""What the bridge to HAL does not do, and what it stops for by itself: on the step clock, wire by wire."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pytest
+
+from app.compose.hal_backend import hal_config
+from app.compose.machine_files import parse_machine
+from app.compose.simulated_backend import sim_config
+from core.ports import DriverError
+from drivers.clocks import StepClock
+from drivers.hal.bridge.packets import flat
+from drivers.hal.bridge.setpoint_player import Player
+from drivers.hal.hal_machine import HalMachine
+from drivers.lookalikes.hal_far_end import HalFarEnd
+from drivers.setpoint_pieces import Piece
+from tests.drivers.contract.hal import hal_text
+
+LIMIT = ('fault = "x-fault"\n', 'fault = "x-fault"\nlimit_high = "x-high"\n')
+TICK = 0.01  # s
+STILL = (0.0, 0.0)
+
+
+class Bench:
+    """The lathe with a limit switch at the end of X, its bridge, and a driver that listens."""
+
+    def __init__(self) -> None:
+        machine = parse_machine(hal_text().replace(*LIMIT, 1), "gt75-hal.toml")
+        config = hal_config(machine)
+        self.clock = StepClock()
+        self.far = HalFarEnd(config, sim_config(machine), self.clock)
+        self.driver = HalMachine(config, self.clock, self.far.open, self.far.plant.advance)
+        self.axes = self.driver.ports.axes
+
+    @property
+    def bridge(self) -> tuple[str, str]:
+        """What has stopped it, in words and by its code."""
+        return self.far.bridge.fault, self.far.bridge.code
+
+    def run(self, seconds: float) -> None:
+        for _ in range(round(seconds / TICK)):
+            self.clock.advance(TICK)
+            self.far.plant.advance()
+            self.driver.tick()
+
+    def told(self, what: str, numbers: tuple[float, ...] = (), **words: object) -> None:
+        """An order as it comes to the bridge, whatever a driver would have thought of it."""
+        self.far.bridge.handle({"do": what, **words}, numbers)
+        self.run(2 * TICK)
+
+    def pin(self, name: str) -> float:
+        """One of the bridge's own."""
+        return self.far.bridge.pins[name]
+
+    def wire(self, name: str, on: bool) -> None:
+        """A pin of the machine that nothing else moves."""
+        self.far.thread.cells[self.far.thread.theirs[name]] = float(on)
+
+    def x_goes(self, speed: float) -> None:
+        """At once, from where it stands, for ten seconds."""
+        t = self.clock.now() + 0.05
+        self.told("splice", tuple(flat([Piece(t, 10.0, (self.x, self.z), (speed, 0.0), STILL)])))
+
+    @property
+    def x(self) -> float:
+        return self.far.machine.true_position()[0]
+
+    @property
+    def z(self) -> float:
+        return self.far.machine.true_position()[1]
+
+
+@pytest.fixture
+def bench() -> Iterator[Bench]:
+    made = Bench()
+    made.run(0.3)
+    made.axes.enable(True)
+    made.run(0.5)
+    assert made.axes.sample().enabled
+    yield made
+    made.driver.close()
+
+
+# --- what stops the machine -------------------------------------------------------------------------------
+
+
+def test_a_limit_switch_stops_x_on_its_path_and_takes_the_power(bench: Bench) -> None:
+    bench.x_goes(5.0)
+    bench.run(0.5)
+    bench.wire("x-high", True)
+    bench.run(0.5)
+    assert bench.bridge == ("X: on its limit switch", "limit-switch")
+    assert not bench.axes.sample().enabled
+    stood = bench.x
+    bench.run(0.5)
+    assert bench.x == pytest.approx(stood, abs=1e-6)
+
+
+def test_a_limit_switch_is_no_end_for_the_axis_that_looks_for_it(bench: Bench) -> None:
+    bench.told("homing", axis="X", on=True)
+    bench.wire("x-high", True)
+    bench.run(0.3)
+    assert bench.bridge == ("", "")
+    bench.told("homing", axis="X", on=False)
+    assert bench.bridge == ("X: on its limit switch", "limit-switch")
+
+
+def test_a_limit_switch_without_power_is_no_fault(bench: Bench) -> None:
+    """It may stand there with the drives off: only so can it be led back."""
+    bench.axes.enable(False)
+    bench.run(0.2)
+    bench.wire("x-high", True)
+    bench.run(0.3)
+    assert bench.bridge == ("", "")
+
+
+def test_setpoints_for_a_time_that_was_played_stop_it(bench: Bench) -> None:
+    late = Piece(bench.clock.now() - 0.02, 1.0, (bench.x + 1.0, bench.z), STILL, STILL)
+    bench.told("splice", tuple(flat([late])))
+    assert bench.bridge == ("setpoints came too late to be played", "late")
+    bench.run(0.5)
+    assert not bench.axes.sample().enabled
+    assert bench.x == pytest.approx(0.0, abs=1e-3)
+
+
+def test_the_same_setpoints_once_more_are_not_too_late(bench: Bench) -> None:
+    """A path that goes on as it was played is played anyway."""
+    bench.x_goes(5.0)
+    bench.run(0.5)
+    begun, x = bench.clock.now() - 0.03, bench.far.bridge.player.state(bench.clock.now() - 0.03)[0][0]
+    same = Piece(begun, 1.0, (x, bench.z), (5.0, 0.0), STILL)
+    bench.told("splice", tuple(flat([same])))
+    assert bench.bridge == ("", "")
+    bench.run(0.5)
+    assert bench.x == pytest.approx(x + 5.0 * (bench.clock.now() - begun), abs=0.05)
+
+
+def test_a_thread_for_turns_that_have_gone_by_stops_it(bench: Bench) -> None:
+    gone = Piece(-3.0, 1.0, (bench.x, bench.z), (0.0, -1.0), STILL)  # three turns ago
+    bench.told("mesh", tuple(flat([gone])), zero=0.0, sign=1.0, way=1)
+    assert bench.bridge == ("the thread came too late to be played", "late")
+
+
+def test_what_hal_has_played_of_another_stream_than_it_was_told_stops_it(
+    bench: Bench, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(bench.far.bridge.rows, "settle", lambda _plays_b: False)
+    bench.run(2 * TICK)
+    assert bench.bridge == (
+        "setpoints came too late to HAL, which played what was queued before",
+        "late",
+    )
+
+
+# --- what is not done -------------------------------------------------------------------------------------
+
+
+def test_with_a_fault_there_is_no_power_until_it_is_cleared(bench: Bench) -> None:
+    bench.far.machine.drive_fault("X")
+    bench.run(0.5)
+    fault = bench.bridge[0]
+    assert fault == "X: the drive reports a fault"
+    bench.far.plant.faulty.clear()  # the drive is whole again, and nobody has acknowledged it
+    bench.told("enable")
+    bench.run(0.5)
+    assert bench.pin("enable") == 0.0
+    with pytest.raises(DriverError, match="drives stay off: X: the drive reports a fault; clear the fault"):
+        bench.axes.enable(True)
+    bench.axes.clear_fault()
+    bench.run(0.3)
+    bench.axes.enable(True)
+    bench.run(0.5)
+    assert bench.axes.sample().enabled
+
+
+def test_with_an_open_chain_the_spindle_is_not_ordered_to_turn(bench: Bench) -> None:
+    bench.far.machine.press_estop()
+    bench.run(0.3)
+    bench.far.bridge.handle({"do": "spindle", "rpm": 500.0, "on": True}, ())
+    bench.far.bridge.round()
+    assert bench.pin("spindle.speed") == 0.0  # not for a single period
+    with pytest.raises(DriverError, match=r"stays off: .*E-stop"):
+        bench.driver.ports.spindle.run(500.0)
+    bench.run(1.0)
+    assert bench.far.machine.spindle_rpm() == 0.0
+
+
+def test_neither_way_nor_thread_nor_power_for_slides_that_are_off(bench: Bench) -> None:
+    bench.axes.enable(False)
+    bench.run(0.3)
+    bench.x_goes(5.0)
+    turn = Piece(9.0, 1.0, (bench.x, bench.z), (0.0, -1.0), STILL)
+    bench.told("mesh", tuple(flat([turn])), zero=0.0, sign=1.0, way=1)
+    bench.told("brake")
+    bench.run(0.5)
+    assert (bench.x, bench.bridge) == (pytest.approx(0.0, abs=1e-6), ("", ""))
+    assert bench.far.bridge.player.geared() is None
+
+
+def test_the_first_packet_of_a_way_in_two_moves_nothing(bench: Bench) -> None:
+    """Its end, where it comes to rest, is in the other one."""
+    t, x, z = bench.clock.now() + 0.3, bench.x, bench.z
+    out = Piece(t, 0.2, (x, z), (5.0, 0.0), STILL)
+    bench.told("splice", tuple(flat([out])), more=True)
+    bench.run(0.4)
+    assert bench.x == pytest.approx(x, abs=1e-6)
+
+
+def test_a_way_in_two_packets_is_one(bench: Bench) -> None:
+    t, x, z = bench.clock.now() + 0.1, bench.x, bench.z
+    out = Piece(t, 0.2, (x, z), (5.0, 0.0), STILL)
+    back = Piece(t + 0.2, 0.2, (x + 1.0, z), (-5.0, 0.0), STILL)
+    bench.told("splice", tuple(flat([out])), more=True)
+    bench.told("splice", tuple(flat([back])))
+    bench.run(0.26)
+    assert bench.x > x + 0.5
+    bench.run(0.5)
+    assert bench.x == pytest.approx(x, abs=0.01)
+    assert bench.bridge == ("", "")
+
+
+def test_an_order_or_an_output_that_nobody_knows_does_nothing(bench: Bench) -> None:
+    """Of another version's driver: no pin comes to be by a name that was sent."""
+    cells = set(bench.far.thread.cells)
+    bench.told("dance", n=77)
+    bench.told("out", name="laser", on=True)
+    assert not [each for each in set(bench.far.thread.cells) - cells if "laser" in each]
+    assert bench.bridge == ("", "")
+
+
+def test_a_bridge_that_is_late_at_rest_is_no_fault(bench: Bench) -> None:
+    """HAL has run out of rows while nothing moved: it has stood where it stood."""
+    bench.far.stopped = True
+    bench.run(0.13)  # longer than HAL has rows, shorter than its watchdog
+    bench.far.stopped = False
+    bench.run(0.3)
+    assert bench.bridge == ("", "")
+    assert bench.axes.sample().enabled
+
+
+def test_what_nobody_takes_does_not_grow(bench: Bench) -> None:
+    """Samples of a driver that does not ask: the newest are kept, not hours of them."""
+    for _ in range(40 * 300 // 2 + 600):
+        bench.clock.advance(0.002)
+        bench.far.plant.advance()
+        bench.far._outbox.clear()
+        bench.far._count = 1  # no report is made
+    assert len(bench.far.bridge._samples) <= 40 * 300 * bench.far.bridge._width
+
+
+def test_turns_that_were_never_seen_are_none() -> None:
+    """Before the first reading of the spindle: a thread asked for then is reckoned from 0."""
+    assert Player(2).turns.at(5.0) == 0.0
