@@ -194,8 +194,8 @@ def _time_line(found: ShiftFigures) -> str:
     def x(moment: float) -> float:
         return _WIDE * min(1.0, max(0.0, (moment - start) / length))
 
-    def bar(first: float, last: float, colour: str, y: int, high: int) -> str:
-        wide = max(0.6, x(last) - x(first))
+    def bar(first: float, last: float, colour: str, y: int, high: int, least: float = 0.6) -> str:
+        wide = max(least, x(last) - x(first))
         return f'<rect x="{x(first):.1f}" y="{y}" width="{wide:.1f}" height="{high}" fill="{colour}"/>'
 
     parts = [bar(start, found.until, "#e3e7eb", 6, 34)]
@@ -203,7 +203,7 @@ def _time_line(found: ShiftFigures) -> str:
         at = stamp(stop.at)
         parts.append(bar(at, at + stop.seconds, "#f0b23c", 6, 34))
     parts += [bar(span.start, span.end, "#2e7d32", 6, 34) for span in found.running]
-    parts += [bar(stamp(row.at), stamp(row.at), "#b3261e", 2, 42) for row in found.alarms]
+    parts += [bar(stamp(row.at), stamp(row.at), "#b3261e", 2, 42, 2.0) for row in found.alarms]
     hours = max(1, round(length / 3600 / 12))
     moment = start
     while moment <= found.shift.end:
