@@ -150,6 +150,10 @@ class Cycle:
 
     # --- every tick ---------------------------------------------------------------------------------------
 
+    def catch_up(self) -> None:
+        """Show the block in which the slides are or stand, also when none of it was seen while they moved."""
+        self._show_later(self._motion.block)
+
     def step(self) -> None:
         """Keep the queue filled, then do what comes next. Raises AlarmError, MotionError, DriverError."""
         playing = self._motion.block if self._motion.moving else None
@@ -160,6 +164,7 @@ class Cycle:
             return
         if self._state is State.HOLDING:
             if self._hold.stopped():
+                self.catch_up()
                 self._change(State.HOLD)
         elif self._state in _GOING:
             self._read()

@@ -246,6 +246,8 @@ class Executor:
             self._control.program_run.cut(context.now - before)
             if context.now - before > _STALL:
                 context.log("starved", f"the control was away for {context.now - before:.2f} s")
+                if self._control.cycle is not None:  # before what was pressed meanwhile stops or ends it
+                    self._control.cycle.catch_up()
 
     def _log_lost(self) -> None:
         """A pendant that is unplugged, and that is there again."""

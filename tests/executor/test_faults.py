@@ -8,7 +8,7 @@ from collections.abc import Callable
 import pytest
 
 from app.compose.machine_files import load_machine
-from core.executor.commands import CycleStart, EnableDrives, FeedHold, Home, Reset, SetSwitch
+from core.executor.commands import Command, CycleStart, EnableDrives, FeedHold, Home, Reset, SetSwitch
 from core.executor.snapshot import Snapshot, State
 from core.executor.watchdog import ExecutorThread
 from core.interpreter.actions import Collet, Dwell, SpindleRun
@@ -107,6 +107,57 @@ def test_a_stalled_host_in_one_long_move_stops_too() -> None:
     rig.post(CycleStart())
     rig.until(State.IDLE, limit=90)
     assert rig.shot.demand[1] == pytest.approx(-5 * INCH)
+
+
+STEPS = "G90G94F300\nG01F60\nZ-.2\nX.2\nZ-3\nM30\n"  # an inch a second: .2 s, .2 s, 2.8 s
+
+
+def test_a_late_host_shows_the_block_in_which_the_slides_stand() -> None:
+    """Not the one that was played when it was last there: line, way to go and path would be of another."""
+    rig = Rig()
+    rig.start(STEPS)
+    rig.until_true(lambda shot: shot.line == 3)
+    rig.clock.advance(10.0)
+    assert not rig.sim.ports.axes.sample().moving
+    rig.run(0.1)
+    assert rig.state is State.HOLD
+    assert rig.shot.underruns == 1
+    x, z, _ = rig.shot.actual
+    assert x == pytest.approx(0.2 * INCH, abs=0.001)
+    assert z < -0.3 * INCH  # so it is the last way that they have begun
+    assert (rig.shot.line, rig.shot.block_text) == (5, "Z-3")
+    assert rig.shot.block_end[:2] == pytest.approx((0.2 * INCH, -3 * INCH))
+    assert [event.line for event in rig.events if event.kind == "stop"][-1:] == [5]
+    rig.post(CycleStart())
+    rig.until(State.IDLE)
+    assert rig.shot.parts == 1
+
+
+@pytest.mark.parametrize(("pressed", "state"), [(FeedHold(), State.HOLD), (Reset(), State.IDLE)])
+def test_so_does_what_was_pressed_while_the_host_was_away(pressed: Command, state: State) -> None:
+    rig = Rig()
+    rig.start(STEPS)
+    rig.until_true(lambda shot: shot.line == 3)
+    rig.clock.advance(10.0)
+    rig.post(pressed)
+    rig.until(state)
+    assert rig.shot.line == (5 if state is State.HOLD else 0)
+    left = rig.notes[-1]  # what SEARCHTO is offered with, after a power cut too
+    assert left is not None
+    assert left.line == 5
+
+
+def test_a_hold_behind_which_the_host_is_late_shows_it_too() -> None:
+    rig = Rig()
+    rig.start("G90G94F300\nG01F200\nZ-1.2\nX1.2Z-2.4\nM30\n")
+    rig.until_true(lambda shot: shot.line == 3 and shot.actual[1] < -1.17 * INCH)
+    rig.post(FeedHold())
+    assert (rig.state, rig.shot.line) == (State.HOLDING, 3)
+    rig.clock.advance(10.0)
+    rig.tick()
+    assert rig.state is State.HOLD
+    assert rig.shot.actual[0] > 0.01 * INCH
+    assert rig.shot.line == 4
 
 
 class BrokenError(Exception):
