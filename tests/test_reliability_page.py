@@ -37,3 +37,13 @@ def test_a_half_written_result_is_no_page(tmp_path: Path) -> None:
     (tmp_path / "branches.json").write_text("{")
     with pytest.raises(json.JSONDecodeError):
         page(tmp_path)
+
+
+def test_a_fault_that_nobody_has_looked_at_is_told_as_such(tmp_path: Path) -> None:
+    figures = json.loads((RESULTS / "fuzz.json").read_text())
+    fault = {"kind": "raised", "where": "KeyError core/a.py:1", "text": "KeyError('x')", "data": ""}
+    targets = {name: {**each, "faults": []} for name, each in figures["targets"].items()}
+    targets["klartext"]["faults"] = [fault]
+    (tmp_path / "fuzz.json").write_text(json.dumps({**figures, "targets": targets}))
+    (tmp_path / "limits.toml").write_text("")
+    assert "- KeyError core/a.py:1, KeyError('x'): not looked at yet" in page(tmp_path)

@@ -1,7 +1,8 @@
 """The page of reliability: ``python -m tests.benchmarks.reliability_page > docs/reliability.md``.
 
 A measurement keeps its figures with date and machine in ``tests/benchmarks/results``; nothing is written by
-hand but why a mutant may live, in ``survivors.toml`` beside them.
+hand but why a mutant may live, in ``survivors.toml`` beside them, and why a fault of fuzzing is left, in
+``limits.toml``.
 """
 
 from __future__ import annotations
@@ -136,7 +137,7 @@ def _screen(result: Result, _folder: Path) -> Iterator[str]:
     )
 
 
-def _fuzz(result: Result, _folder: Path) -> Iterator[str]:
+def _fuzz(result: Result, folder: Path) -> Iterator[str]:
     yield (
         "`tests/fuzz`: atheris beside changes that know each language. A fault is what raises what it should "
         "not, takes over 2 s of processor time or tells no clear sentence. What was mended has a test.\n"
@@ -153,6 +154,12 @@ def _fuzz(result: Result, _folder: Path) -> Iterator[str]:
         for name, each in sorted(result["targets"].items())
     ]
     yield _table(["of", "s of processor time", "runs", "edges", "slowest, s", "faults left"], rows)
+    faults = [fault for _, each in sorted(result["targets"].items()) for fault in each["faults"]]
+    if faults:
+        reasons = tomllib.loads((folder / "limits.toml").read_text())
+        why = [reasons.get(fault["where"], {}).get("why", "not looked at yet") for fault in faults]
+        lines = [f"- {f['where']}, {f['text']}: {reason}" for f, reason in zip(faults, why, strict=True)]
+        yield "Those that are left:\n\n" + "\n".join(lines) + "\n"
 
 
 def _mutants(result: Result, folder: Path) -> Iterator[str]:
