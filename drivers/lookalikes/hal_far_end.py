@@ -220,7 +220,8 @@ class HalFarEnd:
             self._set(pins.feedback, servo.reading)
             self._set(pins.fault, axis.name in plant.faulty)
             self._set(pins.home, servo.p <= servo.switch)
-        self._encode(plant.spindle.counted)
+        if config.spindle.pins.position:
+            self._encode(plant.spindle.counted)
         self._set(config.spindle.pins.velocity, plant.spindle.speed / 60.0)
         state = plant.panel.state(t)
         states = {**plant.terminals.read(t), **{name: getattr(state, name) for name in _STATION}}

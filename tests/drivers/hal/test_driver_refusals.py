@@ -1,0 +1,176 @@
+"""What the driver of a lathe behind HAL refuses, in words that say what to do; nothing moves by it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pytest
+
+from core.ports import DriverError, Stop
+from drivers.clocks import StepClock
+from drivers.hal.bridge.hal_bridge import BridgeConfig
+from drivers.hal.hal_link import HalLink
+from tests.drivers.hal.played import Bench, powered
+from tests.drivers.hal.test_whom_it_blames import Bridge
+
+NO_TURNS = ('position = "spindle.position-fb" ', "# ")
+NO_INDEX = ('index_enable = "spindle.index-enable" ', "# ")
+NO_SPEED = ('velocity = "spindle-rps.out" ', "# ")
+NO_PPR = ("encoder_ppr = ", "encoder_ppr = 0  # ")
+
+
+@pytest.fixture
+def bench() -> Iterator[Bench]:
+    with powered() as made:
+        yield made
+
+
+# --- axes -------------------------------------------------------------------------------------------------
+
+
+def test_no_axis_homes_while_another_moves(bench: Bench) -> None:
+    bench.axes.home("Z")
+    bench.run(0.1)
+    with pytest.raises(DriverError, match="Z cannot home while an axis moves; wait for standstill"):
+        bench.axes.home("Z")
+    bench.axes.stop(Stop.RAMP_HOLD)
+    bench.run(0.5)
+    with pytest.raises(DriverError, match="there is no axis 'Q'"):
+        bench.axes.home("Q")
+
+
+def test_an_axis_that_knows_its_place_does_not_look_for_it(bench: Bench) -> None:
+    bench.axes.home("X")
+    bench.run(0.5)
+    sample = bench.axes.sample()
+    assert (sample.homed[0], sample.moving, bench.x) == (True, False, pytest.approx(0.0, abs=1e-6))
+
+
+def test_power_that_is_there_is_not_asked_for_again(bench: Bench) -> None:
+    """It would forget where the queue is: what moves would jump."""
+    bench.x_goes(5.0)
+    bench.run(0.3)
+    before = bench.far.bridge._handled
+    bench.axes.enable(True)
+    bench.run(0.02)
+    assert bench.far.bridge.fault == ""
+    assert bench.axes.sample().enabled
+    assert bench.far.bridge._handled - before <= 2  # beats
+    bench.run(0.3)
+    assert bench.x == pytest.approx(5.0 * 0.6, abs=0.3)
+
+
+# --- spindle and outputs ----------------------------------------------------------------------------------
+
+
+def test_the_spindle_stays_off_behind_a_drive_that_reports_a_fault(bench: Bench) -> None:
+    bench.far.machine.drive_fault("X")
+    bench.run(0.5)
+    with pytest.raises(DriverError, match="the spindle stays off: X: the drive reports a fault"):
+        bench.driver.ports.spindle.run(500.0)
+    bench.driver.ports.spindle.run(0.0)  # to stop is never refused
+    bench.run(1.0)
+    assert bench.far.machine.spindle_rpm() == 0.0
+
+
+def test_no_output_goes_on_behind_a_bridge_that_is_silent(bench: Bench) -> None:
+    bench.far.stopped = True
+    bench.run(0.3)
+    with pytest.raises(DriverError, match="output coolant stays off: the bridge to HAL has told nothing for"):
+        bench.driver.ports.io.write("coolant", True)
+    with pytest.raises(DriverError, match=r"output 'laser' is not in the machine file; add it under "):
+        bench.driver.ports.io.write("laser", True)
+
+
+def test_without_an_encoder_the_speed_is_what_was_ordered_once_hal_says_so() -> None:
+    at_speed = ("[hal.spindle]\n", '[hal.spindle]\nat_speed = "spindle-at-speed"\n')
+    with powered(NO_TURNS, NO_INDEX, NO_SPEED, NO_PPR, at_speed) as bench:
+        spindle = bench.driver.ports.spindle
+        spindle.run(500.0)
+        bench.run(0.2)
+        assert (spindle.speed(), spindle.angle()) == (0.0, None)
+        bench.wire("spindle-at-speed", True)
+        bench.run(0.1)
+        assert spindle.speed() == 500.0
+
+
+def test_without_a_speed_the_turns_make_it() -> None:
+    with powered(NO_SPEED) as bench:
+        bench.driver.ports.spindle.run(600.0)
+        bench.run(3.0)
+        turning = bench.far.machine.spindle_rpm()
+        assert turning > 500.0
+        assert bench.driver.ports.spindle.speed() == pytest.approx(turning, rel=0.01)
+
+
+# --- the link ---------------------------------------------------------------------------------------------
+
+
+class Leaving(Bridge):
+    """Its HAL takes its time to go down."""
+
+    down = False
+    hung_up = 0
+
+    def hang_up(self) -> None:
+        self.hung_up += 1
+
+
+def linked(bridge: Bridge) -> tuple[HalLink, StepClock, list[int]]:
+    clock, idle = StepClock(), list[int]()
+    return HalLink(lambda: bridge, clock, BridgeConfig((), 0.001, 0.1), lambda: idle.append(1)), clock, idle
+
+
+def test_before_there_is_a_bridge_nothing_is_said_to_it() -> None:
+    link, _, _ = linked(Bridge())
+    link.pump()
+    with pytest.raises(DriverError, match="there is no bridge to HAL"):
+        link.say("enable")
+
+
+def test_a_hal_that_still_goes_down_is_waited_for_and_then_told_of() -> None:
+    bridge = Leaving()
+    link, clock, idle = linked(bridge)
+    link.connect()
+    link.give_up()
+    assert (bridge.hung_up, str(link.lost)) == (1, "HAL is taken down")
+    link.give_up()
+    assert bridge.hung_up == 1  # once
+    with pytest.raises(DriverError, match="HAL is taken down"):
+        link.say("enable")
+    before, idle[:] = clock.now(), []
+    with pytest.raises(DriverError, match="still being taken down: in some seconds press Reset again"):
+        link.connect()
+    assert clock.now() > before + 0.5
+    assert idle  # whoever waits beside it is not kept waiting
+    bridge.down = True
+    link.connect()
+    link.say("enable")
+
+
+def test_a_bridge_that_tells_nothing_when_it_begins_is_no_bridge() -> None:
+    bridge = Bridge()
+    bridge.silent = True
+    link, clock, _ = linked(bridge)
+    with pytest.raises(DriverError, match="does not tell anything; start the control again"):
+        link.connect()
+    assert clock.now() == pytest.approx(3.0, abs=0.2)
+
+
+def test_a_broken_pipe_is_the_end_and_a_full_one_is_not() -> None:
+    class Full(Bridge):
+        why = DriverError("the bridge to HAL takes nothing", "hal-silent")
+
+        def send(self, data: bytes) -> None:  # noqa: ARG002
+            raise self.why
+
+    bridge = Full()
+    link, _, _ = linked(bridge)
+    link.connect()
+    with pytest.raises(DriverError, match="takes nothing"):
+        link.say("enable")
+    assert link.lost == ""
+    bridge.why = DriverError("the bridge to HAL has ended (broken pipe)", "hal-bridge")
+    with pytest.raises(DriverError, match="broken pipe"):
+        link.say("enable")
+    assert "broken pipe" in str(link.lost)
