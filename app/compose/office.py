@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from app.desk.desk import Desk
     from app.programs.preview import DrawThumbnail
     from app.shopfloor.announcements import Told
+    from app.shopfloor.status_page import OtherDesk
     from core.executor.job import Job
     from core.executor.snapshot import Snapshot
     from core.machine.machine_model import Machine
@@ -102,7 +103,8 @@ def _page(
     if find_spec("waitress") is None:
         tell(MISSING.format(what="[status_page]", package="waitress"))
         return []
-    from app.shopfloor.other_desks import OtherDesks
+    from app.shopfloor.agent_desk import asked_agent
+    from app.shopfloor.other_desks import OtherDesks, asked
     from app.shopfloor.status_page import StatusPage
 
     try:
@@ -114,7 +116,10 @@ def _page(
     def still() -> bool:
         return desk.snapshot().state not in UNDER_WAY
 
-    others = OtherDesks(table.others)
+    def ask(address: str) -> OtherDesk:
+        return asked_agent(address) if address in table.told_by_agents else asked(address)
+
+    others = OtherDesks((*table.others, *table.told_by_agents), ask)
     pictures = office_pictures(machine, shapes_at_hand, partial(kept_part, journal.setting))
     part = PartPicture(lambda: desk.session.now.job, still, pictures)
     alarm = AlarmDrawing(desk.recorder.folder if desk.recorder is not None else None, still)

@@ -1,14 +1,18 @@
-"""The desks beside this one: their status.json read every few seconds, while somebody looks at the page."""
+"""The desks beside this one: their status.json read every few seconds, while somebody looks at the page.
+
+Machines that an MTConnect agent tells of are asked the same way (``agent_desk.py``).
+"""
 
 from __future__ import annotations
 
 import json
 import threading
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from http import HTTPStatus
 from http.client import HTTPException
+from typing import NamedTuple
 from urllib.error import HTTPError, URLError
 from urllib.parse import urlsplit, urlunsplit
 from urllib.request import ProxyHandler, build_opener
@@ -32,21 +36,40 @@ def status_address(address: str) -> str:
     return urlunsplit(parts._replace(path=parts.path.rstrip("/") + "/status.json", fragment=""))
 
 
+class Answer(NamedTuple):
+    """What the page shows of an answer; ``trouble``: why the machine stands, or why nothing is known."""
+
+    status: Mapping[str, object] | None
+    trouble: str = ""
+
+
 def asked(address: str) -> OtherDesk:
     """One desk, asked now; waits for two seconds at most for each piece of its answer."""
+    return answered(address, status_address(address), _MOST, _desk_answer)
+
+
+def _desk_answer(data: bytes) -> Answer:
+    match json.loads(data):
+        case dict() as found:
+            return Answer(found)
+        case other:
+            raise ValueError(other)
+
+
+def answered(address: str, question: str, most: int, read: Callable[[bytes], Answer]) -> OtherDesk:
+    """What ``read`` makes of the answer (bytes, ``most`` of them); it raises ValueError for what is none."""
     name = _name(address)
     try:
-        with _ASK.open(status_address(address), timeout=_PATIENCE) as answer:
-            found = json.loads(answer.read(_MOST))
+        with _ASK.open(question, timeout=_PATIENCE) as answer:
+            status, trouble = read(answer.read(most))
     except HTTPError as error:
         return OtherDesk(name, trouble=_refused(error))
     except (URLError, HTTPException, OSError) as error:
         return OtherDesk(name, trouble=cause_of(error))
     except (ValueError, RecursionError):
         return OtherDesk(name, trouble=tr("what answers there is no desk"))
-    if not isinstance(found, dict):
-        return OtherDesk(name, trouble=tr("what answers there is no desk"))
-    return OtherDesk(name, {key: value for key, value in found.items() if _fits(key, value)})
+    shown = {key: value for key, value in status.items() if _fits(key, value)} if status is not None else None
+    return OtherDesk(name, shown, one_line(trouble))
 
 
 def _refused(error: HTTPError) -> str:
@@ -125,7 +148,8 @@ class OtherDesks:
 
 def _name(address: str) -> str:
     """Without what only the two desks need to know."""
-    return urlsplit(address).netloc.rpartition("@")[2]
+    parts = urlsplit(address)
+    return parts.netloc.rpartition("@")[2] + parts.path.rstrip("/")
 
 
 def _if_fresh(desk: OtherDesk, age: float) -> OtherDesk:

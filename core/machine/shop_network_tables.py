@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from ipaddress import ip_address
+from urllib.parse import urlsplit
 
 from core.table_schema import Driver, DriverTable, Field, FileReading, Finding, Kind, Unit, written
 
@@ -16,6 +17,7 @@ _PAGE_FIELDS = (
     Field("port", Kind.WHOLE, low=1, high=65535, default=8317),
     Field("token", Kind.TEXT, default=""),
     Field("desks", Kind.WORDS, default=""),
+    Field("agents", Kind.WORDS, default=""),
 )
 _ANNOUNCE_FIELDS = (
     Field("mqtt", Kind.TEXT, default=""),
@@ -29,7 +31,8 @@ _ANNOUNCE_FIELDS = (
 
 @dataclass(frozen=True, slots=True)
 class StatusPageTable:
-    """Where browsers find the page of this desk, and the pages of other desks shown on it (addresses).
+    """Where browsers find the page of this desk, and what is shown beside it: the pages of other desks, and
+    machines that an MTConnect agent tells of (the agent's address with the name of the device).
 
     ``token`` is the word that a browser must bring; empty only where no other computer can ask.
     """
@@ -39,11 +42,17 @@ class StatusPageTable:
     port: int
     token: str
     desks: str
+    agents: str
 
     @property
     def others(self) -> tuple[str, ...]:
         """Addresses of the other desks' pages."""
         return tuple(self.desks.split())
+
+    @property
+    def told_by_agents(self) -> tuple[str, ...]:
+        """Addresses of devices at their agents."""
+        return tuple(self.agents.split())
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,6 +78,15 @@ def loopback(address: str) -> bool:
         return address == "localhost"
 
 
+def is_web_address(text: str) -> bool:
+    """Whether a host can be asked there."""
+    try:
+        parts = urlsplit(text)
+        return text.startswith(_WEB) and bool(parts.hostname) and parts.port != 0
+    except ValueError:  # of a port or an IPv6 address that is none
+        return False
+
+
 def broker_of(text: str) -> tuple[str, int]:
     """Host and port of ``host`` or ``host:port``. Raises ValueError for anything else."""
     host, colon, port = text.rpartition(":")
@@ -82,7 +100,7 @@ def broker_of(text: str) -> tuple[str, int]:
 
 def _page_rules(file: FileReading) -> Iterator[Finding]:
     values = file.values
-    if not values.has("status_page.bind", "status_page.token", "status_page.desks"):
+    if not values.has("status_page.bind", "status_page.token", "status_page.desks", "status_page.agents"):
         return
     bind, token = values.text("status_page.bind"), values.text("status_page.token")
     if token and not (token.isascii() and token.replace("-", "").replace("_", "").isalnum()):
@@ -91,8 +109,12 @@ def _page_rules(file: FileReading) -> Iterator[Finding]:
         why = f"other computers can ask at {bind}: a token of {LEAST_TOKEN} characters or more is needed"
         yield Finding("status_page.token", "", why)
     for address in values.text("status_page.desks").split():
-        if not address.startswith(_WEB):
+        if not is_web_address(address):
             yield Finding("status_page.desks", written(address), "an address that begins with http://")
+    for address in values.text("status_page.agents").split():
+        if not is_web_address(address) or not urlsplit(address).path.strip("/"):
+            why = "the agent's address and the device, such as http://shop-pc:5000/LATHE2"
+            yield Finding("status_page.agents", written(address), why)
 
 
 def _announce_rules(file: FileReading) -> Iterator[Finding]:
@@ -105,7 +127,7 @@ def _announce_rules(file: FileReading) -> Iterator[Finding]:
             broker_of(broker)
     except ValueError:
         yield Finding("announce.mqtt", written(broker), 'the address of the broker, such as "shop-pc:1883"')
-    if hook and not hook.startswith(_WEB):
+    if hook and not is_web_address(hook):
         yield Finding("announce.hook", written(hook), "an address that begins with http:// or https://")
     topic = values.text("announce.topic")
     if topic.startswith("/") or any(sign in topic for sign in "+# "):

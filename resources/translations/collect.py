@@ -115,7 +115,9 @@ ALSO = (
     "in/min",
     "in/rev",
     "IN/OUT",
-    *("NO ANSWER", "no answer"),  # of the page for the office
+    # Of the page for the office, and what the system says there.
+    *("NO ANSWER", "no answer", "UNAVAILABLE", "STOPPED", "INTERRUPTED"),
+    *("Connection refused", "No route to host", "Network is unreachable", "Name or service not known"),
     "JOB",
     "TRY",
     # Of what a backup differs in.

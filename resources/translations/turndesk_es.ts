@@ -1100,6 +1100,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>Connection refused</source>
+      <translation>Conexión rechazada</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>Constant surface speed, S in m/min, and F in mm a revolution.</source>
       <translation>Velocidad de corte constante, S en m/min y F en mm por vuelta.</translation>
     </message>
@@ -1850,6 +1855,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>INTERRUPTED</source>
+      <translation>INTERRUMPIDO</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>Inch.</source>
       <translation>Pulgadas.</translation>
     </message>
@@ -2310,6 +2320,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>Name or service not known</source>
+      <translation>Nombre o servicio desconocido</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>Names a subprogram with parameters that stands in a file of its own.</source>
       <translation>Nombra un subprograma con parámetros que está en su propio archivo.</translation>
     </message>
@@ -2330,6 +2345,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>Network is unreachable</source>
+      <translation>La red es inaccesible</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>No G35 is in force that G36 could end.</source>
       <translation>No hay G35 vigente que G36 pueda terminar.</translation>
     </message>
@@ -2342,6 +2362,11 @@
       <location filename="" />
       <source>No position of the rotary axes inside their ranges gives this plane.</source>
       <translation>Ninguna posición de los ejes giratorios dentro de sus rangos da este plano.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>No route to host</source>
+      <translation>No hay ruta hasta esa computadora</translation>
     </message>
     <message>
       <location filename="" />
@@ -2937,6 +2962,11 @@
       <location filename="" />
       <source>STOP: FEED HOLD, M00, SINGLE BLOCK</source>
       <translation>PARO: RETENCIÓN DE AVANCE, M00, BLOQUE A BLOQUE</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>STOPPED</source>
+      <translation>DETENIDO</translation>
     </message>
     <message>
       <location filename="" />
@@ -3777,6 +3807,11 @@
       <location filename="" />
       <source>Type -.</source>
       <translation>Escriba -.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>UNAVAILABLE</source>
+      <translation>NO DISPONIBLE</translation>
     </message>
     <message>
       <location filename="" />
@@ -13287,6 +13322,11 @@
       <location filename="app/sharing/sharing_view.py" />
       <source>ELSEWHERE</source>
       <translation>EN OTROS PUESTOS</translation>
+    </message>
+    <message>
+      <location filename="app/shopfloor/agent_desk.py" />
+      <source>the agent hears nothing of it</source>
+      <translation>el agente no sabe nada de ella</translation>
     </message>
     <message>
       <location filename="app/shopfloor/other_desks.py" />
