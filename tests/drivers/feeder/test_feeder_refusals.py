@@ -1,0 +1,155 @@
+"""What a feeder and its control refuse of each other, and what a driver that refuses makes of a stop."""
+
+from __future__ import annotations
+
+import ctypes
+import dataclasses
+import gc
+import socket
+from collections.abc import Callable
+
+import pytest
+
+from core.ports import DriverError
+from drivers.clocks import StepClock
+from drivers.feeder import feeder_links, feeder_loop
+from drivers.feeder.feeder_line import Line, cleared
+from drivers.feeder.feeder_links import LoopLink, SocketLink
+from drivers.feeder.feeder_messages import NOTHING, Message, floats, packed
+from drivers.feeder.feeder_ports import feeder_ports
+from drivers.feeder.feeder_server import Driven, Feeder
+from drivers.simulated.simulated_machine import Simulation, build_simulation
+from tests.drivers.contract.simulated import simulation_driven
+from tests.drivers.machines import CONFIG
+from tests.drivers.test_gear import cam
+
+
+def simulation() -> tuple[Simulation, StepClock]:
+    clock = StepClock()
+    return build_simulation(CONFIG, clock), clock
+
+
+def refuse(why: str) -> Callable[..., object]:
+    def refused(*_given: object, **_words: object) -> object:
+        raise DriverError(why)
+
+    return refused
+
+
+@pytest.mark.parametrize("told", ["1, 2", [1.0, "2"], None, {"x": 1.0}])
+def test_what_are_no_numbers_is_no_place(told: object) -> None:
+    with pytest.raises(DriverError, match="the feeder answered no numbers"):
+        floats(told)
+
+
+def test_a_driver_that_cannot_follow_the_spindle_says_so_through_its_feeder() -> None:
+    sim, clock = simulation()
+    plain = dataclasses.replace(sim.ports, gear=None)
+    line = Line(LoopLink(Feeder(Driven(plain, plain.axes.sample, lambda: None))), clock)
+    asked = Line(LoopLink(Feeder(simulation_driven(sim.ports, sim.machine))), clock)
+    ports = feeder_ports(asked)
+    assert ports.gear is not None
+    asked._link = line._link  # behind the other feeder there is none
+    with pytest.raises(DriverError, match="this driver cannot follow the spindle"):
+        ports.gear.mesh(cam(sim, turns=3.0))
+
+
+def test_a_spindle_that_refuses_its_stop_keeps_no_output_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A control that has ended: all is tried, and what did not work is told to the next one."""
+    sim, clock = simulation()
+    feeder = Feeder(simulation_driven(sim.ports, sim.machine))
+    ports = feeder_ports(Line(LoopLink(feeder), clock))
+    ports.axes.enable(True)
+    ports.io.write("coolant", True)
+    monkeypatch.setattr(sim.ports.spindle, "run", refuse("the inverter does not answer"))
+    for _ in range(300):
+        clock.advance(0.01)
+        feeder.tick()
+    assert not sim.ports.io.outputs()["coolant"]
+    assert [note for note in feeder._notes if "while stopping: the inverter does not answer" in note]
+
+
+def test_outputs_that_refuse_keep_no_spindle_turning(monkeypatch: pytest.MonkeyPatch) -> None:
+    sim, clock = simulation()
+    feeder = Feeder(simulation_driven(sim.ports, sim.machine))
+    ports = feeder_ports(Line(LoopLink(feeder), clock))
+    ports.spindle.run(600.0)
+    for _ in range(10):
+        clock.advance(0.1)
+        ports.axes.sample()
+        feeder.tick()
+    assert sim.machine.spindle_rpm() > 500.0
+    monkeypatch.setattr(sim.ports.io, "safe", refuse("terminal 2 does not answer"))
+    for _ in range(500):
+        clock.advance(0.01)
+        feeder.tick()
+    assert sim.machine.spindle_rpm() == 0.0
+    assert [note for note in feeder._notes if "while stopping: terminal 2 does not answer" in note]
+
+
+def test_a_driver_that_cannot_be_asked_wakes_a_control_that_sleeps(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Asleep on a machine of which nothing is known it would sleep on."""
+    sim, clock = simulation()
+    rung: list[bool] = []
+    driven = Driven(sim.ports, sim.ports.axes.sample, lambda: None, sim.machine)
+    feeder = Feeder(driven, ring=lambda: rung.append(True))
+    LoopLink(feeder).ask(Message({"do": "look", "rests": True}, NOTHING))
+    feeder.tick()
+    assert (feeder.asleep, rung) == (True, [])
+    monkeypatch.setattr(sim.ports.axes, "sample", refuse("X does not answer"))
+    clock.advance(0.005)
+    feeder.tick()
+    assert rung == [True]
+
+
+# --- the line ---------------------------------------------------------------------------------------------
+
+
+def test_a_feeder_that_nobody_can_start_again_asks_for_another_control() -> None:
+    sim, clock = simulation()
+    line = Line(LoopLink(Feeder(simulation_driven(sim.ports, sim.machine))), clock)
+    line.fault = "the feeder process has ended"
+    with pytest.raises(DriverError, match="the feeder process has ended; start the control again"):
+        line.restart()
+    with pytest.raises(DriverError, match="the feeder process has ended"):
+        line.ask(Message({"do": "hello"}, NOTHING))
+
+
+def test_a_reset_that_the_drives_refuse_starts_no_feeder(monkeypatch: pytest.MonkeyPatch) -> None:
+    sim, _ = simulation()
+    link = LoopLink(Feeder(simulation_driven(sim.ports, sim.machine)))
+    assert cleared(link) is link
+    monkeypatch.setattr(sim.ports.axes, "clear_fault", refuse("Z: the fault stays: overcurrent"))
+    with pytest.raises(DriverError, match="Z: the fault stays: overcurrent"):
+        cleared(link)
+
+
+def test_an_answer_in_parts_is_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A socket gives what has come: half a message is none yet, and no end of the feeder."""
+    monkeypatch.setattr(feeder_links, "_CHUNK", 5)  # bytes
+    ours, theirs = socket.socketpair()
+    theirs.sendall(packed(Message({"value": 7.0}, NOTHING)))
+    link = SocketLink(ours)
+    assert link.ask(Message({"do": "hello"}, NOTHING)).head == {"value": 7.0}
+    link.close()
+    theirs.close()
+
+
+# --- the process ------------------------------------------------------------------------------------------
+
+
+def test_a_system_without_locked_memory_is_told_of(monkeypatch: pytest.MonkeyPatch) -> None:
+    def missing(*_: object, **__: object) -> object:
+        raise OSError("no C library")
+
+    monkeypatch.setattr(gc, "freeze", lambda: None)
+    monkeypatch.setattr(ctypes, "CDLL", missing)
+    assert feeder_loop.keep_memory() == ["the feeder's memory is not locked (no C library)"]
+
+    class Refusing:
+        def mlockall(self, _how: int) -> int:
+            ctypes.set_errno(12)
+            return -1
+
+    monkeypatch.setattr(ctypes, "CDLL", lambda *_a, **_k: Refusing())
+    assert feeder_loop.keep_memory() == ["the feeder's memory is not locked (Cannot allocate memory)"]
