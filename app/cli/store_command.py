@@ -123,16 +123,18 @@ def _import(args: argparse.Namespace) -> int:
 
 def _verify(args: argparse.Namespace) -> int:
     from core.store import backup
-    from core.store.store_file import FILE_NAME
+    from core.store.store_file import FILE_NAME, has_store
 
     path = data_folder() / FILE_NAME
     with store_refusals():
-        problems = backup.problems(path) if path.exists() else ()
+        problems = backup.all_problems(path) if has_store(data_folder()) else ()
     if args.json:
         sys.stdout.write(json.dumps({"store": str(path), "problems": problems}) + "\n")
     elif not problems:
         sys.stdout.write(
-            f"{path} is whole\n" if path.exists() else f"there is no store in {data_folder()} yet\n"
+            f"{path} is whole\n"
+            if has_store(data_folder())
+            else f"there is no store in {data_folder()} yet\n"
         )
     sys.stderr.write("".join(f"turndesk: {path}: {problem}\n" for problem in problems))
     return EXIT_ERRORS if problems else EXIT_OK

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import os
 import shutil
-import tempfile
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
 from core.file_placing import folder_to_disk, make_folder, put_in_place
 from core.language.source import SourceError, load_source
+from core.unfinished import unfinished_folder
 
 
 class FileError(Exception):
@@ -93,11 +93,8 @@ def present(path: Path) -> bytes | None:
 @contextmanager
 def _beside(target: Path) -> Iterator[Path]:
     """A place for a file of the same name in a hidden folder beside it, which is gone afterwards."""
-    folder = Path(tempfile.mkdtemp(prefix=".saving-", suffix=".part", dir=target.parent))
-    try:
+    with unfinished_folder(target) as folder:
         yield folder / target.name
-    finally:
-        shutil.rmtree(folder, ignore_errors=True)
 
 
 def _fill(path: Path, data: bytes) -> None:

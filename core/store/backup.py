@@ -2,32 +2,47 @@
 
 from __future__ import annotations
 
-import os
 import shutil
 import sqlite3
-import tempfile
+from collections.abc import Callable
 from contextlib import closing, suppress
 from datetime import UTC, datetime
 from pathlib import Path
 
 from core.file_placing import put_in_place
-from core.store import damaged_rows, database, program_records
+from core.store import damaged_rows, database, program_records, row_sums
 from core.store.database import WriterLock, make_folder
 from core.store.store_errors import Cause, StoreError, cause_of, why
-from core.store.store_file import FILE_NAME
+from core.store.store_file import FILE_NAME, has_store
+from core.unfinished import unfinished_file
 
 
 def problems(path: Path) -> tuple[str, ...]:
-    """What is wrong inside ``path``, which is not written to: pages, references, program texts.
+    """What is wrong inside ``path``, which is not written to: pages, references, program texts, rows.
 
     Raises StoreError when it is no store of ours or of a newer version.
     """
+    return _looked_through(path, _found)
+
+
+def all_problems(path: Path) -> tuple[str, ...]:
+    """The same, and what makes no backup worthless: entries of histories that are not as they were saved."""
+    return problems(path) or _looked_through(path, _of_histories)
+
+
+def _looked_through(path: Path, look: Callable[[sqlite3.Connection], tuple[str, ...]]) -> tuple[str, ...]:
     database.check_file(path, thorough=False)
     try:
         with closing(database.connect(path, read_only=True)) as connection:
-            return _found(connection)
+            database.check_log(path, connection)
+            return look(connection)
     except sqlite3.Error as error:
         return (f"the file is damaged: {error}",)
+
+
+def _of_histories(connection: sqlite3.Connection) -> tuple[str, ...]:
+    newest = database.version_of(connection) == len(database.migrations())
+    return damaged_rows.damaged_histories(connection) if newest else ()
 
 
 def _found(connection: sqlite3.Connection) -> tuple[str, ...]:
@@ -38,8 +53,7 @@ def _found(connection: sqlite3.Connection) -> tuple[str, ...]:
         for table, _, parent, _ in connection.execute("PRAGMA foreign_key_check")
     ]
     found += [f"{which} is not what was saved" for which in program_records.spoilt(connection)]
-    if database.version_of(connection) == len(database.migrations()):  # an older one has no sums
-        found += damaged_rows.damaged(connection)
+    found += damaged_rows.damaged(connection, row_sums.sealed_before(database.version_of(connection)))
     return tuple(found)
 
 
@@ -49,9 +63,9 @@ def backup(folder: Path, target: Path) -> None:
     Raises StoreError when there is no good store, or ``target`` is a file that is no backup of ours.
     """
     path = folder / FILE_NAME
-    if not path.exists():
+    if not has_store(folder):
         raise StoreError(f"there is no store in {folder} yet, so there is nothing to back up")
-    if target.exists():
+    if _is_there(target):
         if target.samefile(path):
             raise StoreError(f"{target} is the store itself; name another file for the backup")
         database.check_header(target)
@@ -81,19 +95,28 @@ def restore(folder: Path, source: Path) -> Path | None:
         return kept
 
 
+def _is_there(target: Path) -> bool:
+    try:
+        return target.exists()
+    except OSError as error:  # in a folder that this user may not look into
+        raise _unwritable(target, error) from error
+
+
 def _keep(path: Path) -> Path:
     """A copy of the store that is about to be replaced, good or damaged, with its log when it has one."""
     _empty_log(path)
     stamp = datetime.now(UTC).strftime("%Y%m%dT%H%M%S%fZ")
     kept = path.with_name(f"{path.stem}-replaced-{stamp}.db")
     log, _ = database.companions(path)
-    unfinished = kept.with_name(kept.name + ".new")
+    kept_log, _ = database.companions(kept)
     try:
         if log.exists() and log.stat().st_size:
-            shutil.copy2(log, database.companions(kept)[0])
-        shutil.copy2(path, unfinished)
-        put_in_place(unfinished, kept)
+            shutil.copy2(log, kept_log)
+        with unfinished_file(kept) as unfinished:
+            shutil.copy2(path, unfinished)
+            put_in_place(unfinished, kept)
     except OSError as error:
+        kept_log.unlink(missing_ok=True)
         raise _unwritable(kept, error) from error
     return kept
 
@@ -110,23 +133,16 @@ def _empty_log(path: Path) -> None:
 def _copy(source: Path, target: Path) -> None:
     """A whole copy by SQLite's own means; ``target`` is the old file or the new one, never a mixture."""
     try:
-        handle, name = tempfile.mkstemp(prefix=f".{target.name}.", dir=target.parent)
-    except OSError as error:
-        raise _unwritable(target, error) from error
-    os.close(handle)
-    unfinished = Path(name)
-    try:
-        with (
-            closing(database.connect(source, read_only=True)) as reading,
-            closing(sqlite3.connect(unfinished)) as writing,
-        ):
-            reading.backup(writing)
-            writing.execute("PRAGMA journal_mode = DELETE")
-        put_in_place(unfinished, target)
+        with unfinished_file(target) as unfinished:
+            with (
+                closing(database.connect(source, read_only=True)) as reading,
+                closing(sqlite3.connect(unfinished)) as writing,
+            ):
+                reading.backup(writing)
+                writing.execute("PRAGMA journal_mode = DELETE")
+            put_in_place(unfinished, target)
     except (OSError, sqlite3.Error) as error:
         raise _unwritable(target, error) from error
-    finally:
-        unfinished.unlink(missing_ok=True)
 
 
 def _unwritable(target: Path, error: Exception) -> StoreError:

@@ -7,16 +7,17 @@ from collections.abc import Collection
 
 from core.store import row_sums
 from core.store.offset_tables import history_of, named
-from core.store.row_sums import KEYS, Key
+from core.store.row_sums import HISTORIES, KEYS, Key
 
 
 def repair(connection: sqlite3.Connection) -> tuple[str, ...]:
-    """Put rows right that the history vouches for; tell which were.
+    """Put rows right that the history vouches for, and away what can begin anew; tell which were.
 
-    Its last entry has the sum with which the row was saved, or is the row itself and the sum is damaged.
+    The last entry of the history has the sum with which the row was saved, or is the row itself and the sum
+    is damaged.
     """
     told = []
-    for table, key in _broken(connection):
+    for table, key in _broken(connection, KEYS):
         row = history_of(connection, table, key, row_sums.columns(connection, table))
         saved, now = row_sums.saved_sum(connection, table, key), row_sums.row(connection, table, key)
         if row is not None and (row == now or row_sums.sum_of(table, row) == saved):
@@ -24,7 +25,55 @@ def repair(connection: sqlite3.Connection) -> tuple[str, ...]:
             connection.execute(f"DELETE FROM {table} WHERE {KEYS[table]} = ?", (key,))
             connection.execute(f"INSERT INTO {table} VALUES ({marks})", row_sums.readable(row))
             told.append(f"{named(table, key)} was damaged in the store; it is again as it was entered")
+        elif table in _PUT_AWAY:
+            told.append(_put_away(connection, table, key))
     return tuple(told)
+
+
+def _begin_anew(connection: sqlite3.Connection, program: Key) -> str:
+    connection.execute("DELETE FROM runs WHERE program = ?", (program,))
+    return f"{named('runs', program)} was damaged in the store, and begins anew"
+
+
+def _measure_no_more(connection: sqlite3.Connection, feature: Key) -> str:
+    """A feature is retired, as it stands; one with a value that no feature has goes with its readings."""
+    row = row_sums.row(connection, "part_features", feature)
+    which = f"{_shown(row[1])} {_shown(row[2])}" if row else feature
+    told = f"{named('part_features', which)} was damaged in the store, and is measured no more; enter it anew"
+    every = ", ".join(
+        f"{column} = {column}"  # SQLite looks only at the bounds of what is set
+        for column in row_sums.columns(connection, "part_features")
+        if column not in {"id", "retired"}
+    )
+    try:
+        retired = connection.execute(
+            f"UPDATE part_features SET {every}, retired = 1 WHERE id = ? AND typeof(nominal) = 'real'"
+            " AND typeof(low) = 'real' AND typeof(high) = 'real' AND typeof(name) = 'text'",
+            (feature,),
+        ).rowcount
+    except sqlite3.IntegrityError:  # out of a bound
+        retired = 0
+    if retired:
+        return told
+    gone = connection.execute("DELETE FROM part_readings WHERE feature = ?", (feature,)).rowcount
+    connection.execute("DELETE FROM part_features WHERE id = ?", (feature,))
+    return f"{told}. Its readings ({gone}) went with it"
+
+
+_PUT_AWAY = {"runs": _begin_anew, "part_features": _measure_no_more}
+
+
+def _put_away(connection: sqlite3.Connection, table: str, key: Key) -> str:
+    """What is no use without its figures, and is not entered over; neither row nor sum is left."""
+    told = _PUT_AWAY[table](connection, key)
+    if row_sums.row(connection, table, key) is None:
+        connection.execute("DELETE FROM row_sums WHERE tbl = ? AND key = ?", (table, key))
+    return told
+
+
+def _shown(value: row_sums.Value) -> str:
+    text = value.decode("utf-8", "backslashreplace") if isinstance(value, bytes) else str(value)
+    return " ".join(text.split())
 
 
 def damaged(
@@ -34,10 +83,20 @@ def damaged(
 
     Of some tables only, and of some settings.
     """
+    looked = [table for table in KEYS if table in tables or (table == "settings" and settings)]
     return tuple(
         f"{named(table, key)} is not as it was saved, and is not used; {_REMEDY.get(table, _ANEW)}"
-        for table, key in _broken(connection)
-        if table in tables or (table == "settings" and key in settings)
+        for table, key in _broken(connection, looked)
+        if table in tables or key in settings
+    )
+
+
+def damaged_histories(connection: sqlite3.Connection) -> tuple[str, ...]:
+    """The same of what grows for years, and of the tables as they were made: ``verify`` asks for it."""
+    tables = () if row_sums.schema_is_whole(connection) else ("the tables are not those that were made",)
+    return tables + tuple(
+        f"{named(table, key)} is not as it was saved, and is not used"
+        for table, key in _broken(connection, HISTORIES)
     )
 
 
@@ -52,7 +111,7 @@ _REMEDY = {
 }
 
 
-def _broken(connection: sqlite3.Connection) -> list[tuple[str, Key]]:
-    order = list(KEYS)
-    found = row_sums.all_broken(connection)
+def _broken(connection: sqlite3.Connection, tables: Collection[str]) -> list[tuple[str, Key]]:
+    order = list(tables)
+    found = row_sums.all_broken(connection, tables)
     return sorted(found, key=lambda row: (order.index(row[0]), isinstance(row[1], str), row[1]))

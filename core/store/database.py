@@ -3,24 +3,28 @@
 from __future__ import annotations
 
 import os
+import re
 import sqlite3
 from collections.abc import Sequence
 from contextlib import ExitStack, closing, suppress
 from dataclasses import dataclass
+from datetime import UTC, datetime
 from pathlib import Path
 
 from core.file_lock import lock
-from core.file_placing import put_in_place
+from core.file_placing import put_in_place, write_in_place
 from core.store import row_sums
+from core.store.log_damage import lost_changes
 from core.store.store_errors import Cause, StoreError, cause_of, why
 from core.store.store_file import FILE_NAME, has_store
+from core.unfinished import forget_killed
 
 APPLICATION_ID = 0x5475724E  # "TurN": tells a store of ours from any other SQLite file
 _MIGRATIONS = Path(__file__).with_name("migrations")
 _MAGIC = b"SQLite format 3\0"
 _BUSY_SECONDS = 5.0
+_LOCK = "turndesk.lock"
 _NO_ROOM = frozenset({Cause.FULL, Cause.FORBIDDEN})
-_SUMS_SINCE = 11  # the version that brought them
 
 
 def migrations() -> tuple[str, ...]:
@@ -111,12 +115,17 @@ def check_file(path: Path, *, thorough: bool) -> int:
 
     Raises StoreError for no database of ours, a newer version, or damage; ``thorough`` looks at every page.
     """
+    return _checked(path, thorough=thorough)[0]
+
+
+def _checked(path: Path, *, thorough: bool) -> tuple[int, list[str]]:
+    """The version, and what is wrong that opening mends."""
     check_header(path)
     newest = len(migrations())
     try:
         with closing(connect(path, read_only=True)) as connection:
             version = version_of(connection)
-            told = connection.execute("PRAGMA quick_check(1)").fetchone()[0] if thorough else "ok"
+            wrong = _found_wrong(connection) if thorough else []
     except sqlite3.Error as error:
         raise why(path, error) from error
     if version > newest:
@@ -124,9 +133,34 @@ def check_file(path: Path, *, thorough: bool) -> int:
             f"{path} was written by a newer TurnDesk (store version {version}, this one knows {newest}); "
             "it is left as it is. Use the newer TurnDesk"
         )
-    if told != "ok":
-        raise Cause.DAMAGED.error(path, told)
-    return version
+    damage = [text for text in wrong if not _MENDABLE.search(text)]
+    if damage:
+        raise Cause.DAMAGED.error(path, damage[0])
+    return version, wrong
+
+
+def _found_wrong(connection: sqlite3.Connection) -> list[str]:
+    """What SQLite finds wrong in pages, indexes and types, in its words."""
+    found = connection.execute(f"PRAGMA integrity_check({_MOST_WORDS})")
+    return [str(text) for (text,) in found if text != "ok"]
+
+
+_MOST_WORDS = 1000  # those of pages come first
+_INDEX = re.compile(r"\bindex \S+$")  # row 3 missing from index …, wrong # of entries in index …
+_VALUE = rf"(?:value in|constraint failed in) (?:{'|'.join(row_sums.KEYS)})\b"
+_MENDABLE = re.compile(rf"{_INDEX.pattern}|{_VALUE}")
+"""What opening mends: an index is made anew from its table, and a value of a wrong type has no good sum."""
+
+
+def _mend_indexes(connection: sqlite3.Connection, path: Path, wrong: list[str]) -> tuple[str, ...]:
+    """Make them anew where one is not that of its table; tell so. Raises StoreError where that cannot be."""
+    if not any(_INDEX.search(text) for text in wrong):
+        return ()
+    try:
+        connection.execute("REINDEX")
+    except sqlite3.IntegrityError as error:  # two rows under one key: which of them is right?
+        raise Cause.DAMAGED.error(path, error) from error
+    return ("an index of the store was damaged; it is made anew from its table, of which nothing is lost",)
 
 
 def migrate(connection: sqlite3.Connection, scripts: Sequence[str]) -> None:
@@ -146,15 +180,15 @@ def migrate(connection: sqlite3.Connection, scripts: Sequence[str]) -> None:
                 f"the store cannot be brought to version {number}, and stays at the one before: "
                 f"{why(_path_of(connection), error)}"
             ) from error
-    if len(scripts) >= _SUMS_SINCE:
+    if len(scripts) >= row_sums.SINCE:
         row_sums.watch(connection)
 
 
 def _bring_to(connection: sqlite3.Connection, number: int, script: str) -> None:
     """Rows get their sums anew, but for those that were damaged before: other columns make another sum."""
-    damaged = row_sums.all_broken(connection) if number > _SUMS_SINCE else frozenset()
+    damaged = row_sums.all_broken(connection, row_sums.sealed_before(number - 1))
     connection.executescript(f"BEGIN IMMEDIATE;\n{script}\nPRAGMA user_version = {number};")
-    if number >= _SUMS_SINCE:
+    if number >= row_sums.SINCE:
         row_sums.seal_all(connection, damaged)
     connection.execute("COMMIT")
 
@@ -199,7 +233,7 @@ class WriterLock:
     """The advisory lock beside the store, held from construction to close. Raises StoreError when taken."""
 
     def __init__(self, folder: Path) -> None:
-        self._path = folder / "turndesk.lock"
+        self._path = folder / _LOCK
         try:
             self._file = os.open(self._path, os.O_RDWR | os.O_CREAT, 0o644)
         except OSError as error:
@@ -225,6 +259,21 @@ class WriterLock:
             self._file = -1
 
 
+def in_use(folder: Path) -> bool:
+    """Whether a process writes the store of this folder now."""
+    try:
+        file = os.open(folder / _LOCK, os.O_RDONLY)
+    except OSError:
+        return False
+    try:
+        lock(file)
+    except OSError:
+        return True
+    finally:
+        os.close(file)
+    return False
+
+
 # --- Opening a store: nothing is written before the file has been found to be a whole one of ours.
 
 
@@ -236,6 +285,7 @@ class Opened:
     reader: sqlite3.Connection
     writer: sqlite3.Connection | None = None
     lock: WriterLock | None = None
+    mended: tuple[str, ...] = ()  # what was damaged of the file itself, in sentences
 
     def close(self) -> None:
         """Ends the connections, then gives the lock back. Calling it again does nothing."""
@@ -247,14 +297,23 @@ class Opened:
 
 
 def open_to_read(folder: Path) -> Opened:
-    """The store as it is; an empty one where there is no file. Raises StoreError for a bad file."""
+    """The store as it is; an empty one where there is no file. Raises StoreError for a bad file.
+
+    Also for one whose log has lost changes: it would be read as it was before them.
+    """
     path = folder / FILE_NAME
     if not has_store(folder):
         return Opened(path, empty())
     version = check_file(path, thorough=False)
     if version < len(migrations()):
         raise StoreError(f"{path} is from an older TurnDesk; start turndesk once to bring it up to date")
-    return Opened(path, connect(path, read_only=True))
+    reader = connect(path, read_only=True)
+    try:
+        check_log(path, reader)
+    except StoreError:
+        reader.close()
+        raise
+    return Opened(path, reader)
 
 
 def open_to_write(folder: Path) -> Opened:
@@ -264,15 +323,66 @@ def open_to_write(folder: Path) -> Opened:
     with ExitStack() as undo:
         lock = WriterLock(folder)
         undo.callback(lock.close)
+        forget_killed(folder)
         if not has_store(folder):
             _refuse_lost_file(path)
             create(path)
-        version = check_file(path, thorough=True)
-        writer = _writing(path, version)
+        version, wrong = _checked(path, thorough=True)
+        put_aside = _put_damaged_log_aside(path)
+        writer, mended = _writing(path, version, wrong)
         undo.callback(writer.close)
         reader = connect(path, read_only=True)
         undo.pop_all()
-        return Opened(path, reader, writer, lock)
+        return Opened(path, reader, writer, lock, put_aside + mended)
+
+
+def check_log(path: Path, reader: sqlite3.Connection) -> None:
+    """Raises StoreError where changes in the log can be read no more, and no desk runs that has told it."""
+    lost = _lost_changes(path, reader)
+    if lost and not in_use(path.parent):
+        raise StoreError(
+            f"{path}: its log is damaged, and {_changes(lost)} saved last cannot be read; start turndesk "
+            "once, which keeps the log beside and goes on with what was there before, or restore a backup"
+        )
+
+
+def _put_damaged_log_aside(path: Path) -> tuple[str, ...]:
+    """A copy of a log that has lost changes, before it is written over; tell what is lost."""
+    log, _ = companions(path)
+    with closing(connect(path, read_only=True)) as reader:
+        lost = _lost_changes(path, reader)
+    if not lost:
+        return ()
+    kept = path.with_name(f"{path.stem}-damaged-log-{datetime.now(UTC):%Y%m%dT%H%M%SZ}")
+    try:
+        write_in_place(kept, log.read_bytes())
+    except OSError as error:
+        raise why(kept, error) from error
+    with closing(connect(path, read_only=False)) as writer:
+        writer.execute("PRAGMA wal_checkpoint(TRUNCATE)")
+    return (
+        f"the store's log was damaged: {_changes(lost)} saved last, before the control ended, went with it. "
+        f"Look at offsets, counts and settings before a part is made; the log is kept as {kept.name}",
+    )
+
+
+def _lost_changes(path: Path, reader: sqlite3.Connection) -> int:
+    log, index = companions(path)
+    if not _has_log(path):
+        return 0
+    try:
+        reader.execute(
+            "SELECT count(*) FROM sqlite_master"
+        ).fetchone()  # SQLite looks how far it takes the log
+        return lost_changes(log, index)
+    except sqlite3.Error as error:
+        raise why(path, error) from error
+    except FileNotFoundError:
+        return 0  # whoever wrote it has just closed it
+
+
+def _changes(count: int) -> str:
+    return "the change" if count == 1 else f"the {count} changes"
 
 
 def make_folder(folder: Path) -> None:
@@ -296,12 +406,13 @@ def _refuse_lost_file(path: Path) -> None:
         )
 
 
-def _writing(path: Path, version: int) -> sqlite3.Connection:
+def _writing(path: Path, version: int, wrong: list[str]) -> tuple[sqlite3.Connection, tuple[str, ...]]:
     connection = connect(path, read_only=False)
     try:
         if 0 < version < len(migrations()):
             _keep_copy(connection, path.with_name(f"{path.stem}-version-{version}.db"))
         connection.execute("PRAGMA journal_mode = WAL")
+        mended = _mend_indexes(connection, path, wrong)
         migrate(connection, migrations())
     except sqlite3.Error as error:
         connection.close()
@@ -309,7 +420,7 @@ def _writing(path: Path, version: int) -> sqlite3.Connection:
     except StoreError:
         connection.close()
         raise
-    return connection
+    return connection, mended
 
 
 def _keep_copy(connection: sqlite3.Connection, target: Path) -> None:

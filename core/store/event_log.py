@@ -34,10 +34,8 @@ def events(
 
 def setting(connection: sqlite3.Connection, key: str) -> object:
     """What was stored under ``key``, None: nothing, or it is not as it was stored."""
-    if not row_sums.is_whole(connection, "settings", key):
-        return None
-    row = connection.execute("SELECT value FROM settings WHERE key = ?", (key,)).fetchone()
-    return json.loads(row[0]) if row else None
+    row = row_sums.whole_row(connection, "settings", key)
+    return json.loads(str(row_sums.readable(row)[1])) if row else None
 
 
 def set_setting(connection: sqlite3.Connection, key: str, value: object) -> None:

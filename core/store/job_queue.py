@@ -66,24 +66,19 @@ Held = Mapping[str, tuple[bool, int]]
 
 def jobs(connection: sqlite3.Connection, held: Held | None = None) -> tuple[JobRow, ...]:
     """The queue in its order; a job that is not as it was saved is left out."""
-    broken = row_sums.broken(connection, "jobs")
-    rows = connection.execute(
-        "SELECT id, program, wanted, made, base, note, added FROM jobs ORDER BY place, id"
-    )
-    return tuple(_job(connection, row, held or {}) for row in rows.fetchall() if row[0] not in broken)
+    rows = (row_sums.readable(row) for row in row_sums.whole_rows(connection, "jobs").values())
+    placed = sorted((place, number, rest) for number, place, *rest in rows)
+    return tuple(_job(connection, JobRow._make((number, *rest, 0)), held or {}) for _, number, rest in placed)
 
 
-def _job(
-    connection: sqlite3.Connection, row: tuple[int, str, int, int, int | None, str, str], held: Held
-) -> JobRow:
+def _job(connection: sqlite3.Connection, row: JobRow, held: Held) -> JobRow:
     """A count that is put to nought only in memory yet takes nothing from a job: ``base`` follows it then."""
-    program, base = row[1], row[4]
-    counted = program_records.parts(connection, program)
-    reset, more = held.get(program, (False, 0))
-    if reset and base is not None:
-        before = row[3] + counted - base
-        return JobRow(*row, counted=max(0, more))._replace(before=before, base=0)
-    return JobRow(*row, counted=max(0, counted + more))
+    counted = program_records.parts(connection, row.program)
+    reset, more = held.get(row.program, (False, 0))
+    if reset and row.base is not None:
+        before = row.before + counted - row.base
+        return row._replace(counted=max(0, more), before=before, base=0)
+    return row._replace(counted=max(0, counted + more))
 
 
 def add(connection: sqlite3.Connection, program: str, wanted: int, note: str = "") -> int:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 import sqlite3
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
+from core.store import row_sums
 from core.store.store_errors import StoreError
 from core.store.store_rows import utc_now
 
@@ -45,13 +46,17 @@ _COLUMNS = ", ".join(FeatureRow._fields)
 
 
 def features(connection: sqlite3.Connection, program: str | None = None) -> tuple[FeatureRow, ...]:
-    """Those that are measured, in the order of entry; without a program of all."""
+    """Those that are measured, in the order of entry; without a program of all.
+
+    One that is not as it was saved is left out: a wear correction is reckoned with its figures.
+    """
     rows = connection.execute(
         f"SELECT {_COLUMNS} FROM part_features WHERE retired = 0 AND (?1 IS NULL OR program = ?1)"
         " ORDER BY program, id",
         (program,),
-    )
-    return tuple(FeatureRow(*row) for row in rows)
+    ).fetchall()
+    broken = row_sums.broken(connection, "part_features") if rows else frozenset()
+    return tuple(FeatureRow(*row) for row in rows if row[0] not in broken)
 
 
 def save_feature(connection: sqlite3.Connection, row: FeatureRow) -> int:
@@ -108,7 +113,10 @@ def void_reading(connection: sqlite3.Connection, reading: int) -> None:
 
 
 def readings(connection: sqlite3.Connection, program: str, limit: int) -> tuple[ReadingRow, ...]:
-    """The newest readings of a program's features, in the order in which they were taken."""
+    """The newest readings of a program's features, in the order in which they were taken.
+
+    One that is not as it was saved is left out, here and of those of a shift.
+    """
     rows = connection.execute(
         "SELECT r.id, r.feature, r.part, r.value, r.unit, r.at, r.source, r.gauge,"
         " coalesce((SELECT c.offset_change FROM part_cycles AS c WHERE c.program = f.program"
@@ -117,7 +125,12 @@ def readings(connection: sqlite3.Connection, program: str, limit: int) -> tuple[
         " WHERE f.program = ? AND r.void = 0 AND f.retired = 0 ORDER BY r.id DESC LIMIT ?",
         (program, limit),
     )
-    return tuple(ReadingRow(*row) for row in rows)[::-1]
+    return tuple(ReadingRow(*row) for row in _whole(connection, rows.fetchall()))[::-1]
+
+
+def _whole(connection: sqlite3.Connection, rows: list[Any]) -> list[Any]:
+    """Those of them whose reading, by the id in front, is as it was saved."""
+    return [row for row in rows if row_sums.whole_row(connection, "part_readings", row[0]) is not None]
 
 
 def last_corrections(connection: sqlite3.Connection) -> dict[tuple[str, int, str], int]:
@@ -144,4 +157,5 @@ def readings_between(
         " WHERE r.void = 0 AND r.at >= ? AND r.at < ? ORDER BY r.id",
         (since, until),
     )
-    return tuple((FeatureRow(*row[8:]), ReadingRow(*row[:8])) for row in rows)
+    whole = _whole(connection, rows.fetchall())
+    return tuple((FeatureRow(*row[8:]), ReadingRow(*row[:8])) for row in whole)

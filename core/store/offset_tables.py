@@ -324,9 +324,12 @@ def _last_step(connection: sqlite3.Connection, log: _Log, kind: Kind | None) -> 
 
 def _undo(connection: sqlite3.Connection, reason: Reason, log: _Log, kind: Kind | None) -> tuple[Change, ...]:
     step = _last_step(connection, log, kind)[0]
-    if step is None:
+    rows = _select(connection, log, "WHERE step = ? ORDER BY id", (step,)) if step is not None else ()
+    first = rows[0].id if rows else 0
+    for entry in row_sums.broken(connection, log.name, first):  # of this step, or a later one that it hides
+        raise _damaged_entry(entry)
+    if not rows:
         raise StoreError(log.nothing_left)
-    rows = _select(connection, log, "WHERE step = ? ORDER BY id", (step,))
     backward = {row.number: (row.new, row.old) for row in rows}
     return apply(connection, rows[0].kind, backward, reason, undoes=step)
 
@@ -361,6 +364,8 @@ def _log_of(kind: Kind | None) -> _Log:
 def named(name: str, key: row_sums.Key) -> str:
     """A row of a table with a sum, as people call it."""
     table = next((each for each in _TABLES.values() if each.name == name), None)
+    if any(log.name == name for log in _LOGS):
+        return f"entry {key} of the history of offsets"
     if table is None:
         return f"{_OTHERS[name]} {' '.join(str(key).split())}"
     if table.letter != "T" or not isinstance(key, int):
@@ -375,6 +380,10 @@ _OTHERS = {
     "mill_tool_lives": "the life of tool",
     "jobs": "the job",
     "people": "the PIN of",
+    "runs": "the record of",
+    "part_features": "the measured feature",
+    "part_readings": "the reading",
+    "insert_changes": "the change of an insert",
 }
 
 
@@ -400,7 +409,19 @@ def _select(
         f" FROM {log.name} {tail}",
         values,
     )
-    return tuple(_change(log, row) for row in rows)
+    found = rows.fetchall()
+    if found:
+        broken = row_sums.broken(connection, log.name, min(row[0] for row in found))
+        for entry in [row[0] for row in found if row[0] in broken]:
+            raise _damaged_entry(entry)
+    return tuple(_change(log, row) for row in found)
+
+
+def _damaged_entry(entry: object) -> StoreError:
+    return StoreError(
+        f"entry {entry} of the history of offsets is damaged; the offsets themselves are looked at by their "
+        "own sums. Restore a backup for the history"
+    )
 
 
 def _change(log: _Log, row: Sequence[Any]) -> Change:
@@ -410,10 +431,7 @@ def _change(log: _Log, row: Sequence[Any]) -> Change:
         old, new = _side(kind, both[:half]), _side(kind, both[half:])
         return Change(i, step, undoes, at, Kind(kind), number, old, new, why, who)
     except (ValueError, TypeError, OverflowError) as error:
-        raise StoreError(
-            f"entry {i} of the history of offsets is damaged; the offsets themselves are looked at by their "
-            "own sums. Restore a backup for the history"
-        ) from error
+        raise _damaged_entry(i) from error
 
 
 def _side(kind: str, values: list[Value | None]) -> Row | None:

@@ -38,9 +38,13 @@ class People(NamedTuple):
 
 def people(connection: sqlite3.Connection) -> People:
     """All of them, the highest level first."""
-    broken = row_sums.broken(connection, "people")
-    rows = connection.execute("SELECT name, level, salt, hash FROM people ORDER BY level DESC, name")
-    return People(tuple(PersonRow(*row) for row in rows if row[0] not in broken), bool(broken))
+    rows = [
+        PersonRow(str(name), level, salt, hashed)
+        for name, (_, level, salt, hashed) in row_sums.whole_rows(connection, "people").items()
+        if isinstance(level, int) and isinstance(salt, bytes) and isinstance(hashed, bytes)
+    ]
+    damaged = bool(row_sums.broken(connection, "people"))
+    return People(tuple(sorted(rows, key=lambda row: (-row.level, row.name))), damaged)
 
 
 def check_person(name: str) -> str:

@@ -105,10 +105,12 @@ def _is_whole(text: object, digest: object) -> bool:
 
 def parts(connection: sqlite3.Connection, program: str) -> int:
     """Parts made since the count was last put to nought; a count that is not as it was saved is none."""
-    if not row_sums.is_whole(connection, "part_counts", program):
-        return 0
-    row = connection.execute("SELECT count FROM part_counts WHERE program = ?", (program,)).fetchone()
-    return int(row[0]) if row else 0
+    row = row_sums.whole_row(connection, "part_counts", program)
+    return _count(row[1]) if row else 0
+
+
+def _count(value: row_sums.Value) -> int:
+    return value if isinstance(value, int) else 0
 
 
 def add_parts(connection: sqlite3.Connection, program: str, by: int, last: str) -> None:
@@ -127,15 +129,17 @@ def reset_parts(connection: sqlite3.Connection, program: str) -> None:
 
 
 def all_of(connection: sqlite3.Connection) -> tuple[RunRow, ...]:
-    """Every program that was run, proved or counted, by name."""
-    rows = connection.execute(
-        "SELECT names.program, coalesce(count, 0), started, coalesce(outcome, ''), coalesce(cycles, 0),"
-        " best, latest, proved, coalesce(proof, ''), planned"
-        " FROM (SELECT program FROM runs UNION SELECT program FROM part_counts) AS names"
-        " LEFT JOIN runs ON runs.program = names.program"
-        " LEFT JOIN part_counts ON part_counts.program = names.program ORDER BY names.program"
+    """Every program that was run, proved or counted, by name; of what is not as it was saved nothing."""
+    runs = row_sums.whole_rows(connection, "runs")
+    counts = row_sums.whole_rows(connection, "part_counts")
+    return tuple(
+        _run(str(name), runs.get(name), counts.get(name)) for name in sorted(runs.keys() | counts.keys())
     )
-    return tuple(RunRow(*row) for row in rows)
+
+
+def _run(program: str, run: row_sums.Row | None, count: row_sums.Row | None) -> RunRow:
+    parts = _count(count[1]) if count else 0
+    return RunRow._make((program, parts, *row_sums.readable(run[1:]))) if run else RunRow(program, parts)
 
 
 def started(connection: sqlite3.Connection, program: str, at: str) -> None:

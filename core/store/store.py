@@ -62,7 +62,9 @@ class Store:
         self._reader = opened.reader
         self._reading = threading.Lock()
         self._opened = opened
-        self.repaired = _repaired(opened.writer) if opened.writer else ()  # what was damaged, in sentences
+        self.repaired = (
+            _repaired(opened.writer, opened.mended) if opened.writer else ()
+        )  # what was damaged, in sentences
         self._writer = _writer(opened.writer, opened.path) if opened.writer else None
 
     @classmethod
@@ -417,15 +419,15 @@ def _writer(connection: sqlite3.Connection, path: Path) -> StoreWriter:
     return StoreWriter(connection, path)
 
 
-def _repaired(connection: sqlite3.Connection) -> tuple[str, ...]:
+def _repaired(connection: sqlite3.Connection, mended: tuple[str, ...]) -> tuple[str, ...]:
     """Damaged rows that the history has put right, noted in the log; a disk that takes nothing waits."""
     try:
         connection.execute("BEGIN IMMEDIATE")
-        told = damaged_rows.repair(connection)
+        told = (*mended, *damaged_rows.repair(connection))
         event_log.log(connection, (EventRow(utc_now(), "warning", text) for text in told))
         connection.execute("COMMIT")
     except sqlite3.Error:
         with suppress(sqlite3.Error):
             connection.rollback()
-        return ()
+        return mended
     return told

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import json
-import tempfile
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
@@ -14,6 +13,7 @@ from core.store.store import Store
 from core.store.store_errors import Cause, StoreError, cause_of, why
 from core.store.store_rows import FIELDS, EventRow, Kind, Row, RunRow, Value, inches
 from core.tool_edges import edge_of, tool_of
+from core.unfinished import unfinished_folder
 
 PROGRAMS, OFFSETS, EVENTS, RUNS = "programs", "offsets.toml", "events.csv", "runs.csv"
 TABLES = {  # of measured parts and of mills: whole tables, mm and seconds as the store has them
@@ -39,8 +39,8 @@ def export(store: Store, folder: Path) -> int:
     try:
         if folder.exists() and any(folder.iterdir()):
             raise StoreError(f"{folder} is not empty; name a new folder for the export")
-        with tempfile.TemporaryDirectory(prefix=f".{folder.name}.", dir=folder.parent) as scratch:
-            unfinished = Path(scratch, folder.name)
+        with unfinished_folder(folder) as scratch:
+            unfinished = scratch / folder.name
             count = _write_all(store, unfinished)
             folder_in_place(unfinished, folder)
     except OSError as error:

@@ -8,5 +8,8 @@ FILE_NAME = "turndesk.db"
 
 
 def has_store(folder: Path) -> bool:
-    """Whether anything was ever stored there."""
-    return (folder / FILE_NAME).exists()
+    """Whether anything was ever stored there; also where this user may not look: reading it tells so."""
+    try:
+        return (folder / FILE_NAME).exists()
+    except PermissionError:
+        return True

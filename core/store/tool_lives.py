@@ -50,7 +50,8 @@ def lives(connection: sqlite3.Connection, kind: Kind = Kind.TOOL) -> dict[int, L
     broken = row_sums.broken(connection, _USE[kind])
     if kind is Kind.MILL_TOOL:
         broken |= row_sums.broken(connection, "mill_tools")
-    return {row[0]: LifeRow(*row)._replace(stops=bool(row[4])) for row in rows if row[0] not in broken}
+    whole = (row for row in rows if isinstance(row[0], int) and row[0] not in broken)
+    return {row[0]: LifeRow(*row)._replace(stops=bool(row[4])) for row in whole}
 
 
 def set_limits(connection: sqlite3.Connection, row: LifeRow) -> None:

@@ -30430,13 +30430,33 @@
     </message>
     <message>
       <location filename="core/store/damaged_rows.py" />
+      <source>%1 is not as it was saved, and is not used</source>
+      <translation>%1 no está como se guardó y no se usa</translation>
+    </message>
+    <message>
+      <location filename="core/store/damaged_rows.py" />
       <source>%1 is not as it was saved, and is not used; %2</source>
       <translation>%1 no está como se guardó, y no se usa; %2</translation>
     </message>
     <message>
       <location filename="core/store/damaged_rows.py" />
+      <source>%1 was damaged in the store, and begins anew</source>
+      <translation>%1 estaba dañado en el almacén y empieza de nuevo</translation>
+    </message>
+    <message>
+      <location filename="core/store/damaged_rows.py" />
+      <source>%1 was damaged in the store, and is measured no more; enter it anew</source>
+      <translation>%1 estaba dañado en el almacén y ya no se mide; introdúzcalo de nuevo</translation>
+    </message>
+    <message>
+      <location filename="core/store/damaged_rows.py" />
       <source>%1 was damaged in the store; it is again as it was entered</source>
       <translation>%1 se dañó en el almacén; vuelve a estar como se introdujo</translation>
+    </message>
+    <message>
+      <location filename="core/store/damaged_rows.py" />
+      <source>%1. Its readings (%2) went with it</source>
+      <translation>%1. Sus lecturas (%2) se fueron con él</translation>
     </message>
     <message>
       <location filename="core/store/damaged_rows.py" />
@@ -30457,6 +30477,11 @@
       <location filename="core/store/damaged_rows.py" />
       <source>enter it anew, or restore a backup</source>
       <translation>introdúzcalo de nuevo, o restaure un respaldo</translation>
+    </message>
+    <message>
+      <location filename="core/store/damaged_rows.py" />
+      <source>the tables are not those that were made</source>
+      <translation>las tablas no son las que se crearon</translation>
     </message>
     <message>
       <location filename="core/store/database.py" />
@@ -30490,8 +30515,28 @@
     </message>
     <message>
       <location filename="core/store/database.py" />
+      <source>%1: its log is damaged, and %2 saved last cannot be read; start turndesk once, which keeps the log beside and goes on with what was there before, or restore a backup</source>
+      <translation>%1: su registro está dañado y no se puede leer %2 al final; inicie turndesk una vez, que guarda el registro al lado y sigue con lo que había antes, o restaure un respaldo</translation>
+    </message>
+    <message>
+      <location filename="core/store/database.py" />
+      <source>an index of the store was damaged; it is made anew from its table, of which nothing is lost</source>
+      <translation>un índice del almacén estaba dañado; se ha rehecho a partir de su tabla, de la que no se ha perdido nada</translation>
+    </message>
+    <message>
+      <location filename="core/store/database.py" />
       <source>malformed database schema</source>
       <translation>esquema de la base de datos dañado</translation>
+    </message>
+    <message>
+      <location filename="core/store/database.py" />
+      <source>the %1 changes</source>
+      <translation>los %1 cambios guardados</translation>
+    </message>
+    <message>
+      <location filename="core/store/database.py" />
+      <source>the change</source>
+      <translation>el cambio guardado</translation>
     </message>
     <message>
       <location filename="core/store/database.py" />
@@ -30507,6 +30552,11 @@
       <location filename="core/store/database.py" />
       <source>the store in %1 is in use by another TurnDesk%2; close that one, or enter it there</source>
       <translation>otro TurnDesk%2 usa el almacén en %1; ciérrelo, o hágalo allá</translation>
+    </message>
+    <message>
+      <location filename="core/store/database.py" />
+      <source>the store's log was damaged: %1 saved last, before the control ended, went with it. Look at offsets, counts and settings before a part is made; the log is kept as %2</source>
+      <translation>el registro del almacén estaba dañado: con él se perdió %1 al final, antes de que terminara el control. Revise correctores, contadores y ajustes antes de hacer una pieza; el registro se conserva como %2</translation>
     </message>
     <message>
       <location filename="core/store/event_log.py" />
@@ -30635,6 +30685,11 @@
     </message>
     <message>
       <location filename="core/store/offset_tables.py" />
+      <source>entry %1 of the history of offsets</source>
+      <translation>la entrada %1 del historial de correctores</translation>
+    </message>
+    <message>
+      <location filename="core/store/offset_tables.py" />
       <source>entry %1 of the history of offsets is damaged; the offsets themselves are looked at by their own sums. Restore a backup for the history</source>
       <translation>la entrada %1 del historial de correctores está dañada; los correctores se revisan por sus propias sumas. Restaure una copia para el historial</translation>
     </message>
@@ -30642,6 +30697,11 @@
       <location filename="core/store/offset_tables.py" />
       <source>the PIN of</source>
       <translation>el PIN de</translation>
+    </message>
+    <message>
+      <location filename="core/store/offset_tables.py" />
+      <source>the change of an insert</source>
+      <translation>el cambio de inserto</translation>
     </message>
     <message>
       <location filename="core/store/offset_tables.py" />
@@ -30655,8 +30715,23 @@
     </message>
     <message>
       <location filename="core/store/offset_tables.py" />
+      <source>the measured feature</source>
+      <translation>la medida de pieza</translation>
+    </message>
+    <message>
+      <location filename="core/store/offset_tables.py" />
       <source>the part count of</source>
       <translation>la cuenta de piezas de</translation>
+    </message>
+    <message>
+      <location filename="core/store/offset_tables.py" />
+      <source>the reading</source>
+      <translation>la lectura</translation>
+    </message>
+    <message>
+      <location filename="core/store/offset_tables.py" />
+      <source>the record of</source>
+      <translation>el historial de</translation>
     </message>
     <message>
       <location filename="core/store/offset_tables.py" />

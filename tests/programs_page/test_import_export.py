@@ -82,7 +82,7 @@ def test_a_copy_that_does_not_read_back_is_no_copy(tmp_path: Path, monkeypatch: 
     stick = tmp_path / "stick"
     stick.mkdir()
     real = Path.read_bytes
-    monkeypatch.setattr(Path, "read_bytes", lambda path: b"" if ".part" in str(path) else real(path))
+    monkeypatch.setattr(Path, "read_bytes", lambda path: b"" if ".unfinished" in str(path) else real(path))
     with pytest.raises(FileError, match="DOES NOT READ BACK"):
         export_programs(sources, stick, replace=False)
     assert list(stick.iterdir()) == []

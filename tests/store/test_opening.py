@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import os
 import sqlite3
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from hashlib import sha256
 from pathlib import Path
 
 import pytest
 
-from core.store import database
+from core.store import backup, database
 from core.store.store import Store, StoreError
 from core.store.store_file import FILE_NAME
 from core.store.store_rows import ToolRow
@@ -212,3 +214,33 @@ def test_older_store_is_brought_up_and_kept_beside(closed: Path, monkeypatch: py
     assert database.check_file(closed, thorough=True) == len(newer)
     kept = closed.with_name(f"turndesk-version-{len(newer) - 1}.db")
     assert database.check_file(kept, thorough=True) == len(newer) - 1
+
+
+@contextmanager
+def as_nobody() -> Iterator[None]:
+    """A user without rights here; only root can become one."""
+    if os.geteuid() != 0:
+        pytest.skip("only root can be somebody else for a while")
+    os.seteuid(65534)
+    try:
+        yield
+    finally:
+        os.seteuid(0)
+
+
+def test_a_folder_that_this_user_may_not_look_into_is_told(closed: Path) -> None:
+    """Not a traceback, and not that there is no store."""
+    folder = closed.parent
+    folder.chmod(0o700)
+    backup.all_problems(closed)  # whatever is imported late is there
+    tried: list[Callable[[], object]] = [
+        lambda: Store.open(folder, read_only=True),
+        lambda: Store.open(folder),
+        lambda: backup.all_problems(closed),
+        lambda: backup.backup(folder, folder / "b.db"),
+        lambda: backup.restore(folder, folder / "b.db"),
+    ]
+    with as_nobody():
+        for what in tried:
+            with pytest.raises(StoreError, match=r"its rights|space and rights|folder of yours"):
+                what()

@@ -237,7 +237,9 @@ def test_what_is_saved_between_a_row_and_its_sum_damages_nothing(
     with Store.open(kept) as store:
         sums = row_sums._sums
 
-        def saved_meanwhile(connection: sqlite3.Connection, table: str) -> dict[row_sums.Key, str]:
+        def saved_meanwhile(
+            connection: sqlite3.Connection, table: str, since: int | None
+        ) -> dict[row_sums.Key, str]:
             monkeypatch.setattr(row_sums, "_sums", sums)
             store.set_tool(3, "worn", wear_x=-0.01).result()
             return sums(connection, table)

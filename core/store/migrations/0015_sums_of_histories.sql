@@ -1,0 +1,2 @@
+-- Entries of the histories, readings, runs and measured features get a sum too, and so do the tables as they are
+-- made. The sums are made when this version is brought in; no table changes.

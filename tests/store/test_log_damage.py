@@ -1,0 +1,128 @@
+"""The log that a kill or a power cut leaves: what SQLite passes over in it without a word is told."""
+
+from __future__ import annotations
+
+import shutil
+import struct
+from pathlib import Path
+
+import pytest
+
+from core.store import backup, database
+from core.store.store import Store
+from core.store.store_errors import StoreError
+from core.store.store_file import FILE_NAME
+
+LOG = f"{FILE_NAME}-wal"
+FRAME = 24 + 4096
+
+
+@pytest.fixture
+def killed(tmp_path: Path) -> Path:
+    """As it is found behind a kill: a whole store, and four wears that stand in the log alone."""
+    home, found = tmp_path / "home", tmp_path / "found"
+    with Store.open(home) as store:
+        store.set_tool(3, "touched", x=-12.7, z=-2.5).result()
+    with Store.open(home) as store:
+        for number in range(1, 5):
+            store.set_tool(3, "worn", wear_x=-0.01 * number).result()
+        found.mkdir()
+        for name in (FILE_NAME, LOG):
+            shutil.copy(home / name, found)
+    return found
+
+
+def flip(found: Path, at: int) -> None:
+    content = bytearray((found / LOG).read_bytes())
+    content[at] ^= 1
+    (found / LOG).write_bytes(content)
+
+
+def commits(found: Path) -> list[int]:
+    """Where the entries stand that end a change."""
+    content = (found / LOG).read_bytes()
+    places = range(32, len(content), FRAME)
+    return [at for at in places if struct.unpack_from(">I", content, at + 4)[0]]
+
+
+def left_beside(found: Path) -> list[str]:
+    return [path.name for path in found.iterdir() if "damaged-log" in path.name]
+
+
+def test_a_whole_log_is_read_to_its_end(killed: Path) -> None:
+    assert len(commits(killed)) == 4
+    assert backup.problems(killed / FILE_NAME) == ()
+    with Store.open(killed) as store:
+        assert (store.tools()[3].wear_x, store.repaired) == (-0.04, ())
+    assert left_beside(killed) == []
+
+
+def test_a_change_that_was_not_finished_is_no_damage(killed: Path, tmp_path: Path) -> None:
+    """Nobody was told that it is kept: cut off at any byte before the entry that ends it is complete."""
+    whole, last = (killed / LOG).read_bytes(), commits(killed)[-1]
+    for end in (last + FRAME - 1, last + 24, last + 3, last, last - 1, last - FRAME + 7):
+        there = tmp_path / str(end)
+        shutil.copytree(killed, there)
+        (there / LOG).write_bytes(whole[:end])
+        with Store.open(there) as store:
+            assert (store.tools()[3].wear_x, store.repaired) == (-0.03, ())
+
+
+@pytest.mark.parametrize("at", [0, 5, 12, 17, 21, 25, 31, 32 + 9, 32 + 13, 32 + 17, 32 + 24, 32 + 3000])
+def test_a_bit_of_the_log_takes_nothing_back_unsaid(killed: Path, at: int) -> None:
+    """SQLite alone goes back to the offset of before, and calls the store whole."""
+    flip(killed, at)
+    content = (killed / LOG).read_bytes()
+    with pytest.raises(StoreError, match=r"its log is damaged, and the 4 changes saved last cannot be read"):
+        backup.problems(killed / FILE_NAME)
+    with pytest.raises(StoreError, match="start turndesk once"):
+        Store.open(killed, read_only=True)
+    with Store.open(killed) as store:
+        [told] = store.repaired
+        assert store.tools()[3].wear_x == 0.0
+        assert store.events()[0].text == told
+    assert "the 4 changes saved last, before the control ended, went with it" in told
+    [kept] = left_beside(killed)
+    assert kept in told
+    assert (killed / kept).read_bytes() == content
+
+
+def test_the_last_change_alone_is_missed_too(killed: Path) -> None:
+    flip(killed, commits(killed)[-1] + 24 + 100)
+    with Store.open(killed) as store:
+        assert "the change saved last" in store.repaired[0]
+        assert store.tools()[3].wear_x == -0.03
+
+
+def test_it_is_told_once(killed: Path) -> None:
+    flip(killed, 32 + 3000)
+    with Store.open(killed) as store:
+        store.set_tool(3, "worn", wear_x=-0.05).result()
+    with Store.open(killed) as store:
+        assert (store.repaired, store.tools()[3].wear_x) == ((), -0.05)
+    assert backup.problems(killed / FILE_NAME) == ()
+    assert len(left_beside(killed)) == 1
+
+
+def test_whoever_reads_beside_a_desk_that_runs_is_not_kept_from_it(killed: Path) -> None:
+    """What its log holds is that desk's; a change that is just being written is no damage."""
+    with Store.open(killed) as store:
+        store.set_tool(3, "worn", wear_x=-0.05).result()
+        log = bytearray((killed / LOG).read_bytes())
+        torn = struct.pack(">II", 2, 9) + bytes(log[16:24]) + bytes(FRAME - 16)
+        with (killed / LOG).open("ab") as file:
+            file.write(torn)
+        assert database.in_use(killed)
+        with Store.open(killed, read_only=True) as beside:
+            assert beside.tools()[3].wear_x == -0.05
+    assert not database.in_use(killed)
+
+
+def test_an_entry_of_an_earlier_round_is_not_missed(killed: Path) -> None:
+    """SQLite begins at the front again, and what stood there behind it stays: with other salts."""
+    content = bytearray((killed / LOG).read_bytes())
+    old = bytearray(content[32 : 32 + FRAME])
+    old[8:16] = bytes(8)
+    (killed / LOG).write_bytes(content + old)
+    with Store.open(killed) as store:
+        assert (store.tools()[3].wear_x, store.repaired) == (-0.04, ())

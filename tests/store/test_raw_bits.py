@@ -1,0 +1,222 @@
+"""Bits that a disk flips in indexes, histories, records of runs, measured parts and the tables as made."""
+
+from __future__ import annotations
+
+import sqlite3
+from contextlib import closing
+from functools import partial
+from pathlib import Path
+
+import pytest
+
+from core.store import backup, database, job_queue, measured_parts, row_sums
+from core.store.measured_parts import FeatureRow, ReadingRow
+from core.store.store import Store
+from core.store.store_errors import StoreError
+from core.store.store_file import FILE_NAME
+from core.store.store_rows import Kind, RunRow, ToolRow
+
+PIN = FeatureRow(0, "pin.nc", "OD", "diameter", 12.0, -0.01, 0.02, "tool", 3, 1, 5, 3)
+
+
+@pytest.fixture
+def kept(folder: Path) -> Path:
+    """T3 with a wear, a setting, a count, a run, a job under way, a feature with two readings."""
+    with Store.open(folder) as store:
+        store.set_tool(3, "touched", x=-12.7, z=-2.5, remark="FINISHER").result()
+        store.set_tool(3, "worn", wear_x=-0.02).result()
+        store.set_setting("units", "metric").result()
+        store.correct_parts("pin.nc", 40).result()
+        store.cycle_finished("pin.nc", 33.25).result()
+        job = store.write(lambda c: job_queue.add(c, "pin.nc", 500)).result()
+        store.write(lambda c: job_queue.begin(c, job)).result()
+        feature = store.write(lambda c: measured_parts.save_feature(c, PIN)).result()
+        for value in (12.001, 12.004):
+            reading = ReadingRow(0, feature, 3, value, "mm", "", "typed", "")
+            store.write(partial(measured_parts.add_reading, row=reading)).result()
+    return folder
+
+
+def spoil(folder: Path, statement: str, *values: object) -> None:
+    with closing(sqlite3.connect(folder / FILE_NAME)) as connection:
+        connection.execute("PRAGMA ignore_check_constraints = ON")
+        connection.execute(statement, values)
+        connection.commit()
+
+
+def spoil_page(folder: Path, root: str, before: bytes, after: bytes) -> None:
+    """In the page where a table or an index begins, as a disk does it."""
+    path = folder / FILE_NAME
+    with closing(sqlite3.connect(path)) as connection:
+        (page,) = connection.execute("SELECT rootpage FROM sqlite_master WHERE name = ?", (root,)).fetchone()
+    content = bytearray(path.read_bytes())
+    at = content.index(before, (page - 1) * 4096, page * 4096)
+    content[at : at + len(before)] = after
+    path.write_bytes(content)
+
+
+# --- indexes -----------------------------------------------------------------------------------------------
+
+
+def test_an_index_that_is_damaged_hides_nothing_and_is_made_anew(kept: Path) -> None:
+    spoil_page(kept, "sqlite_autoindex_settings_1", b"units", b"unitr")
+    spoil_page(kept, "sqlite_autoindex_part_counts_1", b"pin.nc", b"pin.nb")
+    assert "missing from index" in backup.problems(kept / FILE_NAME)[0]
+    with Store.open(kept, read_only=True) as store:
+        assert (store.setting("units"), store.parts("pin.nc")) == ("metric", 40)
+    with Store.open(kept) as store:
+        [told] = store.repaired
+        assert "index of the store was damaged; it is made anew" in told
+        assert store.events()[0].text == told
+        store.count_part("pin.nc").result()
+        assert (store.setting("units"), store.parts("pin.nc"), store.damaged()) == ("metric", 41, ())
+    assert backup.all_problems(kept / FILE_NAME) == ()
+
+
+def test_an_index_over_two_rows_of_one_key_is_a_damaged_file(kept: Path) -> None:
+    spoil_page(kept, "settings", b"units", b"unitz")
+    spoil_page(kept, "sqlite_autoindex_settings_1", b"units", b"unitq")
+    spoil(kept, "INSERT INTO settings VALUES ('unitz', '1')")
+    with pytest.raises(StoreError, match="is damaged"):
+        Store.open(kept)
+
+
+# --- what an undo takes its figures from -------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "damage",
+    [
+        "old_x = -25.4",
+        "old_z = -5",
+        "new_wear_x = -0.04",
+        "who = 'OPERATOS'",
+        "kind = 'secondary'",
+        "step = 1",
+        "undoes = 1",
+        "number = 4",
+    ],
+)
+def test_an_entry_of_the_history_that_was_flipped_undoes_nothing(kept: Path, damage: str) -> None:
+    spoil(kept, f"UPDATE offset_changes SET {damage} WHERE id = 2")
+    assert backup.problems(kept / FILE_NAME) == ()
+    [told] = backup.all_problems(kept / FILE_NAME)
+    assert told == "entry 2 of the history of offsets is not as it was saved, and is not used"
+    with Store.open(kept) as store:
+        with pytest.raises(StoreError, match="entry 2 of the history of offsets is damaged"):
+            store.undo_offset(kind=Kind.TOOL).result()
+        assert store.tools() == {3: ToolRow(x=-12.7, z=-2.5, wear_x=-0.02, remark="FINISHER")}
+
+
+def test_an_entry_that_has_gone_is_missed(kept: Path) -> None:
+    spoil(kept, "DELETE FROM offset_changes WHERE id = 2")
+    assert "entry 2 of the history of offsets" in backup.all_problems(kept / FILE_NAME)[0]
+    with Store.open(kept) as store, pytest.raises(StoreError, match="entry 2 of the history"):
+        store.undo_offset(kind=Kind.TOOL).result()
+
+
+def test_behind_a_damaged_entry_there_is_a_history_again(kept: Path, tmp_path: Path) -> None:
+    spoil(kept, "UPDATE offset_changes SET old_x = -25.4 WHERE id = 2")
+    with Store.open(kept) as store:
+        store.set_tool(3, "worn", wear_x=-0.03).result()
+        assert [row.new for row in store.undo_offset(kind=Kind.TOOL).result()] == [
+            ToolRow(x=-12.7, z=-2.5, wear_x=-0.02, remark="FINISHER")
+        ]
+        assert [row.id for row in store.history(Kind.TOOL, limit=2)] == [4, 3]
+        with pytest.raises(StoreError, match="entry 2 of the history"):
+            store.history(Kind.TOOL)
+        backup.backup(kept, tmp_path / "still.db")  # it makes no backup worthless
+    assert backup.problems(tmp_path / "still.db") == ()
+
+
+# --- counts of runs, features, readings --------------------------------------------------------------------
+
+
+def test_a_count_that_is_not_believed_is_shown_nowhere(kept: Path) -> None:
+    spoil(kept, "UPDATE part_counts SET count = 168")
+    with Store.open(kept) as store:
+        assert [(row.program, row.parts, row.cycles) for row in store.runs()] == [("pin.nc", 0, 1)]
+        assert store.parts("pin.nc") == 0
+        [told] = store.damaged()
+    assert told.startswith("the part count of pin.nc is not as it was saved")
+
+
+def test_a_record_of_runs_that_was_flipped_begins_anew(kept: Path) -> None:
+    spoil(kept, "UPDATE runs SET best = 1.25")
+    with Store.open(kept, read_only=True) as store:
+        assert store.runs() == (RunRow("pin.nc", 40),)
+    with Store.open(kept) as store:
+        assert store.repaired == ("the record of pin.nc was damaged in the store, and begins anew",)
+        store.cycle_finished("pin.nc", 34.0).result()
+        assert [(row.cycles, row.best) for row in store.runs()] == [(1, 34.0)]
+    assert backup.all_problems(kept / FILE_NAME) == ()
+
+
+@pytest.mark.parametrize(
+    ("damage", "readings"),
+    [("nominal = 12.5", 2), ("grows = -1", 2), ("number = 19", 2), ("grows = 7", 0), ("nominal = 'x'", 0)],
+)
+def test_a_feature_that_was_flipped_proposes_no_wear(kept: Path, damage: str, readings: int) -> None:
+    spoil(kept, f"UPDATE part_features SET {damage}")
+    assert backup.problems(kept / FILE_NAME)
+    with Store.open(kept) as store:
+        [told] = store.repaired
+        assert told.startswith(
+            "the measured feature pin.nc OD was damaged in the store, and is measured no more; enter it anew"
+        )
+        with store.read() as connection:
+            assert measured_parts.features(connection) == ()
+        again = store.write(lambda c: measured_parts.save_feature(c, PIN)).result()
+        with store.read() as connection:
+            assert [row.id for row in measured_parts.features(connection)] == [again]
+            assert len(measured_parts.readings_between(connection, "0", "9")) == readings
+    assert backup.all_problems(kept / FILE_NAME) == ()
+
+
+def test_a_reading_that_was_flipped_counts_no_more(kept: Path) -> None:
+    spoil(kept, "UPDATE part_readings SET value = 12.104 WHERE id = 2")
+    with Store.open(kept) as store, store.read() as connection:
+        assert [row.value for row in measured_parts.readings(connection, "pin.nc", 9)] == [12.001]
+        assert len(measured_parts.readings_between(connection, "0", "9")) == 1
+    assert backup.all_problems(kept / FILE_NAME) == ("the reading 2 is not as it was saved, and is not used",)
+
+
+def test_a_text_whose_type_was_flipped_is_none(kept: Path) -> None:
+    spoil(kept, "UPDATE tool_offsets SET remark = CAST(remark AS BLOB)")
+    spoil(kept, "UPDATE settings SET value = CAST(value AS BLOB)")
+    with Store.open(kept, read_only=True) as store:
+        assert (store.tools(), store.setting("units")) == ({}, None)
+    with Store.open(kept) as store:
+        assert store.tools()[3].remark == "FINISHER"
+        assert [text.split(" is ")[0] for text in store.damaged()] == ["the setting units"]
+
+
+# --- tables as they are made, and stores of before ---------------------------------------------------------
+
+
+def test_a_usual_value_of_a_column_that_was_flipped_is_told(kept: Path) -> None:
+    content = (kept / FILE_NAME).read_bytes()
+    assert content.count(b"DEFAULT 0.9 ") == 1
+    (kept / FILE_NAME).write_bytes(content.replace(b"DEFAULT 0.9 ", b"DEFAULT 0.1 "))
+    assert backup.all_problems(kept / FILE_NAME) == ("the tables are not those that were made",)
+
+
+def test_a_store_of_before_gets_sums_for_its_histories(kept: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What was damaged before stays so, and what had no sum yet is believed as it is."""
+    with closing(sqlite3.connect(kept / FILE_NAME)) as connection:
+        later = [table for table in row_sums.SUMMED if table not in row_sums.sealed_before(14)]
+        for table in (*later, "sqlite_master"):
+            connection.execute("DELETE FROM row_sums WHERE tbl = ?", (table,))
+        connection.execute("PRAGMA user_version = 14")
+        connection.commit()
+    spoil(kept, "UPDATE part_counts SET count = 168")
+    spoil(kept, "UPDATE runs SET best = 1.25")
+    with Store.open(kept) as store:
+        assert store.repaired == ()
+        assert [text.split(" is ")[0] for text in store.damaged()] == ["the part count of pin.nc"]
+        assert [row.best for row in store.runs()] == [1.25]
+        assert len(store.history(Kind.TOOL)) == 2
+    spoil(kept, "UPDATE offset_changes SET old_x = 7 WHERE id = 2")
+    spoil(kept, "UPDATE part_counts SET count = 40")
+    assert len(backup.all_problems(kept / FILE_NAME)) == 1
+    assert database.check_file(kept / FILE_NAME, thorough=True) == len(database.migrations())

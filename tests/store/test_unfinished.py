@@ -1,0 +1,114 @@
+"""What a kill leaves of a save: gone when the next one writes there, and never what is being written."""
+
+from __future__ import annotations
+
+import shutil
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from app.programs.whole_file import write_new, write_whole
+from core.store import backup
+from core.store.store import Store, StoreError
+from core.store.store_export import export
+from core.unfinished import forget_killed, unfinished_file, unfinished_folder
+
+_KILLED = """
+import os, signal, sys
+from pathlib import Path
+from core.unfinished import {how}
+with {how}(Path(sys.argv[1])) as place:
+    (place / "half.nc" if place.is_dir() else place).write_bytes(b"half")
+    if not place.is_dir():
+        place.with_name(place.name + "-journal").write_bytes(b"SQLite's")
+    os.kill(os.getpid(), signal.SIGKILL)
+"""
+
+
+def killed(how: str, target: Path) -> None:
+    """A process of its own is killed in the middle of a save."""
+    ended = subprocess.run([sys.executable, "-c", _KILLED.format(how=how), str(target)], check=False)
+    assert ended.returncode == -signal.SIGKILL
+    assert any(path.name.startswith(f".{target.name}.") for path in target.parent.iterdir())
+
+
+def names(folder: Path) -> list[str]:
+    return sorted(path.name for path in folder.iterdir())
+
+
+def test_a_killed_save_of_a_program_leaves_nothing_for_the_next_one(tmp_path: Path) -> None:
+    killed("unfinished_folder", tmp_path / "pin.nc")
+    killed("unfinished_folder", tmp_path / "bushing.nc")
+    write_whole(tmp_path / "other.nc", b"M30\n")
+    assert names(tmp_path) == ["other.nc"]
+    killed("unfinished_folder", tmp_path / "other.nc")
+    write_new(tmp_path / "new.nc", b"M30\n")
+    assert names(tmp_path) == ["new.nc", "other.nc"]
+
+
+def test_a_killed_backup_leaves_nothing_for_the_next_one(folder: Path, tmp_path: Path) -> None:
+    with Store.open(folder):
+        pass
+    stick = tmp_path / "stick"
+    stick.mkdir()
+    killed("unfinished_file", stick / "monday.db")
+    backup.backup(folder, stick / "tuesday.db")
+    assert names(stick) == ["tuesday.db"]
+
+
+def test_a_killed_restore_leaves_nothing_when_the_desk_opens(folder: Path, tmp_path: Path) -> None:
+    with Store.open(folder):
+        pass
+    killed("unfinished_file", folder / "turndesk.db")
+    killed("unfinished_file", folder / "turndesk-replaced-x.db")
+    with Store.open(folder):
+        assert names(folder)[0] == "turndesk.db"
+        assert not [name for name in names(folder) if "unfinished" in name]
+
+
+def test_a_killed_export_leaves_nothing_for_the_next_one(store: Store, tmp_path: Path) -> None:
+    there = tmp_path / "exports"
+    there.mkdir()
+    killed("unfinished_folder", there / "june")
+    export(store, there / "july")
+    assert names(there) == ["july"]
+
+
+def test_what_another_process_writes_stays(tmp_path: Path) -> None:
+    with unfinished_file(tmp_path / "a.db") as file, unfinished_folder(tmp_path / "b.nc") as folder:
+        file.write_bytes(b"half")
+        file.with_name(f"{file.name}-journal").write_bytes(b"SQLite's")
+        (folder / "b.nc").write_bytes(b"half")
+        forget_killed(tmp_path)
+        assert (file.read_bytes(), (folder / "b.nc").read_bytes()) == (b"half", b"half")
+        assert len(names(tmp_path)) == 3
+        file.with_name(f"{file.name}-journal").unlink()
+    assert names(tmp_path) == []
+
+
+def test_files_of_others_stay(tmp_path: Path) -> None:
+    for name in ("x.unfinished", ".hidden", ".b.new", "pin.nc"):
+        (tmp_path / name).write_bytes(b"theirs")
+    forget_killed(tmp_path)
+    forget_killed(tmp_path / "nowhere")
+    assert names(tmp_path) == [".b.new", ".hidden", "pin.nc", "x.unfinished"]
+
+
+def test_a_restore_that_finds_no_room_leaves_nothing(
+    folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with Store.open(folder):
+        pass
+    backup.backup(folder, tmp_path / "good.db")
+
+    def full(_source: Path, target: Path) -> None:
+        target.write_bytes(b"as far as it went")
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(shutil, "copy2", full)
+    with pytest.raises(StoreError, match="the disk is full"):
+        backup.restore(folder, tmp_path / "good.db")
+    assert names(folder) == ["turndesk.db", "turndesk.lock"]
