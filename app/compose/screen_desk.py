@@ -179,9 +179,15 @@ def _daily_backup(desk: Desk, machine: Machine, journal: Journal) -> Callable[[]
     def still() -> bool:
         return desk.snapshot().state not in UNDER_WAY
 
+    def same_disk() -> None:
+        text = tr("DAILY BACKUPS: {folder} IS ON THE SAME DISK AS WHAT IS KEPT; IS THE OTHER ONE MOUNTED?")
+        journal.hear(Event(desk.snapshot().t, "warning", text.format(folder=folder)))
+
     table = machine.hardware.table(BackupTable) or BackupTable()
     folder = Path(table.folder) if table.folder else data_folder() / BACKUPS
     daily = DailyBackup(folder, table.keep, journal.backup, backup_problems, still, tell)
+    if table.folder:
+        daily.apart, daily.hint = data_folder(), same_disk
     daily.start()
     return daily.close
 

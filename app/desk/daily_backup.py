@@ -1,6 +1,7 @@
 """A backup of all that is kept, once a day: verified, rotated, where the machine file says. No Qt.
 
-It waits for a standstill, but not for longer than half a day.
+It waits for a standstill, but not for longer than half a day. The clock on the wall may be wrong: what is
+dated later than now was made before it was set back, and is older than anything else.
 """
 
 from __future__ import annotations
@@ -8,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from datetime import date, datetime, timedelta
+from functools import partial
 from pathlib import Path
 
 from app.desk.repeating_thread import RepeatingThread
@@ -22,7 +24,11 @@ _FIRST_LOOK, _LOOK = 60.0, 600.0  # s
 
 @dataclass(slots=True)
 class DailyBackup:
-    """``copy`` writes a backup, ``check`` tells what is wrong in one; ``still``: whether nothing runs."""
+    """``copy`` writes a backup, ``check`` tells what is wrong in one; ``still``: whether nothing runs.
+
+    ``apart``: what is backed up, where the machine file names another place; ``hint`` is told when that lies
+    on the same disk.
+    """
 
     folder: Path
     keep: int
@@ -31,6 +37,9 @@ class DailyBackup:
     still: Callable[[], bool]
     tell: Callable[[str], None]
     now: Callable[[], datetime] = datetime.now
+    apart: Path | None = None
+    hint: Callable[[], None] = lambda: None
+    _hinted: bool = False
     _told: tuple[str, date] | None = None
     _thread: RepeatingThread = field(init=False)
 
@@ -60,7 +69,7 @@ class DailyBackup:
 
     def _age(self) -> timedelta | None:
         """Of the newest; None: there is none. A backup of the future, by a clock set back, counts as none."""
-        newest = max(self._there(), key=lambda path: path.name, default=None)
+        newest = max(self._there(), key=partial(_made_at, self._name()), default=None)
         if newest is None:
             return None
         age = self.now() - datetime.fromtimestamp(newest.stat().st_mtime)
@@ -69,21 +78,37 @@ class DailyBackup:
     def _there(self) -> list[Path]:
         return list(self.folder.glob(f"{DAILY}*{ENDING}"))
 
+    def _name(self) -> str:
+        return f"{DAILY}{self.now():%Y-%m-%d-%H%M%S}{ENDING}"
+
     def _made(self) -> Path:
         """Raises OSError or StoreError; what is no good leaves no file, and the older ones stay."""
         self.folder.mkdir(parents=True, exist_ok=True)
-        target = self.folder / f"{DAILY}{self.now():%Y-%m-%d-%H%M%S}{ENDING}"
+        target = self.folder / self._name()
         self.copy(target)
         wrong = self.check(target)
         if wrong:
             target.unlink(missing_ok=True)
             raise StoreError(f"it was written, but {wrong[0]}; look at the disk of {self.folder}")
-        for old in sorted(self._there(), key=lambda path: path.name)[: -self.keep]:
+        for old in sorted(self._there(), key=partial(_made_at, target.name))[: -self.keep]:
             old.unlink(missing_ok=True)
+        self._look_at_the_disk()
         return target
+
+    def _look_at_the_disk(self) -> None:
+        """Say once that another place is none: a disk that is not mounted leaves its folder on this one."""
+        if self.apart is not None and not self._hinted:
+            self._hinted = self.folder.stat().st_dev == self.apart.stat().st_dev
+            if self._hinted:
+                self.hint()
 
     def _trouble(self, why: str) -> None:
         now = why, self.now().date()
         if now != self._told:
             self.tell(f"{self.folder}: {why}")
         self._told = now
+
+
+def _made_at(now: str, path: Path) -> tuple[bool, str]:
+    """The order in which backups were made, by their names and that of one made now."""
+    return path.name <= now, path.name

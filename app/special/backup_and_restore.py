@@ -198,10 +198,15 @@ class BackupAndRestore(SpecialFunction):
     def _done(self, kept: Path | None) -> None:
         self.busy = ""
         self.desk.restoring = False
-        self.restored()
         where = kept.name if kept else "—"
-        self.persistence.note_change(f"restored; what was there before is {where}")
-        self.desk.done(tr("RESTORED; WHAT WAS THERE BEFORE IS KEPT AS {name}").format(name=where))
+        before, who = self.desk.access.people.on, self.desk.access.who
+        self.persistence.note_change(f"restored; what was there before is {where}")  # by whom is known still
+        self.restored()
+        said = tr("RESTORED; WHAT WAS THERE BEFORE IS KEPT AS {name}").format(name=where)
+        if before and not self.desk.access.people.on:
+            self.persistence.note_access("levels are off: nobody is entered in what was restored", who)
+            said = f"{said}; {tr('NOBODY IS ENTERED IN IT: LEVELS ARE OFF')}"
+        self.desk.done(said)
         self.look()
 
     def _failed(self, why: str) -> None:

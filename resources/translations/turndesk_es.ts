@@ -4885,6 +4885,11 @@
     </message>
     <message>
       <location filename="app/compose/screen_desk.py" />
+      <source>DAILY BACKUPS: {folder} IS ON THE SAME DISK AS WHAT IS KEPT; IS THE OTHER ONE MOUNTED?</source>
+      <translation>COPIAS DIARIAS: {folder} ESTÁ EN EL MISMO DISCO QUE LO GUARDADO; ¿ESTÁ MONTADO EL OTRO?</translation>
+    </message>
+    <message>
+      <location filename="app/compose/screen_desk.py" />
       <source>LOOK: {what}</source>
       <translation>MIRE: {what}</translation>
     </message>
@@ -13585,6 +13590,11 @@
     </message>
     <message>
       <location filename="app/special/backup_and_restore.py" />
+      <source>NOBODY IS ENTERED IN IT: LEVELS ARE OFF</source>
+      <translation>NO HAY NADIE DADO DE ALTA EN ÉL: LOS NIVELES ESTÁN DESACTIVADOS</translation>
+    </message>
+    <message>
+      <location filename="app/special/backup_and_restore.py" />
       <source>NOTHING: IT IS DAMAGED</source>
       <translation>NADA: ESTÁ DAÑADA</translation>
     </message>
@@ -13632,6 +13642,11 @@
       <location filename="app/special/backup_and_restore.py" />
       <source>What a restore replaces is kept beside it.</source>
       <translation>Lo que una restauración reemplaza se guarda al lado.</translation>
+    </message>
+    <message>
+      <location filename="app/special/backup_and_restore.py" />
+      <source>levels are off: nobody is entered in what was restored</source>
+      <translation>los niveles están desactivados: no hay nadie dado de alta en lo restaurado</translation>
     </message>
     <message>
       <location filename="app/special/backup_and_restore.py" />

@@ -13,6 +13,7 @@ from app.desk.daily_backup import ENDING, DailyBackup
 from core.store import backup
 from core.store.store import Store
 from core.store.store_errors import StoreError
+from tests.store.disk import small_disk
 
 
 class Days:
@@ -125,3 +126,48 @@ def test_it_ends_with_the_desk(home: Path, tmp_path: Path) -> None:
     daily.start()
     daily.close()
     assert not (tmp_path / "b").exists()  # the first look is a minute later
+
+
+def test_with_an_empty_battery_of_the_clock_the_backup_of_today_stays(home: Path, tmp_path: Path) -> None:
+    """What is dated later than now was made before the clock went back, and goes first."""
+    days, folder = Days(), tmp_path / "b"
+    daily = days.daily(folder, lambda target: backup.backup(home, target))
+    for _ in range(4):
+        daily.look()
+        days.now += timedelta(days=1)
+    days.now = datetime(2000, 1, 1, 6, 0)
+    made = []
+    for _ in range(3 * 24 * 6):
+        made += [path for path in (daily.look(),) if path is not None]
+        days.now += timedelta(minutes=10)
+    assert [path.name for path in made] == names(folder)
+    assert names(folder) == [f"daily-2000-01-0{day}-060000{ENDING}" for day in (1, 2, 3)]
+    days.now = datetime(2026, 11, 27, 6, 0)
+    daily.look()
+    assert names(folder)[-1] == f"daily-2026-11-27-060000{ENDING}"
+    assert len(names(folder)) == 3
+
+
+def test_a_place_that_is_no_other_disk_is_said_once(home: Path, tmp_path: Path) -> None:
+    """A disk that is not mounted leaves its folder on this one: better such a backup than none."""
+    days, hints = Days(), list[str]()
+    daily = days.daily(tmp_path / "mnt" / "nas", lambda target: backup.backup(home, target))
+    daily.apart, daily.hint = home, lambda: hints.append("same disk")
+    for _ in range(3):
+        assert daily.look() is not None
+        days.now += timedelta(days=1)
+    assert hints == ["same disk"]
+
+
+def test_a_place_on_another_disk_is_not_hinted_at(home: Path, tmp_path: Path) -> None:
+    days, hints = Days(), list[str]()
+    with small_disk(tmp_path / "mnt") as disk:
+        daily = days.daily(disk.path / "lathe3", lambda target: backup.backup(home, target))
+        daily.apart, daily.hint = home, lambda: hints.append("same disk")
+        assert daily.look() is not None
+        assert hints == []
+        disk.fill()
+        days.now += timedelta(days=1)
+        assert daily.look() is None
+        assert "the disk is full" in days.told[0]
+        assert len(names(disk.path / "lathe3")) == 1

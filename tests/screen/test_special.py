@@ -13,8 +13,10 @@ from app.screen import page_table
 from app.special.backup_and_restore import BARRED, BackupAndRestore
 from app.special.inputs_outputs import NOT_NOW
 from app.special.special_view import SpecialPage
+from core.access.pins import hashed
 from core.executor.commands import ForceOutput, SetSwitch, SpindleLimit
 from core.executor.snapshot import Alarm, Event, State
+from core.store.people import PersonRow
 from tests.screen.desks import desk_on
 from tests.screen.fake import FakeMachine
 from tests.screen.hands import Hands, Key
@@ -258,6 +260,34 @@ def test_the_list_tells_what_a_backup_is_worth(hands: Hands, journal: Journal) -
     assert "REFUSED" in hands.desk.notice
     assert "is not a database" in hands.desk.notice
     assert store.tools()[3].x == 2.0
+
+
+def test_a_restore_that_switches_levels_off_says_so_and_by_whom(hands: Hands, journal: Journal) -> None:
+    """A backup of the time before levels: who has put it there stands in its log."""
+    page = open_function(hands, 6)
+    hands.sees(lambda: len(page.table.sheet.rows) >= 1)
+    backups = page.model.current
+    assert isinstance(backups, BackupAndRestore)
+    folder = backups.places[0].path
+    folder.mkdir(parents=True, exist_ok=True)
+    journal.backup(folder / "2026-11-23-before.turndesk.db")
+    journal.keep_person(PersonRow("ANNA", 3, *hashed("4711")))
+    access = hands.desk.access
+    access.reload()
+    hands.key(Key.Key_F4)
+    hands.sees(lambda: [row.cells[1] for row in page.table.sheet.rows[1:2]] == ["RESTORE: IT IS WHOLE"])
+    hands.key(Key.Key_Down)
+    hands.key(Key.Key_Return)
+    assert "SERVICE LEVEL IS NEEDED" in hands.desk.notice
+    access.sign_in(access.people.rows[0], "4711")
+    hands.sees(lambda: access.name == "ANNA")
+    hands.key(Key.Key_Return)
+    yes(hands.window)
+    hands.sees(lambda: "LEVELS ARE OFF" in hands.desk.notice)
+    hands.sees(lambda: len(journal.opened().events(kinds={"access"})) > 0)
+    told = {(row.text, row.who) for row in journal.opened().events(kinds={"access", "change"})}
+    assert ("levels are off: nobody is entered in what was restored", "ANNA") in told
+    assert any(text.startswith("restored; ") and who == "ANNA" for text, who in told)
 
 
 def test_nothing_is_restored_under_way(hands: Hands) -> None:
