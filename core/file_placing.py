@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import os
+import sys
 from contextlib import suppress
 from pathlib import Path
 
@@ -16,7 +17,7 @@ def put_in_place(finished: Path, path: Path) -> None:
     """
     if path.exists() and not path.is_file() and not path.is_dir():
         raise OSError(errno.EINVAL, "it is a device or a pipe, not a file", str(path))
-    _bytes_to_disk(finished)
+    bytes_to_disk(finished)
     finished.replace(path)
     folder_to_disk(path.parent)
 
@@ -43,7 +44,7 @@ def folder_in_place(finished: Path, folder: Path) -> None:
         if inside.is_dir():
             folder_to_disk(inside)
         else:
-            _bytes_to_disk(inside)
+            bytes_to_disk(inside)
     finished.replace(folder)
     folder_to_disk(folder.parent)
 
@@ -59,7 +60,7 @@ def make_folder(folder: Path) -> None:
 
 def folder_to_disk(folder: Path) -> None:
     """The names in a folder are on the disk. Raises OSError."""
-    if os.name != "posix":
+    if sys.platform == "win32":
         return  # Windows opens no folders; its own journal keeps the names
     handle = os.open(folder, os.O_RDONLY)
     try:
@@ -68,6 +69,14 @@ def folder_to_disk(folder: Path) -> None:
         os.close(handle)
 
 
-def _bytes_to_disk(path: Path) -> None:
-    with path.open("rb") as file:
+def all_to_disk() -> None:
+    """Everything that was written anywhere, where the system can be asked for that; Windows cannot."""
+    if hasattr(os, "sync"):
+        os.sync()
+
+
+def bytes_to_disk(path: Path) -> None:
+    """What is in a file is on the disk. Raises OSError."""
+    # Windows brings to the disk only what is open for writing; elsewhere a file may be read-only.
+    with path.open("r+b" if sys.platform == "win32" else "rb") as file:
         os.fsync(file.fileno())

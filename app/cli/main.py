@@ -6,6 +6,7 @@ import argparse
 import errno
 import gc
 import importlib
+import io
 import os
 import sys
 import threading
@@ -83,6 +84,11 @@ def main(argv: Sequence[str] | None = None) -> int:
     except (CommandError, DataFolderError) as error:
         sys.stderr.write(f"turndesk: {error}\n")
         return EXIT_USAGE
+    except ImportError as error:
+        if not _library_missing(error):
+            raise
+        sys.stderr.write(f"turndesk: {error}; install the system packages that README.md names\n")
+        return EXIT_USAGE
     except KeyboardInterrupt:
         sys.stderr.write("turndesk: interrupted\n")
         _forget_interrupt()
@@ -97,6 +103,11 @@ def main(argv: Sequence[str] | None = None) -> int:
         sys.stderr.write(f"turndesk: stdout cannot be written: {error.strerror}\n")
         _write_no_more()
         return EXIT_USAGE
+
+
+def _library_missing(error: ImportError) -> bool:
+    """Whether it is one of the system's, such as Qt needs: a file with ``.so`` in its name."""
+    return ".so" in str(error) and "cannot open shared object file" in str(error)
 
 
 def _flushed(status: int) -> int:
@@ -156,8 +167,23 @@ def _screen(args: argparse.Namespace) -> int:
     return run_screen(machine=args.machine, program=program, offsets=args.offsets, kiosk=args.kiosk)
 
 
+def _streams_for_any_text() -> None:
+    """A sign that a terminal or a pipe has not, such as an arrow in Windows' 8-bit code, is a question mark.
+
+    Whoever starts us may have closed one of them: what nobody reads then goes nowhere.
+    """
+    if sys.stdout is None:
+        sys.stdout = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115  for as long as the process lives
+    if sys.stderr is None:
+        sys.stderr = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="replace")
+
+
 def console() -> int:
     """The installed ``turndesk``: the command line, and no traceback in front of an operator."""
+    _streams_for_any_text()
     sys.excepthook = report_crash
     threading.excepthook = report_thread
     # numpy starts a pool of threads for algebra that nobody here does: a fifth of a short command.

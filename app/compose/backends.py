@@ -5,13 +5,13 @@ Feeder and pendant are loaded by the machines that have them: everybody waits fo
 
 from __future__ import annotations
 
-import os
+import sys
 
 from app.compose.backend_entry import Connected, backend_of, has_inverter, played
 from core.machine.machine_model import Machine
 from core.ports import Clock
 
-FEEDER = os.name == "posix"  # elsewhere a simulated machine lives in the control's own process
+FEEDER = sys.platform != "win32"  # elsewhere a simulated machine lives in the control's own process
 PENDANT = "pendant"  # its table
 
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import errno
 import logging
-import os
 import socket
+import sys
 import threading
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
@@ -75,7 +75,7 @@ def listening_at(bind: str, port: int) -> socket.socket:
     except OSError as error:
         raise DriverError(_why(bind, port, error)) from error
     try:
-        if os.name == "posix":  # elsewhere it lets two programs listen at one port
+        if sys.platform != "win32":  # elsewhere it lets two programs listen at one port
             found.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         found.bind(address)
         found.listen(_WAITING)

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
-from core.file_placing import folder_to_disk, make_folder, put_in_place
+from core.file_placing import all_to_disk, folder_to_disk, make_folder, put_in_place
 from core.language.source import SourceError, load_source
 from core.unfinished import unfinished_folder
 
@@ -77,7 +77,7 @@ def settle(folder: Path) -> None:
         folder_to_disk(folder)
     except OSError as error:
         raise FileError(f"{folder} CANNOT BE BROUGHT TO THE DISK: {error.strerror}") from error
-    os.sync()
+    all_to_disk()
 
 
 def present(path: Path) -> bytes | None:

@@ -6,6 +6,7 @@ All of it is a worker's; a full disk and a file that is none are told in a sente
 from __future__ import annotations
 
 import os
+import shutil
 import time
 from collections.abc import Callable
 from contextlib import suppress
@@ -126,8 +127,7 @@ class RecordShelf:
 
         def carefully() -> None:
             self.folder.mkdir(parents=True, exist_ok=True)
-            told = os.statvfs(self.folder)
-            if told.f_bavail * told.f_frsize < _ROOM:
+            if shutil.disk_usage(self.folder).free < _ROOM:
                 raise ShelfError(f"{path.name} IS NOT WRITTEN: THE DISK IS FULL; DELETE RECORDS OR PROGRAMS")
             write()
 

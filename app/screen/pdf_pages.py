@@ -6,7 +6,6 @@ other. Works without a display, and on any thread once there is an application.
 
 from __future__ import annotations
 
-import os
 import re
 import sys
 from pathlib import Path
@@ -33,6 +32,7 @@ from PySide6.QtWidgets import QApplication
 from app.report.page_style import DRAWINGS, PAPER
 from app.report.pdf_file import Paper
 from app.screen.look import FAMILY, load_fonts
+from core.file_placing import bytes_to_disk
 
 _DPI = 96  # of the pixels that drawings and letters are measured in
 _FINE = 1200  # of the PDF
@@ -115,8 +115,7 @@ class PdfPages:
         self._file.close()
         if not whole:
             raise OSError(0, why, str(self._path))
-        with self._path.open("rb") as file:
-            os.fsync(file.fileno())
+        bytes_to_disk(self._path)
 
     def give_up(self) -> None:
         """Leave it as it is: nobody will read it."""

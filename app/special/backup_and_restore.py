@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime
@@ -22,6 +21,7 @@ from app.programs.whole_file import FileError
 from app.special.special_functions import SpecialFunction
 from core.access.access_table import Act
 from core.executor.snapshot import Snapshot
+from core.file_placing import all_to_disk
 from core.store.backup_verdict import Verdict
 
 BARRED = "A PROGRAM IS UNDER WAY: NOTHING IS RESTORED BEFORE IT HAS ENDED"
@@ -163,7 +163,7 @@ class BackupAndRestore(SpecialFunction):
             except OSError as error:
                 raise FileError(f"{place.path} CANNOT BE WRITTEN: {error.strerror}") from error
             self.persistence.backup(target)
-            os.sync()
+            all_to_disk()
             return name
 
         self.worker.queue(work, self._backed_up, self._failed)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import os
+import sys
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -187,7 +188,7 @@ def _version_in(path: Path) -> SharedVersion | None:
 
 
 def _to_disk(folder: Path) -> None:
-    if os.name == "nt":
+    if sys.platform == "win32":
         return  # Windows opens no folder; its names go to the disk with the file
     handle = os.open(folder, os.O_RDONLY)
     try:

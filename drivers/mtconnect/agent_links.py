@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import os
 import socket
+import sys
 
 from core.ports import DriverError
 from drivers.mtconnect.shdr_lines import PING, pong
@@ -111,7 +111,7 @@ def listening(bind: str, port: int) -> socket.socket:
     except OSError as error:
         raise DriverError(f"[mtconnect] bind = {bind!r} is no address here: {error.strerror}") from error
     try:
-        if os.name == "posix":  # elsewhere this would share a port that somebody else has
+        if sys.platform != "win32":  # elsewhere this would share a port that somebody else has
             wire.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         wire.bind(address)
         wire.listen(_BACKLOG)
