@@ -62,6 +62,12 @@ class CodeHelp:
         self.marked = max(0, min(len(self.choices) - 1, number))
 
     @property
+    def words(self) -> tuple[tuple[str, str], ...]:
+        """The words of the marked choice with what they mean."""
+        chosen = self.chosen
+        return self._book.words_of(chosen) if self._book is not None and chosen is not None else ()
+
+    @property
     def chosen(self) -> Entry | None:
         """The marked choice."""
         return self.choices[self.marked] if self.choices else None

@@ -18,6 +18,7 @@ from app.screen.look import Look, Painter
 from app.screen.panel import Panel, Shown
 from app.shapes.sketch_view import SketchPanel
 from core.language.code_book import Entry
+from core.language.source import Dialect
 
 PICTURE = 17.0  # units: height of a picture
 
@@ -42,7 +43,7 @@ class CodeStrip(Panel):
 
 
 class CodeList(CodeChoices):
-    """The choices, and of the marked one lines that use it and, where there is one, its picture."""
+    """The choices, and of the marked one its words, lines that use it and its picture, if there is one."""
 
     def __init__(
         self, look: Look, field: TextField, proof: LiveProof, back: Callable[[], None], parent: QWidget
@@ -51,7 +52,7 @@ class CodeList(CodeChoices):
         self._codes = CodeHelp()
         super().__init__(look, self._codes, self._take, parent)
         self._field, self._proof, self._back = field, proof, back
-        self.pictured = False  # the program is in the language whose codes have pictures
+        self.dialect = Dialect.OMNITURN  # of the program, whose codes have pictures of their own
         self._picture = SketchPanel(look, lambda _word: None, lambda _point: None, self)
 
     def follow(self) -> Entry | None:
@@ -76,7 +77,7 @@ class CodeList(CodeChoices):
         """Once a frame: drawn anew when other choices are shown or another one is marked."""
         super().refresh()
         chosen = self._codes.chosen
-        drawn = picture_of(chosen.head) if chosen is not None and self.pictured else None
+        drawn = picture_of(chosen.head, self.dialect) if chosen is not None else None
         self._picture.setVisible(drawn is not None)
         if drawn is not None:
             self._picture.shown = drawn, tuple((d.word, d.word) for d in drawn.dims), "", frozenset()
@@ -87,8 +88,11 @@ class CodeList(CodeChoices):
 
     def _foot(self) -> float:
         """Pixels that example and picture of the marked choice take."""
-        drawn = PICTURE if not self._picture.isHidden() else 0.0
-        return super()._foot() + drawn * self.look.u
+        return super()._foot() + self._drawn()
+
+    def _drawn(self) -> float:
+        """Pixels that the picture takes."""
+        return PICTURE * self.look.u if not self._picture.isHidden() else 0.0
 
     def keys(self) -> dict[int, Key]:
         """The function keys while the list is looked through."""

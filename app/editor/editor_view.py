@@ -40,12 +40,13 @@ from app.shapes.shapes_view import ShapesView
 from app.working_plane.plane_instant import at_line, plane_words
 from app.working_plane.working_plane_view import WorkingPlaneView
 from core.executor.snapshot import Snapshot
+from core.language.source import dialect_of
 from core.shapes.shape_table import HELPERS
 
 if TYPE_CHECKING:
     from app.path.path_picture import Picture
     from core.language.diagnostics import Diagnostic
-    from core.shapes.shape import Shape
+from core.shapes.shape import Shape
 
 Keys = dict[int, Key]
 Actions = dict[int, Callable[[], None]]
@@ -136,6 +137,7 @@ class EditorPage(Page):
     def key_actions(self) -> KeyActions:
         """The function keys of the moment."""
         found = {f"F{number}": key.action for number, key in self._keys().items()}
+        found["Codes"] = self.look_up
         found["Shapes"] = self.open_shapes
         found["Calculators"] = partial(self.open_shapes, HELPERS)
         if self.mode is Mode.LOOK:  # keys of the Automatic page that mean the same here
@@ -420,7 +422,7 @@ class EditorPage(Page):
             line, count = self.shapes.model.line, self.shapes.model.text.count("\n") + 1
         place = f"LINE {line} OF {count}  ·  {column}"
         self.head.heading = Heading(editor.name, self.typed_text.mark, place)
-        self.head.with_shapes = self.codes.pictured = written_in(editor.name)
+        self.head.with_shapes, self.codes.dialect = written_in(editor.name), dialect_of(editor.name)
         findings = editor.proof.now
         self.field.show_findings(findings.by_line)
         self.findings.show_findings(findings, line)

@@ -178,6 +178,7 @@ class MdiPage(ModelPage):
         return {
             "F2": partial(self.host.go, page_table.AUTOMATIC),
             "F3": self.model.complete,
+            "Codes": self.model.complete,
             "F4": self.desk.next_readout,
             "F5": self.desk.enable,
             "F6": self.desk.reset,

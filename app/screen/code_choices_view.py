@@ -16,10 +16,12 @@ from core.language.code_book import Entry
 CODE_LINE = 5.2  # units: a finger's height, two lines of text
 LINE = 2.7  # units: a line of an example
 MOST_LINES = 9  # of an example
+WORD_LINE = 2.3  # units: a word of the marked code, with its meaning
+_ONE_COLUMN = 6  # words that stand below each other
 
 
 class CodeChoices(Panel):
-    """The choices, and of the marked one lines that use it. ``take`` writes the marked code."""
+    """The choices, and of the marked one its words and lines that use it. ``take`` writes the marked code."""
 
     _shown: Shown[tuple[object, ...]] = Shown(())
 
@@ -33,10 +35,38 @@ class CodeChoices(Panel):
         self._shown = (self._help.choices, self._help.marked)
 
     def _foot(self) -> float:
-        """Pixels that the example of the marked choice takes."""
+        """Pixels that words and example of the marked choice take."""
+        return self._example() + self._rows_of_words() * WORD_LINE * self.look.u
+
+    def _example(self) -> float:
+        """Pixels that the example takes."""
         chosen = self._help.chosen
         lines = chosen.example.splitlines()[:MOST_LINES] if chosen is not None else []
         return (len(lines) * LINE + 1.4) * self.look.u if lines else 0.0
+
+    def _drawn(self) -> float:
+        """Pixels that a picture takes."""
+        return 0.0
+
+    def _rows_of_words(self) -> int:
+        """As many as leave the marked code its place."""
+        count, u = len(self._help.words), self.look.u
+        wanted = count if count <= _ONE_COLUMN else -(-count // 2)
+        room = self.height() - self._example() - self._drawn() - (3.2 + CODE_LINE) * u
+        return max(0, min(wanted, int(room / (WORD_LINE * u))))
+
+    def _write_words(self, painter: Painter) -> None:
+        """Above the example, in two columns where they are many."""
+        u, rows = self.look.u, self._rows_of_words()
+        columns = 1 if len(self._help.words) <= _ONE_COLUMN else 2
+        wide = (self.width() - 3.2 * u) / columns
+        top = self.height() - self._example() - rows * WORD_LINE * u
+        letters = min(7.0, max((1.3 * len(word) + 1.2 for word, _ in self._help.words), default=0.0)) * u
+        for place, (word, what) in enumerate(self._help.words[: rows * columns]):
+            column, row = divmod(place, rows)
+            box = QRectF(1.6 * u + column * wide, top + row * WORD_LINE * u, wide - 0.6 * u, WORD_LINE * u)
+            painter.write(box, word, 1.7, "accent", raw=True)
+            painter.write(box.adjusted(letters, 0, 0, 0), what, 1.7, "text", bold=False)
 
     def draw(self, painter: Painter) -> None:
         u, shown = self.look.u, self._help
@@ -48,6 +78,7 @@ class CodeChoices(Panel):
         for place, entry in enumerate(shown.choices[first : first + rows]):
             box = QRectF(0.8 * u, (2.4 + place * CODE_LINE) * u, self.width() - 1.6 * u, CODE_LINE * u)
             self._row(painter, box, entry, first + place)
+        self._write_words(painter)
         lines = shown.chosen.example.splitlines()[:MOST_LINES]
         row = QRectF(1.6 * u, self.height() - (len(lines) * LINE + 1.4) * u, self.width() - 3.2 * u, LINE * u)
         painter.setFont(self.look.font(1.9))

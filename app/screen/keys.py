@@ -54,6 +54,7 @@ NAMES: dict[tuple[int, Qt.KeyboardModifier], str] = {
     (Key.Key_PageDown, NONE): "Page down",
     (Key.Key_Home, NONE): "Follow",
     (Key.Key_F10, SHIFT): "Scope",
+    (Key.Key_F1, SHIFT): "Codes",
     (Key.Key_F3, SHIFT): "Shapes",
     (Key.Key_F4, SHIFT): "Calculators",
     (Key.Key_F6, SHIFT): "Jobs",

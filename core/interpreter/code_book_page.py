@@ -27,11 +27,17 @@ def page(dialect: Dialect) -> str:
     chapters = "".join(
         f"\n## {title}\n\n" + "".join(map(_entry, entries)) for title, entries in book.chapters
     )
-    return _TOP.format(name=NAMES[dialect], dialect=dialect) + _frame(book) + chapters
+    return _TOP.format(name=NAMES[dialect], dialect=dialect) + _frame(book) + _words(book) + chapters
 
 
 def _frame(book: CodeBook) -> str:
     return f"Every example stands between these lines:\n\n```\n{book.head}…\n{book.tail}```\n"
+
+
+def _words(book: CodeBook) -> str:
+    """What stands behind the codes, which the screen shows beside each."""
+    rows = "".join(f"| `{word}` | {what} |\n" for word, what in book.meanings.items())
+    return f"\n## Words of cycles\n\n| word | means |\n|---|---|\n{rows}" if rows else ""
 
 
 def _entry(entry: Entry) -> str:

@@ -7,8 +7,8 @@ The editor looks a word up in it and completes what is being typed; pages of
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
 from functools import cached_property
 
 _CLOSE = ("", ".", ":", "=", "(", ",")  # such words stand close behind their head
@@ -56,13 +56,24 @@ class Entry:
 class CodeBook:
     """Chapters of entries; ``head`` and ``tail`` stand around every example.
 
-    ``comment`` is the sign behind which no codes stand.
+    ``comment`` is the sign behind which no codes stand. ``meanings`` tells the words that stand behind codes,
+    alone or behind one: ``G83.R``; ``named`` finds them.
     """
 
     chapters: tuple[tuple[str, tuple[Entry, ...]], ...]
     head: str
     tail: str
     comment: str
+    meanings: Mapping[str, str] = field(default_factory=dict)
+    named: str = r"[A-Z_][A-Z0-9_]*"
+
+    def words_of(self, entry: Entry) -> tuple[tuple[str, str], ...]:
+        """Each word behind a code with what it means, as far as the book tells it."""
+        found = dict.fromkeys(re.findall(self.named, f"{entry.words} {entry.insert}".strip()))
+        said = (
+            (word, self.meanings.get(f"{entry.head}.{word}", self.meanings.get(word, ""))) for word in found
+        )
+        return tuple((word, what) for word, what in said if what)
 
     @cached_property
     def entries(self) -> tuple[Entry, ...]:

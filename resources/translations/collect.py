@@ -307,6 +307,7 @@ def _of_books() -> list[str]:
     books = [code_book(dialect) for dialect in Dialect]
     chapters = {title for book in books for title, _ in book.chapters}
     shown = chapters | {entry.what for book in books for entry in book.entries}
+    shown |= {what for book in books for entry in book.entries for _, what in book.words_of(entry)}
     reasons = {entry.idle for entry in (*FUNCTIONS.values(), *WORDS.values(), *M_FUNCTIONS.values())}
     refused = {*OUTSIDE.values(), *CYCLES_OUTSIDE.values()} | {f"{name}: %1 %2." for name in CYCLES}
     refused |= {f"%1: {why}." for why in OUTSIDE.values()}

@@ -4340,6 +4340,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>columns</source>
+      <translation>columnas</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>compressor</source>
       <translation>compresor</translation>
     </message>
@@ -4352,6 +4357,11 @@
       <location filename="" />
       <source>departure</source>
       <translation>salida</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>depth</source>
+      <translation>profundidad</translation>
     </message>
     <message>
       <location filename="" />
@@ -4410,6 +4420,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>holes</source>
+      <translation>agujeros</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>in/min</source>
       <translation>pulg/min</translation>
     </message>
@@ -4417,6 +4432,11 @@
       <location filename="" />
       <source>in/rev</source>
       <translation>pulg/rev</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>infeed</source>
+      <translation>profundización</translation>
     </message>
     <message>
       <location filename="" />
@@ -4452,6 +4472,11 @@
       <location filename="" />
       <source>language mode</source>
       <translation>modo de lenguaje</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>lead</source>
+      <translation>paso</translation>
     </message>
     <message>
       <location filename="" />
@@ -4502,6 +4527,11 @@
       <location filename="" />
       <source>on</source>
       <translation>encendida</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>on (1) or off (0): 0 … 1</source>
+      <translation>activa (1) o inactiva (0): 0 … 1</translation>
     </message>
     <message>
       <location filename="" />
@@ -4560,6 +4590,41 @@
     </message>
     <message>
       <location filename="" />
+      <source>pulls out of the thread</source>
+      <translation>sale de la rosca</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>rows</source>
+      <translation>filas</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>rpm</source>
+      <translation>rpm</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>rpm of C without its sign</source>
+      <translation>rpm de C sin signo</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>run-out</source>
+      <translation>salida</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>run-up</source>
+      <translation>arranque</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>seconds: 0.1 … 3600</source>
+      <translation>segundos: 0.1 … 3600</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>settable offset</source>
       <translation>cero ajustable</translation>
     </message>
@@ -4605,6 +4670,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>surface speed in ft/min, in m/min after G71</source>
+      <translation>velocidad de corte en ft/min, en m/min tras G71</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>synchronized actions are not executed here</source>
       <translation>las acciones síncronas no se ejecutan aquí</translation>
     </message>
@@ -4620,6 +4690,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>the angle of infeed, degrees: 0 … 30</source>
+      <translation>el ángulo de penetración, grados: 0 … 30</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>the arc by %1 ends where it starts.</source>
       <translation>el arco por %1 termina donde empieza.</translation>
     </message>
@@ -4630,8 +4705,23 @@
     </message>
     <message>
       <location filename="" />
+      <source>the bottom of the hole</source>
+      <translation>el fondo del agujero</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>the corner opposite to the start point</source>
+      <translation>la esquina opuesta al punto inicial</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>the depth of a peck</source>
       <translation>la profundidad de un picoteo</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>the depth of the first pass</source>
+      <translation>la profundidad de la primera pasada</translation>
     </message>
     <message>
       <location filename="" />
@@ -4640,8 +4730,33 @@
     </message>
     <message>
       <location filename="" />
+      <source>the end of the thread</source>
+      <translation>el final de la rosca</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>the greatest depth of cut</source>
       <translation>la mayor profundidad de corte</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>the last pass</source>
+      <translation>la última pasada</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>the last pass alone</source>
+      <translation>solo la última pasada</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>the lead</source>
+      <translation>el paso</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>the number of the input</source>
+      <translation>el número de la entrada</translation>
     </message>
     <message>
       <location filename="" />
@@ -4657,6 +4772,26 @@
       <location filename="" />
       <source>the proof takes its stock from --stock, the page PART or the moves</source>
       <translation>la comprobación toma su material de --stock, de la página PIEZA o de los movimientos</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>the radius</source>
+      <translation>el radio</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>the rate of the retract</source>
+      <translation>el avance de la salida</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>the size of the corner</source>
+      <translation>el tamaño de la esquina</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>the subroutine that describes the contour</source>
+      <translation>la subrutina que describe el contorno</translation>
     </message>
     <message>
       <location filename="" />
@@ -4727,6 +4862,11 @@
       <location filename="" />
       <source>wait until the slides are at rest</source>
       <translation>espere a que los carros estén quietos</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>what the cycle leaves on a side</source>
+      <translation>lo que el ciclo deja por lado</translation>
     </message>
     <message>
       <location filename="" />
@@ -20934,6 +21074,66 @@
       <translation>Escriba el contorno entre ellos.</translation>
     </message>
     <message>
+      <location filename="core/interpreter/omniturn/omniturn_book.py" />
+      <source>Z to which the drill comes out</source>
+      <translation>Z a la que sale la broca</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/omniturn_book.py" />
+      <source>by how much X is shifted</source>
+      <translation>cuánto se desplaza X</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/omniturn_book.py" />
+      <source>by how much Z is shifted</source>
+      <translation>cuánto se desplaza Z</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/omniturn_book.py" />
+      <source>taper: X over the whole way</source>
+      <translation>cono: X en todo el recorrido</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/omniturn_book.py" />
+      <source>the centre in X</source>
+      <translation>el centro en X</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/omniturn_book.py" />
+      <source>the centre in Z</source>
+      <translation>el centro en Z</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/omniturn_book.py" />
+      <source>the feed</source>
+      <translation>el avance</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/omniturn_book.py" />
+      <source>the feed a minute</source>
+      <translation>el avance por minuto</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/omniturn_book.py" />
+      <source>the feed a turn</source>
+      <translation>el avance por vuelta</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/omniturn_book.py" />
+      <source>the number of the subroutine</source>
+      <translation>el número de la subrutina</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/omniturn_book.py" />
+      <source>the point in X</source>
+      <translation>el punto en X</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/omniturn_book.py" />
+      <source>the point in Z</source>
+      <translation>el punto en Z</translation>
+    </message>
+    <message>
       <location filename="core/interpreter/omniturn/omniturn_interpreter.py" />
       <source>Begin with G90G94F300.</source>
       <translation>Empiece con G90G94F300.</translation>
@@ -23074,11 +23274,6 @@
       <translation>no hay velocidad de husillo para G95: el husillo está parado.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_feeds.py" />
-      <source>the feed</source>
-      <translation>el avance</translation>
-    </message>
-    <message>
       <location filename="core/interpreter/sinumerik/sinumerik_interpreter.py" />
       <source>%1 acts in a block that moves an axis.</source>
       <translation>%1 actúa en un bloque que mueve un eje.</translation>
@@ -24452,6 +24647,251 @@
       <location filename="core/language/klartext/cycle_blocks.py" />
       <source>Write Q200=+2 and so on.</source>
       <translation>Escriba Q200=+2, etc.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_words.py" />
+      <source>+1 climb, -1 up-cut</source>
+      <translation>+1 a favor, -1 en contra</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_words.py" />
+      <source>0 roughs and finishes, 1 roughs, 2 finishes</source>
+      <translation>0 desbasta y acaba, 1 desbasta, 2 acaba</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_words.py" />
+      <source>angle by which it is turned</source>
+      <translation>ángulo que está girado</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_words.py" />
+      <source>angle from place to place</source>
+      <translation>ángulo de posición a posición</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_words.py" />
+      <source>angle of the spindle</source>
+      <translation>ángulo del husillo</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_words.py" />
+      <source>between places: 0 at the clearance, 1 at the second clearance</source>
+      <translation>entre posiciones: 0 a la distancia de seguridad, 1 a la segunda</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_words.py" />
+      <source>centre, first axis</source>
+      <translation>centro, primer eje</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_words.py" />
+      <source>centre, second axis</source>
+      <translation>centro, segundo eje</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_words.py" />
+      <source>chip breaks before a way out</source>
+      <translation>roturas de viruta antes de salir</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_words.py" />
+      <source>coordinate of the surface</source>
+      <translation>coordenada de la superficie</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_words.py" />
+      <source>depth to the next chip break</source>
+      <translation>profundidad hasta la siguiente rotura de viruta</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_words.py" />
+      <source>depth, from the surface</source>
+      <translation>profundidad, desde la superficie</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_words.py" />
+      <source>diameter of the blank</source>
+      <translation>diámetro de la pieza en bruto</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_words.py" />
+      <source>diameter of the finished circle</source>
+      <translation>diámetro del círculo acabado</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_words.py" />
+      <source>diameter of the pitch circle</source>
+      <translation>diámetro del círculo de agujeros</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_words.py" />
+      <source>direction in which the edge is freed</source>
+      <translation>dirección en que se libera el filo</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_words.py" />
+      <source>dwell at the bottom, seconds</source>
+      <translation>espera en el fondo, segundos</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_words.py" />
+      <source>dwell at the top, seconds</source>
+      <translation>espera arriba, segundos</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_words.py" />
+      <source>feed of counterboring</source>
+      <translation>avance de avellanar</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_words.py" />
+      <source>feed of finishing</source>
+      <translation>avance de acabado</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_words.py" />
+      <source>feed of milling</source>
+      <translation>avance de fresado</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_words.py" />
+      <source>feed of plunging</source>
+      <translation>avance de penetración</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_words.py" />
+      <source>feed of pre-positioning</source>
+      <translation>avance de posicionamiento previo</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_words.py" />
+      <source>feed of the way out</source>
+      <translation>avance de salida</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_words.py" />
+      <source>first angle</source>
+      <translation>primer ángulo</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_words.py" />
+      <source>how many</source>
+      <translation>cuántos</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_words.py" />
+      <source>how much less each infeed is</source>
+      <translation>cuánto menor es cada profundización</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_words.py" />
+      <source>infeed of finishing</source>
+      <translation>profundización de acabado</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_words.py" />
+      <source>last angle</source>
+      <translation>último ángulo</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_words.py" />
+      <source>least infeed</source>
+      <translation>profundización mínima</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_words.py" />
+      <source>left at the bottom for finishing</source>
+      <translation>queda en el fondo para el acabado</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_words.py" />
+      <source>left at the sides for finishing</source>
+      <translation>queda en los lados para el acabado</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_words.py" />
+      <source>length of the first side</source>
+      <translation>longitud del primer lado</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_words.py" />
+      <source>length of the second side</source>
+      <translation>longitud del segundo lado</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_words.py" />
+      <source>nominal diameter</source>
+      <translation>diámetro nominal</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_words.py" />
+      <source>number of the preset</source>
+      <translation>número del preset</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_words.py" />
+      <source>overlap of paths, times the radius</source>
+      <translation>solape de pasadas, por el radio</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_words.py" />
+      <source>pitch of the thread; under 0 left-hand</source>
+      <translation>paso de la rosca; menor que 0 a izquierdas</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_words.py" />
+      <source>plunging: 0 straight, 1 helix, 2 to and fro</source>
+      <translation>entrada: 0 recta, 1 hélice, 2 en vaivén</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_words.py" />
+      <source>radius of the corner</source>
+      <translation>radio de la esquina</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_words.py" />
+      <source>second set-up clearance</source>
+      <translation>segunda distancia de seguridad</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_words.py" />
+      <source>set-up clearance</source>
+      <translation>distancia de seguridad</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_words.py" />
+      <source>spacing, first axis</source>
+      <translation>separación, primer eje</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_words.py" />
+      <source>spacing, second axis</source>
+      <translation>separación, segundo eje</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_words.py" />
+      <source>start below the surface</source>
+      <translation>comienzo bajo la superficie</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_words.py" />
+      <source>start point, first axis</source>
+      <translation>punto inicial, primer eje</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_words.py" />
+      <source>start point, second axis</source>
+      <translation>punto inicial, segundo eje</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_words.py" />
+      <source>way back that breaks the chip</source>
+      <translation>retroceso que rompe la viruta</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_words.py" />
+      <source>where the given point lies</source>
+      <translation>dónde está el punto dado</translation>
     </message>
     <message>
       <location filename="core/language/klartext/klartext_contour_book.py" />
@@ -26957,6 +27397,386 @@
       <location filename="core/language/sinumerik/control_differences.py" />
       <source>IF without a jump</source>
       <translation>IF sin salto</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>0 and 1: with an encoder or without</source>
+      <translation>0 y 1: con encoder o sin él</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>0 breaks chips, 1 leaves the hole</source>
+      <translation>0 rompe la viruta, 1 sale del agujero</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>1 and 3 outside, 2 and 4 inside; 3 and 4 with equal chips</source>
+      <translation>1 y 3 fuera, 2 y 4 dentro; 3 y 4 con viruta constante</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>1 to 12: rough, finish or both; along or across; outside or inside</source>
+      <translation>1 a 12: desbaste, acabado o ambos; a lo largo o al través; fuera o dentro</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>X of the start, a diameter</source>
+      <translation>X del inicio, un diámetro</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>Z of the end</source>
+      <translation>Z del final</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>Z of the second point</source>
+      <translation>Z del segundo punto</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>Z of the start</source>
+      <translation>Z del inicio</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>Z of the third point</source>
+      <translation>Z del tercer punto</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>angle at which the first start begins</source>
+      <translation>ángulo en que empieza la primera entrada</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>angle at which the spindle is held</source>
+      <translation>ángulo en que se sujeta el husillo</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>angle from hole to hole</source>
+      <translation>ángulo de agujero a agujero</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>angle of infeed; under 0 from side to side</source>
+      <translation>ángulo de penetración; menor que 0 de lado a lado</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>angle of the first hole</source>
+      <translation>ángulo del primer agujero</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>angle of the other wall</source>
+      <translation>ángulo de la otra pared</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>angle of the row</source>
+      <translation>ángulo de la fila</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>angle of the surface</source>
+      <translation>ángulo de la superficie</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>angle of the wall at the start</source>
+      <translation>ángulo de la pared del inicio</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>contour: a subprogram, or two labels</source>
+      <translation>contorno: un subprograma o dos etiquetas</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>depth of a pass</source>
+      <translation>profundidad de una pasada</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>depth of a plunge</source>
+      <translation>profundidad de una penetración</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>depth of the thread</source>
+      <translation>profundidad de la rosca</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>diameter at the end</source>
+      <translation>diámetro al final</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>diameter at the second point</source>
+      <translation>diámetro en el segundo punto</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>diameter at the start</source>
+      <translation>diámetro al inicio</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>diameter at the third point</source>
+      <translation>diámetro en el tercer punto</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>diameter of the thread</source>
+      <translation>diámetro de la rosca</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>dwell outside the hole, seconds</source>
+      <translation>espera fuera del agujero, segundos</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>dwell that breaks the chip, seconds</source>
+      <translation>espera que rompe la viruta, segundos</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>edge inside at the other wall</source>
+      <translation>arista interior en la otra pared</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>edge inside at the start</source>
+      <translation>arista interior en el inicio</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>edge outside at the other wall</source>
+      <translation>arista exterior en la otra pared</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>edge outside at the start</source>
+      <translation>arista exterior en el inicio</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>factor of the feed of the first peck</source>
+      <translation>factor del avance de la primera picada</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>feed in</source>
+      <translation>avance de entrada</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>feed into what falls</source>
+      <translation>avance hacia lo que baja</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>feed of roughing</source>
+      <translation>avance de desbaste</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>feed out</source>
+      <translation>avance de salida</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>final depth, absolute</source>
+      <translation>profundidad final, absoluta</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>final depth, from the surface</source>
+      <translation>profundidad final, desde la superficie</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>first depth, absolute</source>
+      <translation>primera profundidad, absoluta</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>first depth, from the surface</source>
+      <translation>primera profundidad, desde la superficie</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>from hole to hole</source>
+      <translation>de agujero a agujero</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>from the reference point to the first hole</source>
+      <translation>del punto de referencia al primer agujero</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>how much less each peck is</source>
+      <translation>cuánto menor es cada picada</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>lead of the first stretch</source>
+      <translation>paso del primer tramo</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>lead of the second stretch</source>
+      <translation>paso del segundo tramo</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>lead of the third stretch</source>
+      <translation>paso del tercer tramo</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>left along the contour for finishing</source>
+      <translation>queda a lo largo del contorno para el acabado</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>left at the walls for finishing</source>
+      <translation>queda en las paredes para el acabado</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>left for the last pass</source>
+      <translation>queda para la última pasada</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>left in X for finishing</source>
+      <translation>queda en X para el acabado</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>left in Z for finishing</source>
+      <translation>queda en Z para el acabado</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>letter of the undercut</source>
+      <translation>letra de la entalla</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>lift in X at the bottom</source>
+      <translation>separación en X en el fondo</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>lift in Y at the bottom</source>
+      <translation>separación en Y en el fondo</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>lift in Z at the bottom</source>
+      <translation>separación en Z en el fondo</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>passes of roughing</source>
+      <translation>pasadas de desbaste</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>passes without infeed</source>
+      <translation>pasadas sin penetración</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>pitch as the size of a metric thread</source>
+      <translation>paso como tamaño de una rosca métrica</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>pitch; under 0 left-hand</source>
+      <translation>paso; menor que 0 a izquierdas</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>radius of the circle</source>
+      <translation>radio del círculo</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>reference plane: the surface, absolute</source>
+      <translation>plano de referencia: la superficie, absoluto</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>reference point, first axis</source>
+      <translation>punto de referencia, primer eje</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>reference point, second axis</source>
+      <translation>punto de referencia, segundo eje</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>retract plane, absolute</source>
+      <translation>plano de retirada, absoluto</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>rpm in</source>
+      <translation>rpm de entrada</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>rpm out</source>
+      <translation>rpm de salida</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>safety distance before the surface</source>
+      <translation>distancia de seguridad antes de la superficie</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>spindle after the cycle: 3, 4 or 5</source>
+      <translation>husillo tras el ciclo: 3, 4 o 5</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>turns of the way out: 0 the other way, 3 or 4</source>
+      <translation>giro de la salida: 0 al revés, 3 o 4</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>turns: 3 or 4</source>
+      <translation>giro: 3 o 4</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>way after which the chip is broken</source>
+      <translation>recorrido tras el que se rompe la viruta</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>where it lies: along or across, outside or inside, from where</source>
+      <translation>dónde está: a lo largo o al través, fuera o dentro, desde dónde</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>where the undercut lies</source>
+      <translation>dónde está la entalla</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>width at the bottom</source>
+      <translation>ancho en el fondo</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/program_jumps.py" />

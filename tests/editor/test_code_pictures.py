@@ -4,31 +4,54 @@ from __future__ import annotations
 
 import math
 
+import pytest
+
 from app.editor.code_pictures import _PICTURES, picture_of
-from core.interpreter.omniturn.omniturn_book import book
-from core.language.code_book import Entry
+from core.interpreter.dialects import code_book
+from core.language.source import Dialect
 from core.tool_edges import TIP_DIRECTIONS
 
-
-def entries() -> dict[str, Entry]:
-    return {each.head: each for _, chapter in book().chapters for each in chapter}
+OURS, THEIRS = Dialect.OMNITURN, Dialect.SINUMERIK
 
 
-def test_every_picture_belongs_to_a_code() -> None:
-    assert set(_PICTURES) <= set(entries()), set(_PICTURES) - set(entries())
-    assert picture_of("G90") is None
+@pytest.mark.parametrize("dialect", list(Dialect))
+def test_every_picture_belongs_to_a_code(dialect: Dialect) -> None:
+    heads = {each.head for each in code_book(dialect).entries}
+    assert set(_PICTURES.get(dialect, {})) <= heads
+    assert picture_of("G90", dialect) is None
 
 
-def test_g02_rounds_a_shoulder_and_g03_fills_its_corner() -> None:
-    """Both from (0, 4) to (-4, 8): the middle of the convex arc lies outside of their chord."""
-    for head, side in (("G02", 1.0), ("G03", -1.0)):
-        drawn = picture_of(head)
-        assert drawn is not None
-        arc = next(each.points for each in drawn.outlines if each.ink == "cut")
-        assert math.dist(arc[0], (0, 4)) < 1e-9
-        assert math.dist(arc[-1], (-4, 8)) < 1e-9
-        middle = arc[len(arc) // 2]
-        assert side * (middle[0] + middle[1] - 4.0) > 0.0
+def test_the_fixed_point_of_sinumerik_is_no_roughing_cycle() -> None:
+    assert picture_of("G75", OURS) is not None
+    assert picture_of("G75", THEIRS) is None
+    assert picture_of("CYCLE95", THEIRS) is not None
+
+
+@pytest.mark.parametrize(
+    ("head", "dialect", "side"),
+    [("G02", OURS, 1.0), ("G03", OURS, -1.0), ("G3", THEIRS, 1.0), ("G2", THEIRS, -1.0)],
+)
+def test_one_arc_rounds_a_shoulder_and_one_fills_its_corner(head: str, dialect: Dialect, side: float) -> None:
+    """All from (0, 4) to (-4, 8): the middle of the convex arc lies outside of their chord."""
+    drawn = picture_of(head, dialect)
+    assert drawn is not None
+    arc = next(each.points for each in drawn.outlines if each.ink == "cut")
+    assert math.dist(arc[0], (0, 4)) < 1e-9
+    assert math.dist(arc[-1], (-4, 8)) < 1e-9
+    middle = arc[len(arc) // 2]
+    assert side * (middle[0] + middle[1] - 4.0) > 0.0
+
+
+@pytest.mark.parametrize(
+    ("head", "dialect", "above"),
+    [("G41", OURS, True), ("G42", OURS, False), ("G42", THEIRS, True), ("G41", THEIRS, False)],
+)
+def test_the_nose_goes_on_the_side_of_the_code(head: str, dialect: Dialect, above: bool) -> None:
+    """Towards the chuck along a shaft: G41 there where X is seen downwards, G42 where it is seen upwards."""
+    drawn = picture_of(head, dialect)
+    assert drawn is not None
+    path = next(each.points for each in drawn.outlines if each.ink == "cut")
+    assert (path[0][1] > 5.0) is above
 
 
 def test_the_quadrants_lie_where_their_tips_are() -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from core.interpreter.dialects import code_book
+from core.language.sinumerik.cycle_names import CYCLES
 from core.language.source import Dialect
 
 OMNITURN, KLARTEXT, SINUMERIK = Dialect.OMNITURN, Dialect.KLARTEXT, Dialect.SINUMERIK
@@ -75,3 +76,49 @@ def test_typing_is_completed_by_what_it_may_become(
 @pytest.mark.parametrize("typed", ["", "L X+10 ", "XYZ", "; M1"])
 def test_nothing_completes_a_blank_a_comment_or_what_begins_no_code(typed: str) -> None:
     assert code_book(KLARTEXT).completions(typed, len(typed) + 1)[1] == ()
+
+
+def _words(dialect: Dialect, head: str) -> dict[str, str]:
+    book = code_book(dialect)
+    return dict(book.words_of(next(each for each in book.entries if each.head == head)))
+
+
+@pytest.mark.parametrize(
+    ("dialect", "head", "word", "means"),
+    [
+        (OMNITURN, "G33", "C", "the angle of infeed, degrees: 0 … 30"),
+        (OMNITURN, "G83", "R", "Z to which the drill comes out"),
+        (OMNITURN, "G94", "F", "the feed a minute"),
+        (SINUMERIK, "CYCLE83", "VARI", "0 breaks chips, 1 leaves the hole"),
+        (SINUMERIK, "CYCLE97", "PIT", "lead"),
+        (SINUMERIK, "CYCLE84", "PIT", "pitch; under 0 left-hand"),
+        (KLARTEXT, "CYCL DEF 200", "Q201", "depth, from the surface"),
+    ],
+)
+def test_the_words_of_a_code(dialect: Dialect, head: str, word: str, means: str) -> None:
+    assert _words(dialect, head)[word] == means
+
+
+def test_the_words_of_a_code_come_as_it_has_them() -> None:
+    assert list(_words(OMNITURN, "G33")) == ["X", "Z", "I", "K", "A", "C", "P", "O"]
+    assert _words(OMNITURN, "G90") == {}
+
+
+@pytest.mark.parametrize("dialect", list(Dialect))
+def test_no_meaning_is_told_of_a_word_that_no_code_has(dialect: Dialect) -> None:
+    book = code_book(dialect)
+    used = {f"{entry.head}.{word}" for entry in book.entries for word, _ in book.words_of(entry)}
+    bare = {each.rpartition(".")[2] for each in used}
+    assert {word for word in book.meanings if "." not in word} <= bare
+    told = {
+        word
+        for word in book.meanings
+        if "." in word and word.partition(".")[0].startswith(("CYCLE", "HOLES"))
+    }
+    assert told <= used
+
+
+@pytest.mark.parametrize("head", CYCLES)
+def test_each_cycle_of_sinumerik_tells_its_parameters(head: str) -> None:
+    """Those of the newer controls, which begin with _, apart."""
+    assert {name for name in CYCLES[head] if not name.startswith("_")} == _words(SINUMERIK, head).keys()

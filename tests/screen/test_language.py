@@ -185,7 +185,7 @@ def test_a_refusal_with_values_is_told_in_spanish(spanish: Hands) -> None:
 @pytest.mark.parametrize(
     ("key", "told"),
     [
-        ("R", "TAMAÑO no está dicho: escríbalo."),
+        ("R", "TAMAÑO no está dicho: escríbalo, o elija con las flechas."),
         ("G", "DIÁMETRO no está dicho: escríbalo."),
         ("F", "DESDE EL DIÁMETRO no está dicho: escríbalo."),
     ],

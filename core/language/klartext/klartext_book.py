@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from core.language.code_book import CodeBook, Entry
+from core.language.klartext.cycle_words import MEANINGS
 from core.language.klartext.klartext_contour_book import contours
 from core.language.klartext.klartext_cycle_book import cycles, m_functions, transformations
 from core.language.klartext.klartext_milling_book import milling
@@ -489,5 +490,6 @@ BOOK = CodeBook(
     head=HEAD,
     tail=TAIL,
     comment=";",
+    meanings=MEANINGS,
 )
 """All of it."""

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping
 from core.language.code_book import CodeBook, Entry
 from core.language.sinumerik import word_table
 from core.language.sinumerik.calls_book import CALLS
+from core.language.sinumerik.cycle_words import MEANINGS
 from core.language.sinumerik.cycles_book import STANDARD_CYCLES
 from core.language.sinumerik.word_table import FUNCTIONS, M_FUNCTIONS, WORDS
 
@@ -294,5 +295,6 @@ BOOK = CodeBook(
     head=HEAD,
     tail=TAIL,
     comment=";",
+    meanings=MEANINGS,
 )
 """All of it."""
