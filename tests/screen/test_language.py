@@ -96,7 +96,7 @@ def test_an_alarm_of_the_control_is_told_in_spanish(spanish: Hands, monkeypatch:
     [
         ("estop", "701 E-STOP: an E-stop button was pressed", "701 PARO DE EMERGENCIA: se pulsó un botón"),
         ("alarm", "102 FOLLOWING ERROR: Z is 2.1 off its setpoint", "102 ERROR DE SEGUIMIENTO: Z está a 2.1"),
-        ("alarm", "while stopping x: no answer", "al parar x: no answer"),
+        ("alarm", "while stopping x: no answer", "al parar x: sin respuesta"),
         (
             "accepted",
             "machine file a.toml accepted by BEN",
