@@ -11,9 +11,11 @@ from typing import TypeVar
 
 from core.sharing.shared_folder import SharedFolder
 from core.sharing.shared_place import SharedPlace
+from core.sharing.sharing_errors import Cause
 
 T = TypeVar("T")
 _TOLD_AFTER = 30.0  # s, as on the desk; a slow place may take longer and answer yet
+_DEAD_AFTER = 300.0  # s in which not one byte of a folder came: a script would wait for it for ever
 _OPEN = "import sys; open(sys.argv[1], 'rb').read(1)"
 
 
@@ -37,7 +39,7 @@ def answered(place: SharedPlace, work: Callable[[], T], told_after: float = _TOL
 
 
 def _wait_for_folder(place: SharedFolder, told_after: float) -> None:
-    """Until its mark was opened, or refused, by a process of its own.
+    """Until its mark was opened, or refused, by a process of its own. Raises SharingError.
 
     What hangs in a dead FUSE drive outlives SIGKILL, and as a thread it would keep the whole command: a
     process is left behind instead. Opened, because what a look at names finds may be kept on this side.
@@ -51,12 +53,17 @@ def _wait_for_folder(place: SharedFolder, told_after: float) -> None:
     try:
         opening.wait(told_after)
     except subprocess.TimeoutExpired:
-        _tell(place, told_after)
-        opening.wait()
+        until = f"; it is given up behind {_DEAD_AFTER:g} s"
+        _tell(place, told_after, until)
+        try:
+            opening.wait(_DEAD_AFTER - told_after)
+        except subprocess.TimeoutExpired:
+            raise Cause.AWAY.error(place.name, f"not one byte in {_DEAD_AFTER:g} s") from None
 
 
-def _tell(place: SharedPlace, seconds: float) -> None:
-    sys.stderr.write(f"turndesk: {place.name} has not answered for {seconds:g} s; Ctrl+C ends the wait\n")
+def _tell(place: SharedPlace, seconds: float, until: str = "") -> None:
+    said = f"{place.name} has not answered for {seconds:g} s{until}; Ctrl+C ends the wait"
+    sys.stderr.write(f"turndesk: {said}\n")
 
 
 def _work(work: Callable[[], T], answer: Future[T]) -> None:
