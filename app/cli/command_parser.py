@@ -64,12 +64,26 @@ class Parser(argparse.ArgumentParser):
 
     def parse_args(self, args: Any = None, namespace: Any = None) -> Any:
         """As argparse does it; an option that nobody knows is told with the nearest that is one."""
+        self._check_first_options(sys.argv[1:] if args is None else args)
         found, rest = self.parse_known_args(args, namespace)
         if rest:
             near = nearest(rest[0].partition("=")[0], self._all_options())
             meant = f"; did you mean {near}?" if near else ""
             self.error(f"unrecognized arguments: {' '.join(rest)}{meant}")
         return found
+
+    def _check_first_options(self, args: Sequence[str]) -> None:
+        """Before the command: what stands behind an unknown option would be told as a wrong command."""
+        known, words = self._option_string_actions, iter(args)
+        for word in words:
+            name, _, value = word.partition("=")
+            if not word.startswith("--"):
+                return
+            if name not in known:
+                near = nearest(name, self._all_options())
+                self.error(f"unrecognized arguments: {word}" + (f"; did you mean {near}?" if near else ""))
+            if not value and known[name].nargs != 0:
+                next(words, "")
 
     def print_help(self, file: Any = None) -> None:
         """Write the help, or raise the OSError that argparse would drop: it cannot be written."""

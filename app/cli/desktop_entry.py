@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-import shlex
+import re
 import shutil
 import sys
 from importlib.resources import files
@@ -12,6 +12,7 @@ from pathlib import Path
 from app.desk.command_errors import CommandError
 
 NAME = "turndesk"
+_RESERVED = re.compile(r"""[\s"'\\><~|&;$*?#()`]""")
 _ENTRY = """[Desktop Entry]
 Type=Application
 Name=TurnDesk
@@ -45,8 +46,16 @@ def _command() -> str:
     """How this very installation is started again."""
     beside = Path(sys.executable).with_name(NAME)
     if beside.exists():
-        return shlex.quote(str(beside))
-    return f"{shlex.quote(sys.executable)} -m app.cli.main"
+        return _quoted(str(beside))
+    return f"{_quoted(sys.executable)} -m app.cli.main"
+
+
+def _quoted(word: str) -> str:
+    """As an entry's Exec wants a word with blanks or signs, not as a shell does; % stands for itself."""
+    if not _RESERVED.search(word):
+        return word.replace("%", "%%")
+    inside = re.sub(r'(["`$\\])', r"\\\1", word).replace("%", "%%")
+    return '"' + inside.replace("\\", "\\\\") + '"'  # a text of the entry has its own escapes beside
 
 
 def install(*, autostart: bool) -> list[Path]:
@@ -65,8 +74,11 @@ def install(*, autostart: bool) -> list[Path]:
 
 
 def remove() -> list[Path]:
-    """Take away what is there; the answer is what was."""
+    """Take away what is there; the answer is what was. Raises CommandError where that is not possible."""
     there = [path for path in _places() if path.exists()]
     for path in there:
-        path.unlink()
+        try:
+            path.unlink()
+        except OSError as error:
+            raise CommandError(f"{path} cannot be removed: {error.strerror}") from error
     return there

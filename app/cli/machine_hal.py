@@ -9,6 +9,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from app.cli.program_options import out_file
 from app.desk.command_errors import EXIT_OK, EXIT_USAGE, CommandError
 
 if TYPE_CHECKING:
@@ -26,7 +27,7 @@ def add_hal_parser(actions: SubParsers) -> None:
     )
     parser.add_argument("file", metavar="FILE", help="a machine file with [hal] and [board]")
     parser.add_argument(
-        "--out", metavar="FILE.hal", help="file for it, which must not exist; default: stdout"
+        "--out", type=out_file, metavar="FILE.hal", help="file for it, which must not exist; default: stdout"
     )
     parser.add_argument("--json", action="store_true", help="machine-readable output alone on stdout")
 

@@ -17,6 +17,7 @@ from app.cli.command_parser import Parser, add_screen_options, settled
 from app.cli.crash_report import report_crash, report_thread
 from app.desk.command_errors import EXIT_INTERRUPTED, EXIT_OK, EXIT_USAGE, CommandError
 from app.desk.data_folder import DataFolderError, check_data_folder
+from app.desk.standard_input import nothing_taken
 
 # Modules with add_parser(subparsers) and run(args) -> exit status; importing one costs next to nothing.
 COMMANDS = (
@@ -75,6 +76,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     argv = sys.argv[1:] if argv is None else argv
     gc.set_threshold(200_000)  # importing alone would collect a hundred times and find nothing
     try:
+        nothing_taken()
         args = build_parser(_commands_for(argv)).parse_args(argv)
         with dropped_interrupt.kept():
             check_data_folder()

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from app.cli.figures import MM_PER_INCH
-from app.cli.program_options import circumstances, read_source
+from app.cli.program_options import STDIN, circumstances, read_source
 from app.desk.command_errors import CommandError
 from app.desk.kept_part import lasting
 from core.part.stock_forms import FORMS
@@ -57,6 +57,8 @@ def with_kept_stock(setting: PartSetting, program: str, args: argparse.Namespace
     from app.compose.kept_stock import keep_stock, kept_with
 
     if args.keep_stock:
+        if program == STDIN:
+            raise CommandError("--keep-stock keeps it with a program that has a name; - (stdin) has none")
         from app.cli.store_command import opened_store
         from app.cli.who_changes import who_changes
         from core.access.access_table import Act

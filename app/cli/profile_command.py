@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from app.cli.program_options import out_file
 from app.cli.store_command import opened_store
 from app.cli.who_changes import add_as_option, note_change, who_may
 from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError
@@ -41,7 +42,10 @@ def add_parser(subparsers: SubParsers) -> None:
     _add_part_options(parser)
     _add_tool_options(parser)
     parser.add_argument(
-        "--out", metavar="FILE", help="the program: .nc is OmniTurn, .mpf SINUMERIK (default: stdout)"
+        "--out",
+        type=out_file,
+        metavar="FILE",
+        help="the program: .nc is OmniTurn, .mpf SINUMERIK (default: stdout)",
     )
     add_as_option(parser)
     parser.add_argument("--json", action="store_true", help="machine-readable output alone on stdout")

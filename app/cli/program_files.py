@@ -25,7 +25,7 @@ def program_files(names: Iterable[str]) -> ProgramFiles:
     """
     found: set[Path] = set()
     others = 0
-    for path in map(Path, names):
+    for path in map(Path, _named(names)):
         if not path.is_dir():
             found.add(path)
             continue
@@ -36,6 +36,14 @@ def program_files(names: Iterable[str]) -> ProgramFiles:
         found |= programs
         others += len(there) - len(programs)
     return ProgramFiles(tuple(sorted(found, key=_by_name)), others)
+
+
+def _named(names: Iterable[str]) -> Iterator[str]:
+    """They, unless one is empty, as a script's variable may be: that would be the folder one stands in."""
+    for name in names:
+        if not name:
+            raise CommandError("an empty name is no file; say . for the programs of this folder")
+        yield name
 
 
 def _among(count: int) -> str:

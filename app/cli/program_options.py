@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from collections.abc import Collection
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from app.desk.command_errors import CommandError
+from app.desk.standard_input import DASH, standard_input
 from core.language.source import Dialect, dialect_of
 
 if TYPE_CHECKING:
@@ -87,8 +87,8 @@ def read_source(path: Path, args: argparse.Namespace) -> Source:
             raise CommandError(f"{path}: --{option} is for OmniTurn programs alone; in {dialect} {what}")
     try:
         source = (
-            source_of(STDIN, sys.stdin.buffer.read(), dialect)
-            if path == Path("-")
+            source_of(STDIN, standard_input("program"), dialect)
+            if path == Path(DASH)
             else load_source(path, dialect)
         )
     except SourceError as error:
@@ -97,3 +97,8 @@ def read_source(path: Path, args: argparse.Namespace) -> Source:
     from core.language.called_files import with_called_files
 
     return with_called_files(source, [path.parent])
+
+
+def out_file(text: str) -> str | None:
+    """Where to: ``-`` is stdout, as it is where nothing is said."""
+    return None if text == DASH else text

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from app.cli.expand_command import report_diagnostics
-from app.cli.program_options import add_program_options, circumstances, read_source
+from app.cli.program_options import add_program_options, circumstances, out_file, read_source
 from app.cli.progress_bar import Progress
 from app.desk.command_errors import CommandError
 from core.file_placing import put_in_place
@@ -40,7 +40,7 @@ def add_parser(subparsers: SubParsers) -> None:
     parser = subparsers.add_parser("trace", help="write the time-stamped setpoints that the drives would get")
     parser.add_argument("file", metavar="FILE")
     parser.add_argument("--dt", type=_interval, default=0.001, metavar="S", help="interval, s (default .001)")
-    parser.add_argument("--out", metavar="FILE.csv", help="where to (default: stdout)")
+    parser.add_argument("--out", type=out_file, metavar="FILE.csv", help="where to (default: stdout)")
     add_program_options(parser)
 
 

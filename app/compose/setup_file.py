@@ -2,29 +2,45 @@
 
 from __future__ import annotations
 
+import errno
 import hashlib
 import json
+import os
 import shutil
 import tempfile
 import zipfile
+import zlib
 from contextlib import suppress
 from dataclasses import dataclass
 from datetime import UTC, datetime
-from pathlib import Path, PurePosixPath
+from pathlib import Path, PurePath, PurePosixPath
+from typing import Self
 
 from app.compose.journal import UNDER_WAY
 from app.compose.machine_setup import read_machine
 from app.desk.command_errors import CommandError
 from app.desk.data_folder import data_folder
-from core.file_placing import put_in_place, write_in_place
+from core.file_placing import make_folder, put_in_place, write_in_place
 from core.store import backup
 from core.store.store import Store
 from core.store.store_errors import StoreError
 from core.store.store_file import FILE_NAME
 
-FORMAT = "turndesk setup 1"
+_KIND = "turndesk setup "
+FORMAT = f"{_KIND}1"
 MANIFEST, STORE, PROGRAMS, MACHINE = "manifest.json", "store.db", "programs", "machine"
 MOST = 512 * 1024 * 1024  # bytes of one member: more is no setup of ours
+_NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+# What a spoilt ZIP makes Python raise: its parts, how it is packed, what is in it.
+_NOT_WHOLE = (
+    zipfile.BadZipFile,
+    zlib.error,
+    EOFError,
+    KeyError,
+    NotImplementedError,
+    RuntimeError,
+    ValueError,
+)
 _BESIDE = (".hal", ".xml")  # what lies beside a machine file under its name, and belongs to it
 
 
@@ -40,13 +56,15 @@ class SetupTold:
 def save_setup(target: Path, machine_file: str | None) -> SetupTold:
     """Write the setup of this desk. Raises CommandError; then nothing is left under the name."""
     folder, machine = data_folder(), _machine_members(machine_file)
+    if target.is_file() and not zipfile.is_zipfile(target):
+        raise CommandError(f"{target} is there already and is no setup file; take another name")
     with tempfile.TemporaryDirectory(prefix="turndesk-") as name:
         made, part = Path(name) / "setup", target.with_name(target.name + ".part")
         members = {STORE: _copy_of_store(folder, Path(name))}
         members |= {f"{PROGRAMS}/{path}": folder / PROGRAMS / path for path in _programs(folder)}
         members |= machine
+        _write(made, members)
         try:
-            _write(made, members)
             shutil.copyfile(made, part)
             put_in_place(part, target)
         except OSError as error:
@@ -82,17 +100,26 @@ def _machine_members(named: str | None) -> dict[str, Path]:
         return {}
     path = Path(named)
     read_machine(str(path))
+    if not path.is_file():
+        raise CommandError(f"{named} is shipped with every TurnDesk; leave --machine out, or name a file")
     beside = [path.with_suffix(ending) for ending in _BESIDE]
     return {f"{MACHINE}/{each.name}": each for each in (path, *beside) if each.is_file()}
 
 
-def _write(part: Path, members: dict[str, Path]) -> None:
-    hashes = {name: hashlib.sha256(path.read_bytes()).hexdigest() for name, path in members.items()}
-    told = {"format": FORMAT, "made": datetime.now(UTC).isoformat(timespec="seconds"), "sha256": hashes}
-    with zipfile.ZipFile(part, "w", zipfile.ZIP_DEFLATED) as file:
-        file.writestr(MANIFEST, json.dumps(told, indent=1))
-        for name, path in members.items():
-            file.write(path, name)
+def _write(made: Path, members: dict[str, Path]) -> None:
+    """Raises CommandError, also for a program that may not be read."""
+    try:
+        hashes = {name: hashlib.sha256(path.read_bytes()).hexdigest() for name, path in members.items()}
+        told = {"format": FORMAT, "made": datetime.now(UTC).isoformat(timespec="seconds"), "sha256": hashes}
+        # A computer without a clock of its own dates its files before 1980, which ZIP cannot say.
+        with zipfile.ZipFile(made, "w", zipfile.ZIP_DEFLATED, strict_timestamps=False) as file:
+            file.writestr(MANIFEST, json.dumps(told, indent=1))
+            for name, path in members.items():
+                file.write(path, name)
+    except OSError as error:
+        if error.errno in _NO_ROOM:
+            raise CommandError(f"{made.parent.parent} has no room for a setup; make room there") from error
+        raise CommandError(f"{error.filename} cannot be read: {error.strerror}") from error
 
 
 def _told(names: list[str], placed: Path | None = None) -> SetupTold:
@@ -113,24 +140,70 @@ def check_setup(source: Path) -> SetupTold:
 def load_setup(source: Path) -> tuple[SetupTold, Path | None]:
     """Take it, whole or not at all; and where the store is kept that was here, None: there was none.
 
+    All files lie beside their places before the store is touched: what cannot be written changes nothing.
     Raises CommandError for a file that is not whole, and while a desk runs here.
     """
     folder, stamp = data_folder(), datetime.now(UTC).strftime("%Y%m%dT%H%M%SZ")
-    with tempfile.TemporaryDirectory(prefix="turndesk-") as name:
+    with tempfile.TemporaryDirectory(prefix="turndesk-") as name, _Beside(stamp) as beside:
         names = _unpacked(source, Path(name))
-        try:
-            kept = backup.restore(folder, Path(name) / STORE)
-        except StoreError as error:
-            raise CommandError(str(error)) from error
-        placed = None
         try:
             for each in names:
                 if each != STORE:
-                    at = _put(Path(name) / each, folder / each.replace(f"{MACHINE}/", "machines/", 1), stamp)
-                    placed = at if each.startswith(f"{MACHINE}/") and each.endswith(".toml") else placed
+                    beside.put(Path(name) / each, folder / each.replace(f"{MACHINE}/", "machines/", 1))
+            kept = backup.restore(folder, Path(name) / STORE)
+            beside.take_places()
+        except StoreError as error:
+            raise CommandError(str(error)) from error
         except OSError as error:
-            raise CommandError(f"{error.filename} cannot be written: {error.strerror}") from error
-    return _told(names, placed), kept
+            where = error.filename or folder  # a full disk does not say which file it was
+            raise CommandError(f"{where} cannot be written: {error.strerror}") from error
+    return _told(names, beside.machine), kept
+
+
+class _Beside:
+    """Files that lie beside their places until all of them do; what has not taken its place then is gone."""
+
+    def __init__(self, stamp: str) -> None:
+        self._stamp = stamp
+        self._places: dict[Path, Path] = {}
+        self._kept: list[Path] = []
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
+        for path in (*self._places, *(self._kept if kind else ())):
+            with suppress(OSError):
+                path.unlink(missing_ok=True)
+
+    @property
+    def machine(self) -> Path | None:
+        """Where the machine file is put."""
+        return next((at for at in self._places.values() if _is_machine_file(at.parent.name, at)), None)
+
+    def put(self, source: Path, target: Path) -> None:
+        """Beside its place; another text that stands there is kept under a name of its own."""
+        data = source.read_bytes()
+        make_folder(target.parent)
+        if target.exists() and (old := target.read_bytes()) != data:
+            self._kept.append(target.with_name(f"{target.name}.replaced-{self._stamp}"))
+            write_in_place(self._kept[-1], old)
+        draft = target.with_name(f".{target.name}.{self._stamp}")
+        self._places[draft] = target
+        with draft.open("wb") as file:
+            file.write(data)
+            file.flush()
+            os.fsync(file.fileno())
+
+    def take_places(self) -> None:
+        """All of them, one after the other."""
+        for draft, target in self._places.items():
+            put_in_place(draft, target)
+
+
+def _is_machine_file(folder: str, path: PurePath) -> bool:
+    """Not what lies beside it under its name."""
+    return folder in {MACHINE, "machines"} and path.suffix not in _BESIDE
 
 
 def _unpacked(source: Path, folder: Path) -> list[str]:
@@ -139,8 +212,10 @@ def _unpacked(source: Path, folder: Path) -> list[str]:
         with zipfile.ZipFile(source) as file:
             names = _checked(source, file, folder)
     except OSError as error:
+        if error.errno in _NO_ROOM:
+            raise CommandError(f"{folder.parent} has no room to unpack {source}; make room there") from error
         raise CommandError(f"{source} cannot be read: {error.strerror or error}") from error
-    except (zipfile.BadZipFile, KeyError, ValueError) as error:
+    except _NOT_WHOLE as error:
         raise CommandError(f"{source} is no setup file that can be read: {error}") from error
     try:
         found = backup.problems(folder / STORE)
@@ -149,16 +224,24 @@ def _unpacked(source: Path, folder: Path) -> list[str]:
     if found:
         raise CommandError(f"{source}: {found[0]}; make it anew with 'turndesk setup save'")
     for name in names:
-        if name.startswith(f"{MACHINE}/") and name.endswith(".toml"):
+        if _is_machine_file(PurePosixPath(name).parent.name, PurePosixPath(name)):
             read_machine(str(folder / name))
     return names
 
 
-def _checked(source: Path, file: zipfile.ZipFile, folder: Path) -> list[str]:
-    told = json.loads(file.read(MANIFEST))
-    if not isinstance(told, dict) or told.get("format") != FORMAT or STORE not in told.get("sha256", {}):
+def _hashes(source: Path, told: object) -> dict[str, str]:
+    """Of every member, by the manifest. Raises CommandError where it is none of this kind."""
+    form = told.get("format") if isinstance(told, dict) else None
+    if isinstance(form, str) and form.startswith(_KIND) and form != FORMAT:
+        raise CommandError(f"{source} was saved by another TurnDesk ({form}, here {FORMAT}); use that one")
+    hashes = told.get("sha256") if isinstance(told, dict) else None
+    if form != FORMAT or not isinstance(hashes, dict) or STORE not in hashes:
         raise CommandError(f"{source} is no setup of this kind ({FORMAT}); make it anew with 'setup save'")
-    hashes: dict[str, str] = told["sha256"]
+    return {str(name): str(value) for name, value in hashes.items()}
+
+
+def _checked(source: Path, file: zipfile.ZipFile, folder: Path) -> list[str]:
+    hashes = _hashes(source, json.loads(file.read(MANIFEST)))
     for name, expected in hashes.items():
         at = PurePosixPath(name)
         top = at.parts[0] if len(at.parts) > 1 else ""
@@ -172,12 +255,3 @@ def _checked(source: Path, file: zipfile.ZipFile, folder: Path) -> list[str]:
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
         (folder / name).write_bytes(data)
     return list(hashes)
-
-
-def _put(source: Path, target: Path, stamp: str) -> Path:
-    """In its place; another text that stands there is kept beside it."""
-    data = source.read_bytes()
-    if target.exists() and (old := target.read_bytes()) != data:
-        write_in_place(target.with_name(f"{target.name}.replaced-{stamp}"), old)
-    write_in_place(target, data)
-    return target

@@ -8,8 +8,10 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from app.desk.command_errors import CommandError
+from app.desk.standard_input import DASH, standard_input
 from core.nearest import nearest
 
+_MOST_BYTES = 16 * 1024 * 1024
 _POINT_FIRST = re.compile(r"^(\s*[\w.\"-]+\s*=\s*[-+]?)(?=\.\d)", re.MULTILINE)
 
 
@@ -19,13 +21,26 @@ def read_toml(path: Path) -> dict[str, object]:
     ``.25`` is no figure to TOML, and the one that shops write: it is read as 0.25.
     """
     try:
-        return tomllib.loads(_POINT_FIRST.sub(r"\g<1>0", path.read_text(encoding="utf-8")))
+        text = _bytes_of(path).decode("utf-8").replace("\r\n", "\n")
+        return tomllib.loads(_POINT_FIRST.sub(r"\g<1>0", text))
     except OSError as error:
         raise CommandError(f"{path} cannot be read ({error.strerror}); check name and rights") from error
     except UnicodeDecodeError as error:
         raise CommandError(f"{path} is not UTF-8 text; save it as such") from error
     except tomllib.TOMLDecodeError as error:
         raise CommandError(f"{path} is no TOML: {error}") from error
+
+
+def _bytes_of(path: Path) -> bytes:
+    """What it holds; ``-`` is stdin. Raises CommandError for far more than a person writes, or OSError."""
+    if str(path) == DASH:
+        data = standard_input("TOML")
+    else:
+        with path.open("rb") as file:
+            data = file.read(_MOST_BYTES + 1)
+    if len(data) > _MOST_BYTES:
+        raise CommandError(f"{path} is over 16 MB, so it is no file of this kind; look at its name")
+    return data
 
 
 def unknown(key: str, known: Iterable[str]) -> str:

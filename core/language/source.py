@@ -84,9 +84,8 @@ def load_source(path: Path, said: Dialect | None = None) -> Source:
     Raises SourceError where the file cannot be read or is no text.
     """
     try:
-        if path.stat().st_size > _LARGEST_FILE:
-            raise _refused("file-too-large", f"{path.name} is over 64 MB.", "Split the program.")
-        data = path.read_bytes()
+        with path.open("rb") as file:
+            data = file.read(_LARGEST_FILE + 1)  # a device or a pipe may have no end
     except OSError as problem:
         reason = problem.strerror or "reading failed"
         raise _refused(

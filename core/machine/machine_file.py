@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import math
 import tomllib
 from collections.abc import Sequence
@@ -32,6 +33,7 @@ from core.machine.mill_kinematics import KinematicsReading
 from core.machine.station_rules import wrong_jog, wrong_palms, wrong_wheel
 from core.table_schema import AT_PENDANT, Driver, FileReading, Finding, MachineFileError
 
+_MOST_BYTES = 16 * 1024 * 1024
 _NONE = (-math.inf, math.inf)
 _ONE_TURN = (-360.0, 360.0)  # of a C that does not wrap, degrees
 # Keys of the file that are not called as the model's fields: they end in their unit, or are short.
@@ -54,7 +56,7 @@ _TIMING_KEYS = {name: f"{name}_ms" for name in ("commit", "lookahead", "low_wate
 def text_of(path: Path) -> str:
     """The text of a machine file. Raises MachineFileError where it cannot be read at all."""
     try:
-        return path.read_text(encoding="utf-8")
+        return _bytes_of(path).decode("utf-8").replace("\r\n", "\n")
     except OSError as error:
         reason = error.strerror or "cannot be read"
         raise MachineFileError(
@@ -64,6 +66,15 @@ def text_of(path: Path) -> str:
         raise MachineFileError(
             [Finding("file", "", "is not UTF-8 text; save it as such")], str(path)
         ) from error
+
+
+def _bytes_of(path: Path) -> bytes:
+    """What it holds; a device may have no end. Raises OSError."""
+    with path.open("rb") as file:
+        data = file.read(_MOST_BYTES + 1)
+    if len(data) > _MOST_BYTES:
+        raise OSError(errno.EFBIG, "over 16 MB, so it is no machine file")
+    return data
 
 
 def parse_machine(text: str, source: str, drivers: Sequence[Driver]) -> Machine:

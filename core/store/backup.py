@@ -12,7 +12,7 @@ from pathlib import Path
 from core.file_placing import put_in_place
 from core.store import damaged_rows, database, program_records, row_sums
 from core.store.database import WriterLock, make_folder
-from core.store.store_errors import Cause, StoreError, cause_of, why
+from core.store.store_errors import Cause, StoreError, cause_of, said, why
 from core.store.store_file import FILE_NAME, has_store
 from core.unfinished import unfinished_file
 
@@ -148,4 +148,4 @@ def _copy(source: Path, target: Path) -> None:
 def _unwritable(target: Path, error: Exception) -> StoreError:
     if isinstance(error, OSError | sqlite3.Error) and cause_of(target, error) in {Cause.FULL, Cause.LOCKED}:
         return why(target, error)
-    return StoreError(f"{target} cannot be written ({error}); check the folder, its space and rights")
+    return StoreError(f"{target} cannot be written ({said(error)}); check the folder, its space and rights")

@@ -73,8 +73,12 @@ def cause_of(path: Path, error: sqlite3.Error | OSError) -> Cause:
 
 def why(path: Path, error: sqlite3.Error | OSError) -> StoreError:
     """The sentence for what went wrong with the store in ``path``."""
-    said = error.strerror or str(error) if isinstance(error, OSError) else str(error)
-    return cause_of(path, error).error(path, said)
+    return cause_of(path, error).error(path, said(error))
+
+
+def said(error: Exception) -> str:
+    """What the system says of it, without the number and the name of a file that nobody knows."""
+    return (isinstance(error, OSError) and error.strerror) or str(error)
 
 
 def _trial(folder: Path) -> OSError | None:

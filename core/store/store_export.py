@@ -10,7 +10,7 @@ from pathlib import Path
 from core.file_placing import folder_in_place
 from core.store.offset_fields import Field, Sort
 from core.store.store import Store
-from core.store.store_errors import Cause, StoreError, cause_of, why
+from core.store.store_errors import Cause, StoreError, cause_of, said, why
 from core.store.store_rows import FIELDS, EventRow, Kind, Row, RunRow, Value, inches
 from core.tool_edges import edge_of, tool_of
 from core.unfinished import unfinished_folder
@@ -47,7 +47,7 @@ def export(store: Store, folder: Path) -> int:
         if cause_of(folder, error) is Cause.FULL:
             raise why(folder, error) from error
         raise StoreError(
-            f"{folder} cannot be written ({error}); check the folder, its space and rights"
+            f"{folder} cannot be written ({said(error)}); check the folder, its space and rights"
         ) from error
     return count
 
@@ -172,5 +172,5 @@ def program_files(folder: Path) -> dict[str, bytes]:
         return {path.name: path.read_bytes() for path in sorted((folder / PROGRAMS).iterdir())}
     except OSError as error:
         raise StoreError(
-            f"{folder} is no exported folder ({error}); name one that 'store export' wrote"
+            f"{folder} is no exported folder ({said(error)}); name one that 'store export' wrote"
         ) from error

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import os
+import shutil
 import subprocess
 import zipfile
 from pathlib import Path
@@ -54,21 +55,34 @@ def test_a_check_changes_nothing(
     assert not (tmp_path / "other").exists()
 
 
-@pytest.mark.parametrize("what", ["cut", "changed", "foreign", "outside", "nothing"])
+MANIFESTS = {
+    "outside": (b"programs/part.nc", b"programs/../../p"),
+    "newer": (b"turndesk setup 1", b"turndesk setup 2"),
+    "listed": (b'"store.db":', b'"a": ["store.db"], "b":'),
+    "bare": (b"{", b"[{"),
+}
+
+
+@pytest.mark.parametrize(
+    "what",
+    ["cut", "changed", "foreign", "outside", "nothing", "newer", "listed", "torn", "half", "bare"],
+)
 def test_what_is_not_whole_is_refused_and_changes_nothing(
     what: str, saved: Path, turndesk: Turndesk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     bad = tmp_path / "bad.setup"
     if what == "cut":
         bad.write_bytes(saved.read_bytes()[:-200])
-    elif what in {"changed", "outside"}:
+    elif what in {"torn", "half"}:
+        _spoil(saved, bad, half=what == "half")
+    elif what == "changed" or what in MANIFESTS:
         with zipfile.ZipFile(saved) as old, zipfile.ZipFile(bad, "w") as new:
             for name in old.namelist():
                 data = old.read(name)
                 if what == "changed" and name.endswith("part.nc"):
                     data = b"G90\nX1\n"
-                if what == "outside" and name == "manifest.json":
-                    data = data.replace(b"programs/part.nc", b"programs/../../p")
+                if name == "manifest.json":
+                    data = data.replace(*MANIFESTS.get(what, (b"", b"")))
                 new.writestr(name, data)
     elif what == "foreign":
         bad.write_text("[tool.1]\n")
@@ -78,7 +92,22 @@ def test_what_is_not_whole_is_refused_and_changes_nothing(
     assert told.status == 2
     assert told.err.count("\n") == 1
     assert str(bad) in told.err
+    assert ("another TurnDesk (turndesk setup 2" in told.err) == (what == "newer")
     assert not other.exists()
+
+
+def _spoil(saved: Path, bad: Path, *, half: bool) -> None:
+    """What is packed, in its middle; or how it is said to be packed: by a method that there is not."""
+    data = bytearray(saved.read_bytes())
+    with zipfile.ZipFile(saved) as old:
+        store = old.getinfo("store.db")
+    start = store.header_offset + 30 + len("store.db")
+    if half:
+        data[start : start + 40] = b"\xff" * 40
+    else:
+        for place in (store.header_offset + 8, data.rindex(b"store.db") - 46 + 10):
+            data[place] = 77
+    bad.write_bytes(data)
 
 
 def test_a_bad_machine_file_makes_no_setup(turndesk: Turndesk, tmp_path: Path) -> None:
@@ -102,6 +131,48 @@ def test_a_setup_that_cannot_be_written_leaves_nothing(
     assert (told.status, "b.setup cannot be written: No space left" in told.err) == (2, True)
     assert sorted(tmp_path.iterdir()) == before
     assert saved in before
+
+
+@pytest.mark.parametrize("full", ["part.nc", "mine.toml", "turndesk.db"])
+def test_a_disk_that_becomes_full_leaves_the_desk_as_it_was(
+    full: str, saved: Path, turndesk: Turndesk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    other = tmp_path / "other"
+    monkeypatch.setenv("TURNDESK_HOME", str(other))
+    assert turndesk("offsets", "set", "T9", "x=1", "z=2").status == 0
+    (other / "programs").mkdir(parents=True)
+    (other / "programs" / "part.nc").write_text("(MINE)\n")
+    before = {path.name for path in other.rglob("*") if not path.name.startswith("turndesk")}
+    real = os.fsync
+
+    def fsync(file: int) -> None:
+        if full in os.readlink(f"/proc/self/fd/{file}"):
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), full)
+        real(file)
+
+    monkeypatch.setattr("os.fsync", fsync)
+    told = turndesk("setup", "load", saved)
+    assert (told.status, told.err.count("\n")) == (2, 1)
+    assert full in told.err
+    assert (other / "programs" / "part.nc").read_text() == "(MINE)\n"
+    assert "T9" in turndesk("offsets", "show").out
+    after = {path.name for path in other.rglob("*") if not path.name.startswith("turndesk")}
+    assert after - before <= {"machines"}
+
+
+def test_files_of_a_computer_without_a_clock_go_along(saved: Path, turndesk: Turndesk, home: Path) -> None:
+    os.utime(home / "programs" / "part.nc", (0, 0))
+    assert turndesk("setup", "save", saved).status == 0
+    assert "is whole" in turndesk("setup", "load", saved, "--check").out
+
+
+def test_a_setup_takes_the_place_of_a_setup_alone(saved: Path, turndesk: Turndesk, tmp_path: Path) -> None:
+    (tmp_path / "part.nc").write_text("M30\n")
+    told = turndesk("setup", "save", tmp_path / "part.nc")
+    assert (told.status, "no setup file; take another name" in told.err) == (2, True)
+    assert (tmp_path / "part.nc").read_text() == "M30\n"
+    assert turndesk("setup", "save", saved, "--machine", "gt75").status == 2
+    assert turndesk("setup", "save", saved).status == 0
 
 
 def test_a_setup_that_is_not_there_is_told_as_such(turndesk: Turndesk, tmp_path: Path) -> None:
@@ -133,7 +204,7 @@ def test_a_desktop_entry_is_written_and_taken_away(
 def test_every_shell_gets_its_completion(turndesk: Turndesk) -> None:
     for shell in SHELLS:
         told = turndesk("setup", "completion", shell).out
-        assert "--keep-stock" in told
+        assert "keep-stock" in told
         assert "completion" in told
 
 
@@ -152,3 +223,33 @@ def test_bash_completes_commands_actions_and_options(turndesk: Turndesk, tmp_pat
     assert completed("turndesk", "offsets", "cl") == {"clear"}
     assert "--json" in completed("turndesk", "prove", "--")
     assert completed("turndesk", "offsets", "set", "--w") == {"--why"}
+    assert {"bash", "zsh", "fish"} < completed("turndesk", "setup", "completion", "")
+    assert completed("turndesk", "prove", "--dialect", "") == {"omniturn", "klartext", "sinumerik"}
+    assert completed("turndesk", "prove", "--offsets", "") == {"c.bash"}
+    assert completed("turndesk", "--machine", "prove", "run", "--headl") == {"--headless"}
+
+
+@pytest.mark.parametrize("shell", ["bash", "fish"])
+def test_a_name_with_a_blank_is_one_word(shell: str, turndesk: Turndesk, tmp_path: Path) -> None:
+    if shutil.which(shell) is None:
+        pytest.skip(f"{shell} is not here")
+    script = tmp_path / "script"
+    script.write_text(turndesk("setup", "completion", shell).out)
+    (tmp_path / "my part.nc").touch()
+    typed = "COMP_WORDS=(turndesk prove my); COMP_CWORD=2; _turndesk; echo ${#COMPREPLY[@]} ${COMPREPLY[@]}"
+    ask = f"source {script}; " + ("complete -C 'turndesk prove my'" if shell == "fish" else typed)
+    told = subprocess.run([shell, "-c", ask], capture_output=True, text=True, check=True, cwd=tmp_path)
+    assert told.stdout.split() == (["1"] if shell == "bash" else []) + ["my", "part.nc"]
+
+
+def test_a_command_in_a_folder_with_blanks_and_signs_is_quoted_as_an_entry_wants_it(
+    turndesk: Turndesk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "data"))
+    place = tmp_path / 'my $own "50%"'
+    place.mkdir()
+    (place / "turndesk").touch()
+    monkeypatch.setattr("sys.executable", str(place / "python"))
+    assert turndesk("setup", "desktop").status == 0
+    entry = (tmp_path / "data" / "applications" / "turndesk.desktop").read_text()
+    assert f'Exec="{tmp_path}/my \\\\$own \\\\"50%%\\\\"/turndesk"\n' in entry

@@ -1,0 +1,31 @@
+"""Standard input, ``-`` where a file is named: what comes in there is one thing, for one argument."""
+
+from __future__ import annotations
+
+import sys
+
+from app.desk.command_errors import CommandError
+
+DASH = "-"
+MOST_BYTES = 64 * 1024 * 1024  # a program has no more, and a pipe may have no end
+_taken: dict[str, bytes] = {}
+
+
+def nothing_taken() -> None:
+    """A command begins."""
+    _taken.clear()
+
+
+def standard_input(what: str) -> bytes:
+    """All that comes in, up to one byte more than anything may have; the same again for who asks again.
+
+    Raises CommandError where it is closed, or was taken for something else.
+    """
+    if what in _taken:
+        return _taken[what]
+    for other in _taken:
+        raise CommandError(f"- (stdin) is the {other} already; name a file for the {what}")
+    if sys.stdin is None:
+        raise CommandError(f"stdin is closed, so no {what} comes in there; name a file")
+    _taken[what] = sys.stdin.buffer.read(MOST_BYTES + 1)
+    return _taken[what]

@@ -1,0 +1,120 @@
+"""``-`` for stdin and stdout, streams that are closed, have other letters, or have no end."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from io import BytesIO, TextIOWrapper
+from pathlib import Path
+
+import pytest
+
+from tests.cli.conftest import Turndesk
+
+PART = "G90G94F300\nT1\nX.5Z.1\nM30\n"
+OFFSETS = "[tool.1]\nx = 0.0\nz = 0.0\n"
+
+
+@pytest.fixture
+def part(tmp_path: Path) -> Path:
+    path = tmp_path / "part.nc"
+    path.write_text(PART)
+    return path
+
+
+def _stdin(monkeypatch: pytest.MonkeyPatch, text: str) -> None:
+    monkeypatch.setattr("sys.stdin", TextIOWrapper(BytesIO(text.encode())))
+
+
+@pytest.mark.parametrize("option", ["--offsets", "--tools"])
+def test_a_table_comes_from_stdin(
+    option: str, part: Path, turndesk: Turndesk, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    _stdin(monkeypatch, OFFSETS)
+    told = turndesk("prove", part, option, "-", "--json")
+    (found,) = told.lines
+    codes = {each["code"] for each in found["diagnostics"]}
+    assert ("tool-offset-missing" in codes) == (option == "--tools")
+
+
+def test_stdin_is_one_thing(turndesk: Turndesk, monkeypatch: pytest.MonkeyPatch) -> None:
+    _stdin(monkeypatch, OFFSETS)
+    told = turndesk("prove", "-", "--offsets", "-")
+    assert told.status == 2
+    assert told.err.count("\n") == 1
+    assert "(stdin) is the" in told.err
+
+
+def test_out_to_a_dash_is_stdout(part: Path, turndesk: Turndesk, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(part.parent)
+    told = turndesk("trace", part, "--dt", ".1", "--out", "-")
+    assert told.out.startswith("t,x,z,c,spindle_deg,line\n")
+    assert not (part.parent / "-").exists()
+    assert turndesk("trace", part, "--dt", ".1", "--out", "-", "--json").status == 2
+
+
+def test_stock_is_kept_with_a_name(turndesk: Turndesk, monkeypatch: pytest.MonkeyPatch) -> None:
+    _stdin(monkeypatch, PART)
+    told = turndesk("prove", "-", "--stock", "bar:1", "--keep-stock")
+    assert (told.status, "a program that has a name" in told.err) == (2, True)
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["prove", "/dev/zero"],
+        ["expand", "/dev/zero"],
+        ["prove", "PART", "--offsets", "/dev/zero"],
+        ["prove", "PART", "--machine", "/dev/zero"],
+    ],
+)
+def test_what_has_no_end_is_refused(words: list[str], part: Path, turndesk: Turndesk) -> None:
+    told = turndesk(*(str(part) if word == "PART" else word for word in words))
+    assert told.status == 2
+    assert told.err.count("\n") == 1
+    assert "is over" in told.err or "over 16 MB" in told.err
+
+
+def test_an_empty_name_is_not_this_folder(part: Path, turndesk: Turndesk) -> None:
+    told = turndesk("prove", "", "--jobs", "1")
+    assert (told.status, "an empty name is no file" in told.err) == (2, True)
+    told = turndesk("prove", "")
+    assert (told.status, "an empty name is no file" in told.err) == (2, True)
+
+
+@pytest.mark.parametrize("word", ["--maschine", "--maschine=a.toml"])
+def test_an_unknown_option_before_a_command_is_the_fault(word: str, part: Path, turndesk: Turndesk) -> None:
+    told = turndesk(word, "a.toml", "prove", part)
+    assert told.status == 2
+    assert f"unrecognized arguments: {word}; did you mean --machine?" in told.err
+
+
+def _turndesk(folder: Path, *words: str, **more: object) -> subprocess.CompletedProcess[bytes]:
+    env = {**os.environ, "TURNDESK_HOME": str(folder / "home"), "PYTHONIOENCODING": str(more.pop("code", ""))}
+    start = "import sys; from app.cli.main import console; sys.exit(console())"
+    ask = [sys.executable, "-c", start, *words]
+    return subprocess.run(ask, capture_output=True, check=False, env=env, **more)  # type: ignore[call-overload,no-any-return]
+
+
+@pytest.mark.parametrize("code", ["ascii", "cp1252", "utf-8"])
+def test_a_sign_that_a_pipe_has_not_is_a_question_mark(code: str, tmp_path: Path) -> None:
+    assert _turndesk(tmp_path, "offsets", "set", "T1", "x=1", "remark=Ω", code=code).returncode == 0
+    told = _turndesk(tmp_path, "offsets", "history", code=code)
+    assert (told.returncode, told.stderr) == (0, b"")
+    assert ("→" if code == "utf-8" else "?").encode() in told.stdout
+
+
+@pytest.mark.parametrize("closed", [0, 1, 2])
+def test_a_stream_that_is_closed_is_no_fault(closed: int, part: Path) -> None:
+    def close() -> None:
+        os.close(closed)
+
+    told = _turndesk(part.parent, "prove", str(part), preexec_fn=close)
+    assert (told.returncode, told.stderr) == (0, b"")
+
+
+def test_a_closed_stdin_is_told(tmp_path: Path) -> None:
+    told = _turndesk(tmp_path, "prove", "-", preexec_fn=lambda: os.close(0))
+    assert told.returncode == 2
+    assert told.stderr == b"turndesk: stdin is closed, so no program comes in there; name a file\n"
