@@ -20,7 +20,7 @@ from app.compose.feeder_process import FeederProcess, beat, without_priority
 from app.compose.machine_files import parse_machine
 from core.ports import DriverError, MachinePorts
 from drivers.clocks import RealClock, StepClock
-from drivers.feeder import feeder_loop
+from drivers.feeder import feeder_links, feeder_loop
 from drivers.feeder.feeder_line import Line
 from drivers.feeder.feeder_links import SocketLink
 from drivers.feeder.feeder_loop import Ear, serve
@@ -33,7 +33,14 @@ from tests.drivers.machines import CONFIG
 
 
 @pytest.fixture
-def served() -> Iterator[tuple[socket.socket, Simulation, threading.Thread]]:
+def patient(monkeypatch: pytest.MonkeyPatch) -> pytest.MonkeyPatch:
+    """A control that waits for an answer as long as a loaded computer may take: no test of lateness."""
+    monkeypatch.setattr(feeder_links, "_QUICK", 60.0)
+    return monkeypatch
+
+
+@pytest.fixture
+def served(patient: pytest.MonkeyPatch) -> Iterator[tuple[socket.socket, Simulation, threading.Thread]]:
     """The loop of the feeder's process in a thread, and the control's end of its socket."""
     ours, theirs = socket.socketpair()
     clock = RealClock()
@@ -198,7 +205,7 @@ def test_a_feeder_that_does_not_answer_is_a_fault_and_no_hang() -> None:
 
 
 @pytest.fixture
-def asleep() -> Iterator[tuple[FeederProcess, MachinePorts]]:
+def asleep(patient: pytest.MonkeyPatch) -> Iterator[tuple[FeederProcess, MachinePorts]]:
     """The simulated lathe in a feeder of its own, whose control is about to sleep."""
     text = resources.machine_file("gt75.toml").replace("[machine]\n", "[machine]\nfeeder = true\n", 1)
     process = FeederProcess(parse_machine(text, "gt75.toml"), RealClock())
@@ -235,13 +242,14 @@ def test_a_feeder_that_is_killed_wakes_its_control_and_the_next_one_rings_too(
 
 
 def test_a_feeder_that_stands_while_its_control_sleeps_is_told_with_the_next_look(
-    asleep: tuple[FeederProcess, MachinePorts],
+    asleep: tuple[FeederProcess, MachinePorts], patient: pytest.MonkeyPatch
 ) -> None:
     process, ports = asleep
     assert ports.wakeup is not None
     ports.wakeup.wait(0.0)
     process.process.send_signal(signal.SIGSTOP)
     assert not ports.wakeup.wait(0.1)
+    patient.setattr(feeder_links, "_QUICK", 0.5)
     sample = ports.axes.sample()
     assert "has not answered" in sample.fault
     assert not sample.enabled
