@@ -52,13 +52,19 @@ class SharedGit:
         self._git = GitCommand(folder, self.name)
 
     def begin(self) -> None:
-        """The branch with its mark; where it is there already nothing is done."""
+        """The branch with its mark; where it is there already nothing is done.
+
+        A branch that somebody has emptied or begun anew by hand is gone on with: nothing in it is lost, and
+        desks publish again what it lacks.
+        """
         try:
             self._fetch()
         except SharingError as error:
             if error.cause is not Cause.NOT_BEGUN:
                 raise
-            self._commit({MARK: json.dumps({"format": FORMAT}).encode()}, "Shared programs", onto="")
+            self._commit(
+                {MARK: json.dumps({"format": FORMAT}).encode()}, "Shared programs", onto=self._branch()
+            )
             self._push()
             self._fetch()
 
@@ -140,6 +146,16 @@ class SharedGit:
         except OSError as error:
             raise of_system(str(self._folder), error) from error
         self._git.run(["init", "--quiet", "--bare", f"--initial-branch={BRANCH}", str(self._folder)])
+
+    def _branch(self) -> str:
+        """What the repository has by its name, fetched; empty: nothing."""
+        try:
+            self._fetch_once()
+        except SharingError as error:
+            if error.cause is not Cause.NOT_BEGUN:
+                raise
+            return ""
+        return _THERE
 
     def _fetch_once(self) -> None:
         refs = f"+{_HERE}:{_THERE}"

@@ -186,6 +186,24 @@ def test_two_desks_that_push_at_once_both_arrive(tmp_path: Path, monkeypatch: py
     assert (set(found.fresh), len(found.desks)) == ({one.version, two.version}, 2)
 
 
+def test_a_branch_that_somebody_has_emptied_is_begun_anew_on_top(tmp_path: Path) -> None:
+    """The sentence says so: turndesk share begin. What he has put there himself stays."""
+    rig = GitRig(tmp_path)
+    place, one = rig.place(), published(1)
+    place.begin()
+    place.put([one], state(one))
+    blob = rig.git("hash-object", "-w", "--stdin", at=rig.remote, data=b"our notes").strip()
+    tree = rig.git("mktree", at=rig.remote, data=b"100644 blob %s\tnotes.txt\n" % blob).strip().decode()
+    emptied = rig.git("commit-tree", "-m", "emptied", tree, at=rig.remote).strip().decode()
+    rig.git("update-ref", "refs/heads/turndesk", emptied, at=rig.remote)
+    assert cause_of(place.look, {})[0] is Cause.NOT_BEGUN
+    place.begin()
+    assert place.look({}).there == frozenset()
+    place.put([one], state(one))
+    assert rig.place(2).look({}).fresh == (one.version,)
+    assert rig.git("show", "turndesk:notes.txt", at=rig.remote) == b"our notes"
+
+
 def test_a_remote_that_refuses_is_told_in_its_own_words(tmp_path: Path) -> None:
     rig = GitRig(tmp_path)
     place = rig.place()
