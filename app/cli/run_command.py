@@ -107,6 +107,8 @@ def _run(args: argparse.Namespace, around: Circumstances, job: Job, report: Repo
         ) as play,
     ):
         outcome = play.run(job, proof_of(job, report), optional_stop=args.optional_stop)
+    if log.trouble:
+        _say(path, f"{log.trouble}; the run is not in it whole")
     if outcome.why:
         sys.stderr.write(f"turndesk: {path}: {outcome.state}: {outcome.why}\n")
     _write(args, path, outcome, report, str(log.path))

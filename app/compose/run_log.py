@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from datetime import UTC, datetime
 from pathlib import Path
@@ -28,10 +28,11 @@ class _Kept(NamedTuple):
 
 
 class EventLog:
-    """The events of one run, a JSON object a line."""
+    """The events of one run, a JSON object a line. A disk that takes none of them stops no machine."""
 
     def __init__(self, path: Path, file: TextIO) -> None:
         self.path = path
+        self.trouble = ""  # why it is not whole; empty while all is well
         self._file = file
 
     @classmethod
@@ -47,15 +48,24 @@ class EventLog:
         except OSError as error:
             raise CommandError(f"{path}: the event log cannot be written: {error.strerror}") from error
         forget_oldest(folder, path)
-        with file:
-            yield cls(path, file)
+        log = cls(path, file)
+        try:
+            yield log
+        finally:
+            log._kept(file.close)
 
     def add(self, event: Event) -> None:
         """One more line."""
         line = {"t": round(event.t, 4), "kind": event.kind, "text": event.text, "line": event.line}
         if event.record:
             line["record"] = event.record
-        self._file.write(json.dumps(line) + "\n")
+        self._kept(lambda: self._file.write(json.dumps(line) + "\n"))
+
+    def _kept(self, write: Callable[[], object]) -> None:
+        try:
+            write()
+        except OSError as error:
+            self.trouble = f"{self.path}: the event log cannot be written: {error.strerror}"
 
 
 def forget_oldest(folder: Path, newest: Path) -> None:

@@ -15,6 +15,7 @@ from app.desk.data_folder import data_folder
 from app.desk.desk import Desk
 from app.desk.translation import tr
 from core.executor.snapshot import Event
+from core.file_placing import write_in_place
 from core.machine.machine_model import Machine
 from core.machine.sharing_table import SharingTable
 from core.store.store import Store
@@ -133,8 +134,5 @@ def home_of(folder: Path) -> str:
 
 def claim(folder: Path, home: str) -> str:
     """This desk goes on as the one of this id."""
-    folder.mkdir(parents=True, exist_ok=True)
-    draft = folder / f"{HOME_FILE}.part"
-    draft.write_text(home + "\n", encoding="ascii")
-    draft.replace(folder / HOME_FILE)
+    write_in_place(folder / HOME_FILE, f"{home}\n".encode())
     return home

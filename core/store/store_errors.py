@@ -57,10 +57,15 @@ _BY_CODE = {
 }
 
 
+_DAMAGED_WORDS = ("Could not decode to UTF-8", "unsupported file format")  # they have no code of their own
+
+
 def cause_of(path: Path, error: sqlite3.Error | OSError) -> Cause:
     """What has made SQLite or the system refuse; where that tells too little, the disk is looked at."""
     if isinstance(error, OSError):
         return _of_system(error)
+    if any(words in str(error) for words in _DAMAGED_WORDS):
+        return Cause.DAMAGED
     code = getattr(error, "sqlite_errorcode", None)
     if code == sqlite3.SQLITE_READONLY_DBMOVED:
         return Cause.GONE

@@ -31650,8 +31650,18 @@
     </message>
     <message>
       <location filename="core/store/store_errors.py" />
+      <source>Could not decode to UTF-8</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/store/store_errors.py" />
       <source>the disk is full: {path} takes nothing more; make room on that disk</source>
       <translation>el disco está lleno: {path} no admite nada más; haga espacio en ese disco</translation>
+    </message>
+    <message>
+      <location filename="core/store/store_errors.py" />
+      <source>unsupported file format</source>
+      <translation type="unfinished" />
     </message>
     <message>
       <location filename="core/store/store_errors.py" />

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 import os
+import shutil
 import subprocess
 import sys
 import threading
@@ -12,6 +13,7 @@ from pathlib import Path
 import pytest
 
 from app.cli.crash_report import report_crash, report_thread
+from app.compose import error_log
 from app.compose.error_log import Log
 from core.executor.raised_alarm import AlarmError, alarm_and_reaction, log_alarm
 
@@ -129,6 +131,39 @@ def test_a_full_disk_under_the_log_is_told_without_a_traceback(
     logging.getLogger("test").warning("lost")
     log.close()
     assert "No space left on device" in log.trouble
+    assert "Traceback" not in capfd.readouterr().err
+
+
+def test_the_log_rotates_by_its_size(home: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(error_log, "_SIZE", 2_000)
+    log = Log()
+    for number in range(200):
+        logging.getLogger("test").warning("line %d of the night", number)
+    log.close()
+    files = sorted((home / "logs").glob("turndesk.log*"))
+    assert [file.name for file in files] == ["turndesk.log", "turndesk.log.1", "turndesk.log.2"]
+    assert all(file.stat().st_size <= 2_000 for file in files)
+    lines = [line for file in reversed(files) for line in file.read_text().splitlines()]
+    assert lines[-1].endswith("line 199 of the night")
+    assert [int(line.split()[-4]) for line in lines] == list(range(200 - len(lines), 200))
+
+
+def test_a_log_folder_that_goes_away_is_told_without_a_traceback(
+    home: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    """The file is open yet; that the folder has gone is found when the next one is begun."""
+    monkeypatch.setattr(error_log, "_SIZE", 300)
+    log = Log()
+    logging.getLogger("test").warning("the first line")
+    log._listener.stop()
+    log._listener.start()
+    shutil.rmtree(home / "logs")
+    for number in range(20):
+        logging.getLogger("test").warning("line %d of the night", number)
+    log._listener.stop()
+    log._listener.start()
+    assert "the log cannot be written" in log.trouble
+    log.close()
     assert "Traceback" not in capfd.readouterr().err
 
 

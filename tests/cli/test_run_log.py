@@ -10,6 +10,7 @@ import pytest
 
 from app.compose import run_log
 from app.compose.run_log import EventLog
+from core.executor.snapshot import Event
 
 DAY = 86_400.0
 
@@ -70,3 +71,21 @@ def test_what_cannot_be_deleted_stops_no_run(home: Path, monkeypatch: pytest.Mon
 
     monkeypatch.setattr(Path, "unlink", refused)
     assert begun(home) == {"old.jsonl"}
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="a disk that is always full")
+def test_a_full_disk_under_the_events_stops_no_run_and_is_told(
+    home: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It was told of the output, and whatever came behind it was left undone."""
+    opened = Path.open
+    full = Path("/dev/full")
+    monkeypatch.setattr(Path, "open", lambda _path, *_how, **_named: opened(full, "w", encoding="utf-8"))
+    with EventLog.new("PIN.nc") as log:
+        log.add(Event(0.1, "stop", "M01 optional stop", 7))
+        assert log.trouble == ""  # it waits in memory yet
+    assert log.trouble == f"{log.path}: the event log cannot be written: No space left on device"
+    with EventLog.new("PIN.nc") as log:
+        for number in range(2_000):
+            log.add(Event(0.1 * number, "stop", "M01 optional stop", 7))
+        assert "No space left on device" in log.trouble

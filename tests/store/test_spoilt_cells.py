@@ -66,6 +66,18 @@ def test_a_schema_whose_names_are_no_text_any_more_is_a_damaged_file(kept: Path)
     assert "\n" not in str(told.value)
 
 
+@pytest.mark.parametrize(("word", "of"), [(b"REAL", 2), (b"who", 0)])
+def test_a_type_or_a_name_of_a_column_that_is_no_text_says_what_to_do(
+    kept: Path, word: bytes, of: int
+) -> None:
+    """SQLite has no code for it, so it was some other trouble, without a remedy."""
+    content = bytearray((kept / FILE_NAME).read_bytes())
+    content[content.index(word, content.index(b"CREATE TABLE offset_changes")) + of] |= 0x80
+    (kept / FILE_NAME).write_bytes(content)
+    with pytest.raises(StoreError, match=r"is damaged .*Restore a backup"):
+        Store.open(kept)
+
+
 def test_a_name_with_a_line_end_stays_in_its_sentence(kept: Path) -> None:
     spoil(kept, "UPDATE part_counts SET program = ?", "a\nb")
     with Store.open(kept) as store:
