@@ -6354,6 +6354,16 @@
       <translation>%1 ha fallado</translation>
     </message>
     <message>
+      <location filename="app/desk/standard_input.py" />
+      <source>- (stdin) is the %1 already; name a file for the %2</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="app/desk/standard_input.py" />
+      <source>stdin is closed, so no %1 comes in there; name a file</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
       <location filename="app/desk/stored_shapes.py" />
       <source>a profile is three points or more, Z and X in mm: 0,0 2.5,0 1.2,1.5</source>
       <translation>un perfil son tres puntos o más, Z y X en mm: 0,0 2.5,0 1.2,1.5</translation>
@@ -31651,7 +31661,7 @@
     <message>
       <location filename="core/store/store_errors.py" />
       <source>Could not decode to UTF-8</source>
-      <translation type="unfinished" />
+      <translation>no se pudo leer como UTF-8</translation>
     </message>
     <message>
       <location filename="core/store/store_errors.py" />
@@ -31661,7 +31671,7 @@
     <message>
       <location filename="core/store/store_errors.py" />
       <source>unsupported file format</source>
-      <translation type="unfinished" />
+      <translation>formato de archivo no admitido</translation>
     </message>
     <message>
       <location filename="core/store/store_errors.py" />
