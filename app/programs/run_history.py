@@ -27,6 +27,7 @@ class RunHistory:
     running: str = ""  # the program under way
     _parts: int | None = None
     _ends: int = 0
+    _timed: int = 0
     _lines: int = 0  # of MDI, when nothing was under way: a line is no run of the program on the desk
     _loaded: Loaded | None = None
 
@@ -42,13 +43,14 @@ class RunHistory:
         parts, self._parts = self._parts, snapshot.parts
         name = Path(snapshot.program).name
         if parts is not None and snapshot.parts > parts and name:
-            self.persistence.cycle_finished(name, snapshot.last_cycle)
+            if snapshot.timed > self._timed:
+                self.persistence.cycle_finished(name, snapshot.last_cycle)
             if not self.running:
                 self.persistence.run_started(name)
             self._end(name, COMPLETE)
         elif parts is not None and snapshot.ends > self._ends and self.running:
             self._end(name, UNCOUNTED)
-        self._ends = snapshot.ends
+        self._ends, self._timed = snapshot.ends, snapshot.timed
         if snapshot.state not in _RUNNING:
             self._lines = snapshot.lines
         under_way = snapshot.state in _RUNNING and snapshot.block > 0 and snapshot.lines == self._lines

@@ -27,6 +27,7 @@ class Counters:
     underruns: int = 0
     cycle: float = 0.0
     last_cycle: float = 0.0
+    timed: int = 0  # whole cycles, of which ``last_cycle`` is the time of the newest
     cutting: Mapping[int, float] = field(default_factory=dict)  # by tool: at feed, dry runs not counted
 
     borne: tuple[float, float] = (0.0, 0.0)  # by the spindle at feed, in this part: per cent · s, and s

@@ -65,7 +65,7 @@ class PartCount:
         counters.cycle, load = 0.0, counters.take_load()
         counters.ends += 1
         if not self.piece.restarted:
-            counters.last_cycle = seconds
+            counters.last_cycle, counters.timed = seconds, counters.timed + 1
         if why:
             text, line = f"{why}; {seconds:.2f} s", self._context.line
             self._context.log_event(Event(self._context.now, "uncounted", text, line, load=load))

@@ -158,6 +158,7 @@ class Snapshot:
     stop: Alarm | None = None  # why the machine stands, where no alarm says it: a hold, a stop, E-stop
     cycle_elapsed: float = 0.0  # of this cycle, stops not counted
     last_cycle: float = 0.0
+    timed: int = 0  # cycles that ``last_cycle`` has told so: a part that a restart has finished has none
     parts: int = 0  # completed and counted since the executor was started
     made: int = 0  # of the loaded program, as it was told with ``PartsMade`` and counted since
     cutting: Mapping[int, float] = field(default_factory=dict)  # s at feed by tool since the start

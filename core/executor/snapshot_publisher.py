@@ -85,6 +85,7 @@ class Publisher:
             stop=context.stop,
             cycle_elapsed=counters.cycle,
             last_cycle=counters.last_cycle,
+            timed=counters.timed,
             parts=counters.parts,
             made=counters.made,
             cutting=counters.cutting,

@@ -165,10 +165,11 @@ def cut_off(connection: sqlite3.Connection, outcome: str) -> tuple[str, ...]:
 
 
 def finished(connection: sqlite3.Connection, program: str, seconds: float, count: int, best: float) -> None:
-    """Whole cycles: the time of the last one, and the best of all of them."""
+    """Whole cycles: the time of the last one, and the best of all of them. None takes no time at all: older
+    versions kept that of a part that a restart had finished."""
     _row(connection, program)
     connection.execute(
-        "UPDATE runs SET cycles = cycles + ?3, latest = ?1, best = min(coalesce(best, ?4), ?4)"
+        "UPDATE runs SET cycles = cycles + ?3, latest = ?1, best = min(coalesce(nullif(best, 0.0), ?4), ?4)"
         " WHERE program = ?2",
         (seconds, program, count, best),
     )

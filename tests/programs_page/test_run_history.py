@@ -47,7 +47,7 @@ def told(*snapshots: Snapshot) -> list[tuple[object, ...]]:
 
 
 def test_a_whole_cycle() -> None:
-    done = replace(READY, parts=1, last_cycle=12.5)
+    done = replace(READY, parts=1, timed=1, last_cycle=12.5)
     assert told(READY, RUNNING, RUNNING, done, done) == [
         ("started", "pin.nc"),
         ("cycle", "pin.nc", 12.5),
@@ -55,8 +55,18 @@ def test_a_whole_cycle() -> None:
     ]
 
 
+@pytest.mark.parametrize("before", [0.0, 12.5])
+def test_a_part_that_a_restart_has_finished_has_no_cycle_time(before: float) -> None:
+    """Behind a power cut it was kept as 0 s, the best of all for ever; else as that of the part before."""
+    ready, running = (replace(each, timed=4, last_cycle=before) for each in (READY, RUNNING))
+    assert told(ready, running, replace(ready, parts=1)) == [
+        ("started", "pin.nc"),
+        ("ended", "pin.nc", "COMPLETE"),
+    ]
+
+
 def test_cycle_repeat_is_one_run_after_the_other() -> None:
-    again = replace(RUNNING, parts=1, last_cycle=12.5)
+    again = replace(RUNNING, parts=1, timed=1, last_cycle=12.5)
     assert told(READY, RUNNING, again, again) == [
         ("started", "pin.nc"),
         ("cycle", "pin.nc", 12.5),

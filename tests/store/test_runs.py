@@ -20,6 +20,13 @@ def store(tmp_path: Path) -> Iterator[Store]:
         yield store
 
 
+def test_no_time_at_all_is_no_best_cycle(store: Store) -> None:
+    """As older versions kept it of parts that a restart had finished."""
+    for seconds in (0.0, 31.5, 32.0):
+        store.cycle_finished("pin.nc", seconds).result()
+    assert store.runs()[0].best == 31.5
+
+
 def test_best_and_latest_cycle(store: Store) -> None:
     for seconds in (31.5, 29.25, 30.0):
         store.cycle_finished("pin.nc", seconds)
