@@ -6356,12 +6356,12 @@
     <message>
       <location filename="app/desk/standard_input.py" />
       <source>- (stdin) is the %1 already; name a file for the %2</source>
-      <translation type="unfinished" />
+      <translation>- (stdin) ya se tomó para «%1»; indique un archivo para «%2»</translation>
     </message>
     <message>
       <location filename="app/desk/standard_input.py" />
       <source>stdin is closed, so no %1 comes in there; name a file</source>
-      <translation type="unfinished" />
+      <translation>stdin está cerrado, por ahí no llega nada para «%1»; indique un archivo</translation>
     </message>
     <message>
       <location filename="app/desk/stored_shapes.py" />

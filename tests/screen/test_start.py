@@ -19,6 +19,7 @@ print(*sys.modules)
 print(*read)
 desk.close()
 """
+READ_ONCE = "from app.compose.machine_files import load_machine; load_machine()"
 OF_LATER = (
     *("app.editor", "app.programs.program_list", "app.quality.shift_page", "app.scope", "app.shapes"),
     *("app.sharing", "app.special.setup_sheet", "app.transfer", "core.sharing", "pyqtgraph"),
@@ -35,6 +36,10 @@ def started(tmp_path_factory: pytest.TempPathFactory) -> tuple[frozenset[str], l
     """Modules of a desk that stands, on the shipped lathe; source texts of ours that were read for it."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("TURNDESK_HOME", str(tmp_path_factory.mktemp("home")))
+        patch.delenv(
+            "PYTHONDONTWRITEBYTECODE", raising=False
+        )  # the machine file is read again then, each time
+        subprocess.run([sys.executable, "-c", READ_ONCE], check=True)
         command = [sys.executable, "-c", DESK]
         done = subprocess.run(command, check=True, capture_output=True, text=True)
     modules, read, *_ = [*done.stdout.split("\n"), ""]
