@@ -12,6 +12,7 @@ from app.desk.desk import Desk
 from app.desk.latest import Latest
 from app.desk.machine_status import Tone
 from app.desk.persistence import Persistence
+from app.desk.prompt_line import MOVING
 from app.desk.sheet import STEPS, Entry, Key, Row, Sheet, following
 from app.desk.translation import tr
 from app.programs.copy_rename_delete import COPY, NONE, RENAME, CopyRenameDelete
@@ -39,6 +40,7 @@ class ProgramList:
     all: tuple[Program, ...] = ()
     listed: tuple[Program, ...] = ()
     changer: CopyRenameDelete = field(init=False)
+    naming: bool = False  # letters are a name although something is under way
     _after: str = ""  # the name to mark when the list has been read again
 
     def __post_init__(self) -> None:
@@ -111,8 +113,16 @@ class ProgramList:
 
     @property
     def may_type(self) -> bool:
-        """Letters look for a name; while something is under way they keep their meaning, H above all."""
+        """Letters are a name at rest; else they keep their meaning, H above all, until Tab or a question."""
+        return self.naming or bool(self.question) or self._rests
+
+    @property
+    def _rests(self) -> bool:
         return self.desk.snapshot().state in {State.IDLE, State.DISABLED, State.ESTOP, State.FAULT}
+
+    def turn_naming(self) -> None:
+        """Tab, or a finger on the entry: letters are a name, or keys again."""
+        self.naming = not self.naming and not self._rests
 
     def takes(self, key: str) -> bool:
         """Whether a character is text now."""
@@ -122,7 +132,9 @@ class ProgramList:
         """Arrows mark, Return loads or answers, letters find."""
         if self.transfer.open:
             return self.transfer.typed(key)
-        if key in STEPS and not self.question:
+        if key == "Tab" and not self.question:
+            self.turn_naming()
+        elif key in STEPS and not self.question:
             self.choose(self.marked + STEPS[key])
         elif key == "Enter":
             self.changer.answer() if self.question else self.load()
@@ -141,8 +153,10 @@ class ProgramList:
             self.marked = max(0, min(len(self.listed) - 1, row))
 
     def escape(self) -> bool:
-        """One step back; False when the page may be left."""
-        if self.desk.notice:
+        """One step back; False: the page may be left. Where a name is typed while something moves, a hold."""
+        if self.desk.snapshot().state in MOVING and (self.naming or self.question):
+            self.desk.feed_hold("Esc at the screen")
+        elif self.desk.notice:
             self.desk.clear()
         elif self.transfer.open:
             self.transfer.escape()
@@ -158,6 +172,7 @@ class ProgramList:
     def leave(self) -> None:
         """The page goes: nothing stays half asked."""
         self.changer.question = self.find.text = ""
+        self.naming = False
         self.transfer.shut()
         self.preview.of(None)
         self._narrow(self.program.name if self.program else "")
@@ -200,9 +215,11 @@ class ProgramList:
         if self.question:
             return "TYPE A NAME AND PRESS RETURN; ESC KEEPS EVERYTHING AS IT IS"
         if not self.may_type:
-            return "RETURN LOADS THE MARKED PROGRAM ONCE NONE IS UNDER WAY; H HOLDS"
+            return "TAB: A NAME TO LOOK FOR OR TO BEGIN; F3 OPENS THE MARKED PROGRAM IN THE EDITOR; H HOLDS"
         if self.find.text and not self.listed:
             return tr("NO PROGRAM HAS THAT IN ITS NAME: F3 BEGINS A NEW ONE")
+        if not self._rests:
+            return "TYPE A PART OF A NAME; F3 OPENS IT IN THE EDITOR; TAB: LETTERS ARE KEYS AGAIN; ESC HOLDS"
         return "TYPE A PART OF A NAME, OR MARK IT WITH ARROWS; RETURN LOADS IT; ESC FOR AUTOMATIC"
 
     def close(self) -> None:
@@ -223,8 +240,9 @@ def sheet_of(model: ProgramList) -> Sheet:
         f"{len(model.listed)} OF {len(model.all)} PROGRAMS" if model.find.text else f"{len(rows)} PROGRAMS"
     )
     question, text = model.question, model.entry.text
-    if not question and model.may_type:
-        question, text = "FIND OR NEW NAME", model.find.text
+    if not question:
+        question = "FIND OR NEW NAME" if model.may_type else "TAB: FIND OR NEW NAME"
+        text = model.find.text
     return Sheet(
         f"PROGRAMS  ·  {count}  ·  BY {model.order}",
         ("NAME", "CHANGED", "LAST RUN", "PARTS", "BEST"),

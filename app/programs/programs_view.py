@@ -205,6 +205,8 @@ class ProgramsPage(ListPage):
 
     def _turn_letters(self) -> None:
         self._with_letters = not self._with_letters
+        if self.model.naming is not self._with_letters:
+            self.model.turn_naming()
 
     def opened(self) -> None:
         """The list; a finger on the entry brings the letters."""

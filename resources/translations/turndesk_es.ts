@@ -10060,13 +10060,18 @@
     </message>
     <message>
       <location filename="app/programs/program_list.py" />
-      <source>RETURN LOADS THE MARKED PROGRAM ONCE NONE IS UNDER WAY; H HOLDS</source>
-      <translation>RETURN CARGA EL PROGRAMA MARCADO CUANDO NO HAYA OTRO EN CURSO; H RETIENE</translation>
+      <source>SORT</source>
+      <translation>ORDENAR</translation>
     </message>
     <message>
       <location filename="app/programs/program_list.py" />
-      <source>SORT</source>
-      <translation>ORDENAR</translation>
+      <source>TAB: A NAME TO LOOK FOR OR TO BEGIN; F3 OPENS THE MARKED PROGRAM IN THE EDITOR; H HOLDS</source>
+      <translation>TAB: UN NOMBRE QUE BUSCAR O EMPEZAR; F3 ABRE EL PROGRAMA MARCADO EN EL EDITOR; H RETIENE</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_list.py" />
+      <source>TAB: FIND OR NEW NAME</source>
+      <translation>TAB: BUSCAR O NOMBRE NUEVO</translation>
     </message>
     <message>
       <location filename="app/programs/program_list.py" />
@@ -10077,6 +10082,11 @@
       <location filename="app/programs/program_list.py" />
       <source>TYPE A PART OF A NAME, OR MARK IT WITH ARROWS; RETURN LOADS IT; ESC FOR AUTOMATIC</source>
       <translation>ESCRIBA PARTE DEL NOMBRE, O MÁRQUELO CON FLECHAS; RETURN LO CARGA; ESC A AUTOMÁTICO</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_list.py" />
+      <source>TYPE A PART OF A NAME; F3 OPENS IT IN THE EDITOR; TAB: LETTERS ARE KEYS AGAIN; ESC HOLDS</source>
+      <translation>ESCRIBA PARTE DE UN NOMBRE; F3 LO ABRE EN EL EDITOR; TAB: LAS LETRAS SON TECLAS OTRA VEZ; ESC RETIENE</translation>
     </message>
     <message>
       <location filename="app/programs/program_list.py" />

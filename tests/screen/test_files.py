@@ -20,7 +20,7 @@ from app.programs.programs_view import ProgramsPage
 from app.programs.removable_media import Stick, sticks
 from app.screen import page_table
 from app.screen.window_layout import FINGER
-from core.executor.commands import LoadJob
+from core.executor.commands import FeedHold, LoadJob
 from core.executor.snapshot import State
 from tests.attached import attached
 from tests.screen.desks import SAMPLES, desk_on
@@ -99,6 +99,36 @@ def test_no_other_program_while_one_is_under_way_and_h_holds(shop: Shop) -> None
     shop.key(Key.Key_Return)
     assert "UNDER WAY" in shop.desk.notice
     assert shop.programs.model.find.text == ""
+
+
+def test_a_name_is_typed_in_a_cycle_after_tab_and_no_letter_is_a_switch(shop: Shop) -> None:
+    """Letters are switches until Tab says that a name is typed; Esc holds, and F3 begins the new program."""
+    shop.open_list()
+    shop.machine.now = replace(shop.machine.now, state=State.RUN)
+    shop.sees(lambda: "TAB" in shop.prompt())
+    shop.key(Key.Key_Tab)
+    shop.type("pc")
+    assert shop.programs.model.find.text == "pc"
+    assert not shop.machine.now.cycle_repeat
+    assert not shop.machine.now.no_count
+    shop.key(Key.Key_Escape)
+    assert any(isinstance(command, FeedHold) for command in shop.machine.posted)
+    assert shop.programs.model.find.text == "pc"
+    shop.key(Key.Key_Tab)
+    shop.type("c")
+    assert shop.programs.model.find.text == "pc"
+    assert shop.machine.now.cycle_repeat
+    shop.key(Key.Key_F3)
+    assert shop.frame.title.page == page_table.EDITOR
+
+
+def test_the_name_of_a_copy_is_typed_in_a_cycle(shop: Shop) -> None:
+    shop.open_list()
+    shop.machine.now = replace(shop.machine.now, state=State.RUN)
+    shop.key(Key.Key_F4)
+    shop.type("c")
+    assert shop.programs.model.entry.text == "alphac"
+    assert not shop.machine.now.cycle_repeat
 
 
 def test_it_is_sorted_by_name_date_run_parts_and_size(shop: Shop) -> None:
