@@ -78,10 +78,11 @@ def _demand_pin(store: Store, row: PersonRow) -> None:
     if pause := wait_after(wrong):
         sys.stderr.write(f"turndesk: {wrong} wrong PINs in a row: the next can be typed in {pause:.0f} s\n")
         time.sleep(pause)
-    if is_pin(asked_pin(f"PIN of {row.name}: "), Hashed(row.salt, row.hash)):
-        store.set_setting(_WRONG, None)
+    pin = asked_pin(f"PIN of {row.name}: ")
+    store.set_setting(_WRONG, wrong + 1).result()  # before it is looked at: who ends us then is counted too
+    if is_pin(pin, Hashed(row.salt, row.hash)):
+        store.set_setting(_WRONG, None).result()
         return
-    store.set_setting(_WRONG, wrong + 1).result()
     told = f"wrong PIN for {row.name}, {wrong + 1} in a row, on the command line"
     store.log_event("access", told, who=getpass.getuser()).result()
     raise CommandError(f"that is not the PIN of {row.name}; nothing was changed, and it is in the log")

@@ -31541,7 +31541,7 @@
     <message>
       <location filename="core/store/offset_tables.py" />
       <source>entry %1 of the history of offsets</source>
-      <translation>la entrada %1 del historial de correctores</translation>
+      <translation>la entrada %1 de la historia de correctores</translation>
     </message>
     <message>
       <location filename="core/store/offset_tables.py" />
@@ -31586,7 +31586,7 @@
     <message>
       <location filename="core/store/offset_tables.py" />
       <source>the record of</source>
-      <translation>el historial de</translation>
+      <translation>la historia de</translation>
     </message>
     <message>
       <location filename="core/store/offset_tables.py" />

@@ -91,6 +91,27 @@ def test_a_wrong_pin_changes_nothing_is_logged_and_lets_wait(
         assert store.events("wrong PIN")[0].text == "wrong PIN for BEN, 4 in a row, on the command line"
 
 
+def test_who_breaks_a_command_off_while_a_pin_is_looked_at_is_counted(
+    say: Say, people: None, home: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A script that ends it before the answer is written would guess as often as it likes."""
+
+    def ended(_pin: str, _kept: object) -> bool:
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as patch:
+        patch.setattr("core.access.pins.is_pin", ended)
+        for _ in range(3):
+            assert say("offsets", "clear", "T", "--as", "ben", typed="0815")[0] != 0
+            monkeypatch.setattr(time, "sleep", lambda _seconds: None)
+    waited: list[float] = []
+    monkeypatch.setattr(time, "sleep", waited.append)
+    assert say("offsets", "clear", "T", "--as", "ben", typed="2580")[0] == 0
+    assert waited == [5.0]
+    with Store.open(home) as store:
+        assert store.setting("wrong PINs") is None
+
+
 @pytest.mark.parametrize("words", [
     ["store", "restore", "{backup}"], ["store", "import", "{home}"], ["setup", "load", "{backup}"],
     ["machine", "accept", "{machine}"], ["access", "remove", "anna"], ["access", "pin", "anna"],
