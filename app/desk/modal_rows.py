@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from app.desk import formats
-from app.desk.translation import tr
+from app.desk.translation import data, tr
 from core.interpreter.checkpoint import Checkpoint
 from core.interpreter.modal_state import Modal
 from core.tool_edges import edge_name
@@ -79,7 +79,7 @@ def _left_by_program(modal: Modal) -> dict[str, str]:
         "coolant": "M8" if modal.coolant else "M9",
         "settable": "G500",
         "tcpm": "M129",
-        "outputs": " ".join(sorted(name.upper() for name in modal.outputs)),
+        "outputs": data(" ".join(sorted(name.upper() for name in modal.outputs))),
     }
 
 
@@ -111,7 +111,7 @@ def _geometry(modal: Modal) -> tuple[ModalRow, ...]:
     distance = NONE if modal.absolute is None else "G90" if modal.absolute else "G91"
     coarse = {0: "G36", 1: "G35", 2: "G35F2"}[modal.coarse]
     return (
-        ModalRow("units", tr("UNITS"), "G71 MM" if modal.metric else "G70 INCH"),
+        ModalRow("units", tr("UNITS"), "G71 MM" if modal.metric else tr("G70 INCH")),
         ModalRow("x words", tr("X WORDS"), "G72 Ø" if modal.diameter else "G73 R"),
         ModalRow("distance", tr("DISTANCE"), distance),
         ModalRow("nose", tr("NOSE COMP"), f"G{modal.nose_comp}"),
@@ -176,10 +176,10 @@ def _pair(modal: Modal, x: float, z: float) -> str:
 
 
 def _functions(modal: Modal) -> tuple[ModalRow, ...]:
-    outputs = " ".join(sorted(name.upper() for name in modal.outputs)) or NONE
+    outputs = data(" ".join(sorted(name.upper() for name in modal.outputs))) or NONE
     return (
         ModalRow("coolant", tr("COOLANT"), "M08" if modal.coolant else "M09"),
         ModalRow("collet", tr("COLLET"), "M12" if modal.collet_closed else "M13"),
         ModalRow("outputs", tr("M FUNCTIONS"), outputs),
-        ModalRow("comment", tr("COMMENT"), modal.comment.strip() or NONE),
+        ModalRow("comment", tr("COMMENT"), data(modal.comment.strip()) or NONE),
     )

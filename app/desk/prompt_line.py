@@ -14,11 +14,14 @@ from enum import StrEnum
 from app.desk import interrupted_notice
 from app.desk.machine_status import MachineStatus
 from app.desk.program_loading import Loaded, Phase
+from app.desk.translation import data, tr
+from core.alarms import CATALOGUE, Code
 from core.executor.job import WARNING
 from core.executor.snapshot import Alarm, Event, Snapshot, State
 from core.language.diagnostics import Severity
 from core.tool_edges import edge_name
 
+OF_PROGRAM: frozenset[Code] = frozenset({"program-stop", "optional-stop"})  # stops with a message
 NOT_FOUND = "FILE NOT FOUND, PRESS ANY KEY TO CONTINUE"
 ASK_FILE = "FILE TO BE PROCESSED"
 NONE_NAMED = "TYPE A NAME, OR MARK A PROGRAM WITH THE ARROWS, BEFORE EDITING"
@@ -94,7 +97,14 @@ def reason(view: MachineStatus) -> str:
 def exactly(alarm: Alarm) -> str:
     """What is known of this one, and the likeliest cause."""
     likely = alarm.causes[0] if alarm.causes else ""
-    return alarm.cause if likely in {"", alarm.cause} else f"{alarm.cause}; {likely}"
+    cause = cause_of(alarm)
+    return cause if likely in {"", alarm.cause} else f"{cause}; {tr(likely)}"
+
+
+def cause_of(alarm: Alarm) -> str:
+    """What is known of this one; of M00 and M01 that is the program's own message."""
+    of_program = alarm.code in OF_PROGRAM and alarm.cause not in CATALOGUE[alarm.code].causes
+    return data(alarm.cause) if of_program else tr(alarm.cause)
 
 
 def _idle(snapshot: Snapshot, loaded: Loaded, start: str) -> str:
@@ -177,6 +187,9 @@ YES = "Y"
 READ = 0.5  # s: sooner nobody has read a question, and what is pressed is meant for something else
 
 
+_RESTS: dict[State | None, State] = {State.JOG: State.IDLE, State.HOLDING: State.HOLD}  # by itself
+
+
 @dataclass(slots=True)
 class PromptAnswers:
     """One answer at a time; it stays until the next key or the next state of the machine.
@@ -233,8 +246,12 @@ class PromptAnswers:
         self.notice, self.asked = "", None
 
     def outlived(self, snapshot: Snapshot) -> bool:
-        """Whether the answer belongs to a state that is over."""
-        return bool(self.notice) and snapshot.state is not self._in
+        """Whether the answer belongs to a state that is over.
+
+        Coming to rest ends none that asks nothing: it takes less time than reading.
+        """
+        rest = _RESTS.get(self._in) if self.asked is None else None
+        return bool(self.notice) and snapshot.state not in {self._in, rest}
 
     def hear(self, event: Event) -> None:
         """What the executor has to say; it may be called from its thread."""

@@ -63,7 +63,7 @@ _UNIT = re.compile(r"(?<=\d )in(?:/min|/rev|/s²?)?(?=$|[,;)]|  | […×]|\n)") 
 _WORD = re.compile(r"[^\W\d_]{2}")
 _DEEPEST = 5  # values in values: REFUSED, why, the program, its line, the sentence, what stands in it
 _JOINER = 8  # characters round holes, such as " and ", that also stand in sentences nobody knows
-_SENTENCE = re.compile(r"(?<=[.?!)]) (?=[A-Z0-9'/(%{\[])")
+_SENTENCE = re.compile(r"(?<=[.?!]) (?=[A-Z0-9'/(%{\[])|(?<=\)) (?=[A-Z][a-z])")
 _NAMES = frozenset({"{name}", "{program}", "{path}", "{text}", "{remark}"})  # holes for somebody's text
 _HINT = "] — "  # what to do, behind the code of a finding
 _SLIGHT = 4  # characters between two holes, such as " OF ", that any sentence has

@@ -9,8 +9,9 @@ from PySide6.QtGui import QWheelEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk import formats
+from app.desk.translation import tr
 from app.editor.live_proof import Findings
-from app.editor.text_view import LETTERS, TONES
+from app.editor.text_view import TONES, WORDS
 from app.screen.look import CENTRE, Look, Painter
 from app.screen.panel import Panel
 from core.language.diagnostics import Diagnostic, Severity
@@ -93,7 +94,7 @@ class FindingList(Panel):
             painter.fill(box, "here")
         patch = QRectF(box.x() + 0.4 * u, box.center().y() - 1.6 * u, 3.2 * u, 3.2 * u)
         painter.fill(patch, TONES[found.severity])
-        painter.write(patch, LETTERS[found.severity], 2.0, "on_state", at=CENTRE)
+        painter.write(patch, tr(WORDS[found.severity])[0], 2.0, "on_state", at=CENTRE)
         line = QRectF(box.x() + 4.4 * u, box.y(), 8 * u, box.height())
         painter.write(line, str(found.line or "FILE"), 1.8, "text")
         room = box.adjusted(10.4 * u, 0.4 * u, -0.4 * u, -box.height() / 2)

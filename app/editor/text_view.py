@@ -17,6 +17,7 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QPlainTextEdit, QTextEdit, QWidget
 
+from app.desk.translation import tr
 from app.editor.editor import Editor, Stage
 from app.editor.highlight_view import Highlighter
 from app.screen.look import CENTRE, LEFT, RIGHT, Look, Painter, put
@@ -26,7 +27,7 @@ from core.language.source import dialect_of
 
 SIZE = 2.3  # units: the text
 TONES = {Severity.ERROR: "alarm", Severity.WARNING: "pause", Severity.NOTE: "wait"}
-LETTERS = {Severity.ERROR: "E", Severity.WARNING: "W", Severity.NOTE: "N"}
+WORDS = {Severity.ERROR: "ERROR", Severity.WARNING: "WARNING", Severity.NOTE: "NOTE"}
 
 
 class TextField(QPlainTextEdit):
@@ -233,7 +234,7 @@ class Margin(QWidget):
                 if found is not None:
                     patch = row.adjusted(0.2 * u, 0.1 * u, -(row.width() - 2.2 * u), -0.1 * u)
                     painter.fill(patch, TONES[found.severity])
-                    painter.write(patch, LETTERS[found.severity], 1.8, "on_state", at=CENTRE)
+                    painter.write(patch, tr(WORDS[found.severity])[0], 1.8, "on_state", at=CENTRE)
                 room, ink = row.adjusted(2.4 * u, 0, -0.8 * u, 0), "text" if here else "soft"
                 painter.write(room, str(number), 1.8, ink, at=RIGHT, bold=here)
 

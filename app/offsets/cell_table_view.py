@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from functools import partial
 
 from PySide6.QtCore import QRectF
@@ -21,16 +21,20 @@ from app.screen import page_table
 from app.screen.look import CENTRE, RIGHT, Look, Painter
 from app.screen.page_base import Host, KeyActions
 from app.screen.panel import Panel, Shown
+from app.screen.window_layout import FINGER
 from core.executor.snapshot import Snapshot
 from core.quality.tool_life import ToolLife
 from core.store.store_rows import Row
 
 HEAD, HIGH = 4.0, 8.0  # units: the line of words at most, and a row
-_NAME = 0.1  # share of the width for the number
+_NAME = 0.07  # share of the width for the number
 
 
 class CellPanel(Panel):
-    """Each cell is a target for a finger. The chosen one is filled, the row in force has a bar."""
+    """Each cell is a target for a finger. The chosen one is filled, the row in force has a bar.
+
+    Beside the pad of a small screen stand as many columns as are wide enough, the chosen one among them.
+    """
 
     rows: Shown[Mapping[int, Row]] = Shown({})
     lives: Shown[Mapping[int, ToolLife]] = Shown({})  # of the tools of a mill
@@ -77,17 +81,29 @@ class CellPanel(Panel):
         """Three rows a notch."""
         self._leaf_by(-round(event.angleDelta().y() / 40))
 
-    def _cells(self, row: QRectF) -> list[QRectF]:
-        one = row.width() * (1.0 - _NAME) / sum(self._wide)
-        left, found = row.x() + row.width() * _NAME, []
-        for share in self._wide:
-            found.append(QRectF(left, row.y(), share * one - 0.5 * self.look.u, row.height()))
-            left += share * one
-        return found
+    def _cells(self, row: QRectF) -> Iterator[tuple[int, QRectF]]:
+        """The columns that there is room for, and where they stand in this row."""
+        room, gap = row.width() * (1.0 - _NAME), 0.5 * self.look.u
+        shown = self._in_sight(room * min(self._wide) / (FINGER + gap))
+        one = room / sum(self._wide[column] for column in shown)
+        left = row.x() + row.width() * _NAME
+        for column in shown:
+            wide = self._wide[column] * one
+            yield column, QRectF(left, row.y(), wide - gap, row.height())
+            left += wide
+
+    def _in_sight(self, room: float) -> range:
+        """From the first column on, or so that the chosen one is the last; ``room`` in shares."""
+        first, end, used = 0, 0, 0.0
+        while end < len(self._wide) and (used + self._wide[end] <= room or end <= self.cell[1]):
+            used, end = used + self._wide[end], end + 1
+            while used > room and first < end - 1:
+                used, first = used - self._wide[first], first + 1
+        return range(first, end)
 
     def _head(self, painter: Painter, row: QRectF) -> None:
-        for word, cell in zip(self._words, self._cells(row), strict=True):
-            painter.write(cell, word, 2.2, "soft", at=CENTRE)
+        for column, cell in self._cells(row):
+            painter.write(cell, self._words[column], 2.2, "soft", at=CENTRE)
 
     def _row(self, painter: Painter, box: QRectF, row: int) -> None:
         u, number = self.look.u, self._numbers[row]
@@ -95,7 +111,8 @@ class CellPanel(Panel):
             painter.fill(QRectF(box.x(), box.y(), 0.6 * u, box.height()), "lit")
         painter.write(box.adjusted(1.6 * u, 0, 0, 0), f"{_LETTER[self._kind]}{number}", 2.4, "accent")
         offset, size = self.rows.get(number), min(3.0, 0.5 * box.height() / u)
-        for column, (name, cell) in enumerate(zip(self._columns, self._cells(box), strict=True)):
+        for nth, (column, cell) in enumerate(self._cells(box)):
+            name = self._columns[column]
             here = (row, column) == self.cell
             painter.fill(cell, "here" if here else "key")
             text, tone = name in _TEXTS, self._model.tone_at(number, name)
@@ -114,11 +131,11 @@ class CellPanel(Panel):
                 bold=offset is not None,
                 raw=text,
             )
-            spot = cell.united(box.adjusted(0, 0, cell.left() - box.right(), 0)) if column == 0 else cell
+            spot = cell.united(box.adjusted(0, 0, cell.left() - box.right(), 0)) if nth == 0 else cell
             self.place(spot, partial(self._choose, row, column))  # who touches its number means its row
 
 
-_WIDE = {"name": 1.7, "remark": 2.0, "length": 1.35, "teeth": 0.65, "point": 0.9, "stops": 0.85}  # columns
+_WIDE = {"name": 1.5, "remark": 2.0, "length": 1.25, "teeth": 0.92, "point": 0.92, "stops": 0.92}  # columns
 _TEXTS = frozenset({"name", "remark"})
 _LETTER = {ZeroOffsets.kind: "G", MillTools.kind: "T", Presets.kind: ""}
 
@@ -132,6 +149,8 @@ class CellTablePage(OffsetPage):
     def __init__(self, host: Host, parent: QWidget, model: CellTable) -> None:
         super().__init__(host, parent, model)
         self.table = CellPanel(self.look, model, self)
+        if not model.own_key:
+            self.pad.own = ("Tab", "→")  # to the next cell, also one that the pad has taken the room of
 
     def key_actions(self) -> KeyActions:
         """The other tables of this machine; F6 and F10 are none of its keys."""

@@ -266,19 +266,19 @@ def _row(program: Program) -> Row:
 
 
 def details_of(program: Program) -> tuple[Detail, ...]:
-    """All that is known of the marked program."""
+    """All that is known of the marked program; the last two may be long, the others are short."""
     run = program.run
     return (
         ("SIZE", formats.file_size(program.size)),
         ("WHERE", "DRAWING" if program.drawing else "SAMPLE" if program.sample else "OWN PROGRAM"),
-        (
-            "LAST RUN",
-            f"{minute_of(run.started)}  ·  {run.outcome}" if run.outcome else minute_of(run.started),
-        ),
         ("PARTS", str(run.parts)),
         ("BEST CYCLE", _time(run.best)),
         ("LAST CYCLE", _time(run.latest)),
         ("PLANNED", _time(run.planned)),
+        (
+            "LAST RUN",
+            f"{minute_of(run.started)}  ·  {run.outcome}" if run.outcome else minute_of(run.started),
+        ),
         ("LAST PROOF", f"{run.proof}  ·  {minute_of(run.proved)}" if run.proof else "NEVER PROVED"),
     )
 

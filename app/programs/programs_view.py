@@ -36,6 +36,7 @@ if TYPE_CHECKING:
 
 
 LABEL = 11.0  # units
+LONG = 2  # rows at the end that have the whole width
 
 
 class RecordPanel(Panel):
@@ -49,11 +50,12 @@ class RecordPanel(Panel):
     def draw(self, painter: Painter) -> None:
         u = self.look.u
         rows = list(details_of(self.program)) if self.program is not None else []
+        beside = len(rows) - LONG
         if self.trouble:
             rows.append(("PREVIEW", self.trouble))
         room = self.inside()
         high = min(3.0 * u, room.height() / max(1, len(rows)))
-        self._draw_part(painter, high * (len(rows) - 1))
+        self._draw_part(painter, high * beside)
         for number, (label, text) in enumerate(rows):
             y = room.y() + number * high
             painter.write(QRectF(room.x(), y, (LABEL - 0.6) * u, high), label, 1.6, "soft")
@@ -61,7 +63,7 @@ class RecordPanel(Panel):
             painter.write(value, text, 1.9, "text")
 
     def _draw_part(self, painter: Painter, high: float) -> None:
-        """The finished part at the right, over the last row, which may be long."""
+        """The finished part at the right, beside the short rows."""
         if self.part is None or high <= 0.0:
             return
         pixels, columns, rows = self.part

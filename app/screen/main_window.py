@@ -227,8 +227,8 @@ class MainWindow(QWidget):
         elif room.width() < 2 * START_SIZE[0]:
             self.setGeometry(room)  # without a window manager nothing else would
             self.showMaximized()
-        else:
-            self.resize(*START_SIZE)
+        else:  # a window among others: a quarter of a large glass
+            self.resize(max(START_SIZE[0], room.width() // 2), max(START_SIZE[1], room.height() // 2))
             self.show()
 
     def _escape(self) -> None:

@@ -277,7 +277,8 @@ class Frame(QWidget):
         self.strip.lamps, self.strip.mute = lamps, mute
         if self.page is self.automatic:
             self._show_readouts(snapshot, view, loaded)
-            self.notice.show_notice(view.message, self.desk.start_words + " TO GO ON", view.alarms)
+            go_on = tr("{start} TO GO ON").format(start=tr(self.desk.start_words))
+            self.notice.show_notice(view.message, go_on, view.alarms)
         else:
             self.head.show_view(view)
             self.run.show_run(view, self._times_of(snapshot, view, loaded))

@@ -101,6 +101,8 @@ class InputsOutputs(SpecialFunction):
     def _used(self, name: str, output: bool) -> str:
         if output:
             return tr("THE CONTROL, BY ITSELF") if name in self.machine.lamps else self._codes.get(name, "")
+        if name == "guard" and not self.machine.interlocks.guard_stops:
+            return ""  # it stops nothing here: it is only told to the shop floor
         if name in _ASKED_BY or self.machine.language != "omniturn":
             return _ASKED_BY.get(name, "")
         return _ASKED_IN_PROGRAMS.get(name, f"M97I{name}" if name.isdigit() else "")

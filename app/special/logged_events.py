@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from app.desk.alarm_log import read_back
 from app.desk.desk import Desk
 from app.desk.formats import local_time
 from app.desk.latest import Latest
 from app.desk.machine_status import Tone
 from app.desk.persistence import Persistence
+from app.desk.prompt_line import cause_of
 from app.desk.sheet import Entry, Key, Row, Sheet, following
 from app.desk.translation import tr
 from app.special.special_functions import SpecialFunction
@@ -145,13 +147,7 @@ def event_row(event: EventRow) -> Row:
     at = local_time(event.at)
     line = str(event.line) if event.line else ""
     alarm = event.kind == "alarm"
-    said = _of_alarm(event.text) if event.kind in {"alarm", "estop"} else tr(event.text)
+    stop = read_back(event)
+    said = tr(event.text) if stop is None else f"{stop.number} {tr(stop.text)}: {tr(cause_of(stop))}"
     text = f"{said} ({event.who})" if event.who else said
     return Row((at, event.kind, text, line), True if alarm else None, Tone.ALARM)
-
-
-def _of_alarm(text: str) -> str:
-    """Number, what happened and the cause, each in the operator's language: ``701 E-STOP: the cause``."""
-    head, colon, cause = text.partition(": ")
-    number, _, what = head.partition(" ")
-    return f"{number} {tr(what)}: {tr(cause)}" if colon and number.isdigit() else tr(text)

@@ -295,6 +295,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>%1: the control ended in the middle of its last run</source>
+      <translation>%1: el control se cerró a mitad de su última corrida</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>%1: the feed must be over 0.</source>
       <translation>%1: el avance debe ser mayor que 0.</translation>
     </message>
@@ -2005,6 +2010,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>LAYER: ALL</source>
+      <translation>TODAS</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>LEFT FOR FACING</source>
       <translation>SOBRANTE PARA CAREAR</translation>
     </message>
@@ -2542,6 +2552,16 @@
       <location filename="" />
       <source>Pecks.</source>
       <translation>Taladra por picadas.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>PgDn</source>
+      <translation>AvPág</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>PgUp</source>
+      <translation>RePág</translation>
     </message>
     <message>
       <location filename="" />
@@ -3820,6 +3840,16 @@
     </message>
     <message>
       <location filename="" />
+      <source>UNIT OF THE DRAWING: AS DRAWN</source>
+      <translation>LA DEL DIBUJO</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>UNIT OF THE DRAWING: INCH</source>
+      <translation>PULGADAS</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>UNIT: INCH</source>
       <translation>PULGADAS</translation>
     </message>
@@ -4290,8 +4320,18 @@
     </message>
     <message>
       <location filename="" />
+      <source>access</source>
+      <translation>acceso</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>acts in its block</source>
       <translation>actúa en su bloque</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>alarm</source>
+      <translation>alarma</translation>
     </message>
     <message>
       <location filename="" />
@@ -4315,6 +4355,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>change</source>
+      <translation>cambio</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>channel %1 block %2 axis %3: %4</source>
       <translation>canal %1 bloque %2 eje %3: %4</translation>
     </message>
@@ -4335,6 +4380,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>cleared</source>
+      <translation>despejado</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>coarse feed</source>
       <translation>avance burdo</translation>
     </message>
@@ -4347,6 +4397,11 @@
       <location filename="" />
       <source>compressor</source>
       <translation>compresor</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>confirmed</source>
+      <translation>confirmado</translation>
     </message>
     <message>
       <location filename="" />
@@ -4370,6 +4425,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>disturbed</source>
+      <translation>anomalía</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>dwell</source>
       <translation>espera</translation>
     </message>
@@ -4380,8 +4440,18 @@
     </message>
     <message>
       <location filename="" />
+      <source>end</source>
+      <translation>fin</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>ends</source>
       <translation>termina a</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>estop</source>
+      <translation>paro emerg.</translation>
     </message>
     <message>
       <location filename="" />
@@ -4420,6 +4490,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>force</source>
+      <translation>forzado</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>holes</source>
       <translation>agujeros</translation>
     </message>
@@ -4437,6 +4512,11 @@
       <location filename="" />
       <source>infeed</source>
       <translation>profundización</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>interrupted</source>
+      <translation>interrumpido</translation>
     </message>
     <message>
       <location filename="" />
@@ -4477,6 +4557,11 @@
       <location filename="" />
       <source>lead</source>
       <translation>paso</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>machine</source>
+      <translation>máquina</translation>
     </message>
     <message>
       <location filename="" />
@@ -4525,6 +4610,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>offsets</source>
+      <translation>correctores</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>on</source>
       <translation>encendida</translation>
     </message>
@@ -4537,6 +4627,16 @@
       <location filename="" />
       <source>outside corners</source>
       <translation>esquinas exteriores</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>override</source>
+      <translation>sobremando</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>part</source>
+      <translation>pieza</translation>
     </message>
     <message>
       <location filename="" />
@@ -4595,6 +4695,21 @@
     </message>
     <message>
       <location filename="" />
+      <source>refused</source>
+      <translation>rechazado</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>repeat</source>
+      <translation>repetición</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>restart</source>
+      <translation>rearranque</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>rows</source>
       <translation>filas</translation>
     </message>
@@ -4650,8 +4765,23 @@
     </message>
     <message>
       <location filename="" />
+      <source>start</source>
+      <translation>arranque</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>starts</source>
       <translation>empieza a</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>starved</source>
+      <translation>sin datos</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>state</source>
+      <translation>estado</translation>
     </message>
     <message>
       <location filename="" />
@@ -4665,6 +4795,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>stop</source>
+      <translation>paro</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>suppression of offsets</source>
       <translation>supresión de desplazamientos</translation>
     </message>
@@ -4672,6 +4807,11 @@
       <location filename="" />
       <source>surface speed in ft/min, in m/min after G71</source>
       <translation>velocidad de corte en ft/min, en m/min tras G71</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>switch</source>
+      <translation>interruptor</translation>
     </message>
     <message>
       <location filename="" />
@@ -4687,6 +4827,11 @@
       <location filename="" />
       <source>syntax error: The bracket of the parameters is not closed.</source>
       <translation>error de sintaxis: El paréntesis de los parámetros no está cerrado.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>test</source>
+      <translation>prueba</translation>
     </message>
     <message>
       <location filename="" />
@@ -4840,6 +4985,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>thread</source>
+      <translation>rosca</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>tool radius compensation</source>
       <translation>compensación de radio de herramienta</translation>
     </message>
@@ -4855,6 +5005,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>uncounted</source>
+      <translation>sin contar</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>unit of length</source>
       <translation>unidad de longitud</translation>
     </message>
@@ -4862,6 +5017,11 @@
       <location filename="" />
       <source>wait until the slides are at rest</source>
       <translation>espere a que los carros estén quietos</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>warning</source>
+      <translation>aviso</translation>
     </message>
     <message>
       <location filename="" />
@@ -5715,6 +5875,11 @@
     </message>
     <message>
       <location filename="app/desk/modal_rows.py" />
+      <source>G70 INCH</source>
+      <translation>G70 PULGADAS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/modal_rows.py" />
       <source>G76 … G77</source>
       <translation>G76 … G77</translation>
     </message>
@@ -6511,7 +6676,7 @@
     <message>
       <location filename="app/desk/waiting.py" />
       <source>THE SPINDLE WAS STOPPED: SWITCH IT OFF AND BACK TO AUTO (A), THEN CYCLE START</source>
-      <translation>SE PARÓ EL HUSILLO: SU INTERRUPTOR A OFF Y DE NUEVO A AUTO (A), LUEGO CYCLE START</translation>
+      <translation>SE PARÓ EL HUSILLO: SU INTERRUPTOR A OFF Y DE NUEVO A AUTO (A), LUEGO INICIO DE CICLO</translation>
     </message>
     <message>
       <location filename="app/desk/waiting.py" />
@@ -6975,6 +7140,11 @@
     </message>
     <message>
       <location filename="app/editor/text_view.py" />
+      <source>NOTE</source>
+      <translation>NOTA</translation>
+    </message>
+    <message>
+      <location filename="app/editor/text_view.py" />
       <source>SAMPLE</source>
       <translation>MUESTRA</translation>
     </message>
@@ -7142,11 +7312,6 @@
       <location filename="app/jobs/jobs_model.py" />
       <source>NOT KEPT HERE: THERE IS NO STORE</source>
       <translation>AQUÍ NO SE GUARDA NADA: NO HAY ALMACÉN</translation>
-    </message>
-    <message>
-      <location filename="app/jobs/jobs_model.py" />
-      <source>NOTE</source>
-      <translation>NOTA</translation>
     </message>
     <message>
       <location filename="app/jobs/jobs_model.py" />
@@ -8011,7 +8176,7 @@
     <message>
       <location filename="app/jog/jog_view.py" />
       <source>T tool · X Z touch · W wear · N nose · Q tip · K remark · M master · F10 undo</source>
-      <translation>T herr · X Z tocar · W desgaste · N punta · Q cuadrante · K nota · M maestra · F10 deshacer</translation>
+      <translation>T herr · X Z tocar · W desgaste · N radio · Q punta · K nota · M maestra · F10 deshacer</translation>
     </message>
     <message>
       <location filename="app/jog/mill_jog_view.py" />
@@ -11706,7 +11871,7 @@
     <message>
       <location filename="app/scope/drive_test_figures.py" />
       <source>OUT</source>
-      <translation>AFUERA</translation>
+      <translation>Y SUELTE</translation>
     </message>
     <message>
       <location filename="app/scope/drive_test_figures.py" />
@@ -12576,7 +12741,7 @@
     <message>
       <location filename="app/screen/station_dock.py" />
       <source>CYCLE START: ONE BY ONE</source>
-      <translation>CYCLE START: UNA TRAS OTRA</translation>
+      <translation>INICIO CICLO: UNO Y OTRO</translation>
     </message>
     <message>
       <location filename="app/screen/station_dock.py" />
@@ -12630,11 +12795,6 @@
     </message>
     <message>
       <location filename="app/screen/window_frame.py" />
-      <source>%1 TO GO ON</source>
-      <translation>%1 PARA SEGUIR</translation>
-    </message>
-    <message>
-      <location filename="app/screen/window_frame.py" />
       <source>CYCLE</source>
       <translation>CICLO</translation>
     </message>
@@ -12667,6 +12827,11 @@
       <location filename="app/screen/window_frame.py" />
       <source>TOOL  ·  OFFSET</source>
       <translation>HERRAMIENTA  ·  CORRECTOR</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window_frame.py" />
+      <source>{start} TO GO ON</source>
+      <translation>{start} PARA SEGUIR</translation>
     </message>
     <message>
       <location filename="app/searchto/searchto_model.py" />
@@ -13171,7 +13336,7 @@
     <message>
       <location filename="app/shapes/drawing_plan.py" />
       <source>%1 does not say its unit: choose MM or INCH.</source>
-      <translation>%1 no dice su unidad: elija MM o INCH.</translation>
+      <translation>%1 no dice su unidad: elija MM o PULGADAS.</translation>
     </message>
     <message>
       <location filename="app/shapes/drawing_plan.py" />
@@ -16421,7 +16586,7 @@
     <message>
       <location filename="core/alarms/spindle_alarms.py" />
       <source>switch it to AUTO; Cycle Start starts the spindle, as it says, and goes on; with the collet open: Reset, close it, start again</source>
-      <translation>póngalo en AUTO; inicio de ciclo arranca el husillo, como se anuncia, y continúa; con la boquilla abierta: Reset, ciérrela y arranque de nuevo</translation>
+      <translation>póngalo en AUTO; inicio de ciclo arranca el husillo, como se anuncia, y continúa; con la pinza abierta: Reset, ciérrela y arranque de nuevo</translation>
     </message>
     <message>
       <location filename="core/alarms/spindle_alarms.py" />
@@ -16691,7 +16856,7 @@
     <message>
       <location filename="core/alarms/station_alarms.py" />
       <source>plug it in again, then Cycle Start. Who works without it takes [pendant] and what is at it out of the machine file</source>
-      <translation>enchúfelo de nuevo, luego Cycle Start. Quien trabaje sin él quita [pendant] y lo que cuelga de él del archivo de máquina</translation>
+      <translation>enchúfelo de nuevo, luego inicio de ciclo. Quien trabaje sin él quita [pendant] y lo que cuelga de él del archivo de máquina</translation>
     </message>
     <message>
       <location filename="core/alarms/station_alarms.py" />
@@ -19126,7 +19291,7 @@
     <message>
       <location filename="core/interpreter/klartext/feed_rates.py" />
       <source>%1 counts with S as programmed: the spindle override leaves the feed as it is.</source>
-      <translation>%1 cuenta con S como está programada: el override del husillo no cambia el avance.</translation>
+      <translation>%1 cuenta con S como está programada: el sobremando del husillo no cambia el avance.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/feed_rates.py" />
@@ -19151,7 +19316,7 @@
     <message>
       <location filename="core/interpreter/klartext/feed_rates.py" />
       <source>M136 in an INCH program</source>
-      <translation>M136 en un programa INCH</translation>
+      <translation>M136 en un programa en pulgadas</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/feed_rates.py" />

@@ -64,3 +64,23 @@ def test_success_question_and_refusal_are_told_apart() -> None:
     assert answers.sort is Sort.ASKED
     answers.say("REFUSED: NO")
     assert answers.sort is Sort.ANSWER
+
+
+@pytest.mark.parametrize(
+    ("said_in", "state", "over"),
+    [
+        (State.JOG, State.IDLE, False),  # the slide comes to rest: nobody has read it yet
+        (State.HOLDING, State.HOLD, False),
+        (State.JOG, State.ESTOP, True),
+        (State.IDLE, State.JOG, True),
+        (State.RUN, State.IDLE, True),
+    ],
+)
+def test_an_answer_outlives_coming_to_rest_alone(said_in: State, state: State, over: bool) -> None:
+    now = [replace(Snapshot(), state=said_in)]
+    answers = PromptAnswers(lambda: now[0], str, lambda: 0.0)
+    answers.say("TOUCH OFF WITH THE MACHINE AT REST AND READY")
+    assert not answers.outlived(now[0])
+    assert answers.outlived(replace(Snapshot(), state=state)) is over
+    answers.ask("PRESS Y", lambda: None)  # a question is answered in its own state or never
+    assert answers.outlived(replace(Snapshot(), state=state))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import cache
@@ -13,6 +14,8 @@ from PySide6.QtCore import QTranslator
 from PySide6.QtGui import QFont, QPainter, QRawFont
 
 import app
+from app.desk.modal_rows import NONE, rows_of
+from app.desk.prompt_line import exactly
 from app.desk.translation import tr
 from app.screen import look
 from app.screen.language import CONTEXT, catalogue, speak_in
@@ -22,16 +25,20 @@ from app.screen.page_base import Page
 from app.screen.theme import DARK
 from app.shapes.shape_form import ShapeForm
 from app.special.logged_events import event_row
-from core.alarms import CATALOGUE, Entry
+from core.alarms import CATALOGUE, Code, Entry
+from core.executor.raised_alarm import make_alarm
 from core.executor.snapshot import Alarm
+from core.interpreter.checkpoint import Checkpoint
+from core.interpreter.modal_state import Modal
 from core.shapes.shape_setting import Setting
 from core.shapes.shape_table import SHAPES
 from core.store.store_rows import EventRow
-from resources.translations.collect import HERE, HOLE, texts
+from resources.translations.collect import HERE, HOLE, HOUSE, texts
 from resources.translations.collect import catalogue as written
 from tests.screen.hands import Hands, Key
 
 KEY_LABEL = 8  # characters
+_LOGGED = re.compile(r'\.log\(\s*"(\w+)"')
 
 
 every_text = cache(texts)  # of every file there is: seconds
@@ -98,6 +105,13 @@ def test_an_alarm_of_the_control_is_told_in_spanish(spanish: Hands, monkeypatch:
         ("alarm", "102 FOLLOWING ERROR: Z is 2.1 off its setpoint", "102 ERROR DE SEGUIMIENTO: Z está a 2.1"),
         ("alarm", "while stopping x: no answer", "al parar x: sin respuesta"),
         (
+            "stop",
+            "702 FEED HOLD: asked for by the button at the station",
+            "702 RETENCIÓN DE AVANCE: pedido por el",
+        ),
+        ("stop", "704 PROGRAM STOP: FACE", "704 PARO DE PROGRAMA: FACE"),
+        ("stop", "705 OPTIONAL STOP: FACE", "705 PARO OPCIONAL: FACE"),
+        (
             "accepted",
             "machine file a.toml accepted by BEN",
             "archivo de máquina a.toml aceptado por BEN",
@@ -107,6 +121,32 @@ def test_an_alarm_of_the_control_is_told_in_spanish(spanish: Hands, monkeypatch:
 def test_the_log_is_told_in_spanish(spanish: Hands, kind: str, english: str, told: str) -> None:
     row = event_row(EventRow("2026-03-02T08:00:00.000Z", kind, english))
     assert told in row.cells[2]
+
+
+def test_every_kind_of_the_log_has_its_word() -> None:
+    known = catalogue("es").translate
+    kinds = {
+        kind for file in (HOUSE / "core/executor").glob("*.py") for kind in _LOGGED.findall(file.read_text())
+    }
+    assert len(kinds) > 15
+    assert {kind for kind in kinds if known(kind) == kind} <= {"mdi"}
+
+
+@pytest.mark.parametrize("code", ["program-stop", "optional-stop"])
+def test_the_message_of_a_stop_is_the_programs(spanish: Hands, code: Code) -> None:
+    told = tr(exactly(make_alarm(code, "FACE", 4, 0.0)))
+    assert told.startswith("FACE; M0")
+    assert "the program" not in told
+    assert tr(exactly(make_alarm(code, "", 4, 0.0))).endswith(("en el programa", "está activo"))
+
+
+def test_the_comment_in_force_is_the_programs(spanish: Hands) -> None:
+    point = Checkpoint(Modal(comment=" FACE ", outputs=frozenset({"coolant"})))
+    told = {row.key: tr(row.value) for row in rows_of(point)}
+    assert told["comment"] == "FACE"
+    assert told["outputs"] == "COOLANT"
+    assert told["units"] == "G70 PULGADAS"
+    assert {row.key: row.value for row in rows_of(Checkpoint(Modal()))}["comment"] == NONE
 
 
 @pytest.mark.parametrize("entry", CATALOGUE.values(), ids=str)
@@ -136,6 +176,10 @@ def test_every_alarm_is_told_whole_wherever_it_stands(entry: Entry) -> None:
         (
             "LINE 50: A tool is fed where there is no metal, from one rapid to the next.",
             "LÍNEA 50: Una herramienta avanza donde no hay metal, de un rápido al siguiente.",
+        ),
+        (
+            "PRESS ONE PALM BUTTON, THEN THE OTHER (F11, F12) TO GO ON",
+            "PULSE UN PULSADOR Y LUEGO EL OTRO (F11, F12) PARA SEGUIR",
         ),
         ("\u2068BEN\u2069 HAS SIGNED IN: SETUP", "\u2068BEN\u2069 HA ENTRADO: PREPARADOR"),
         (

@@ -3,10 +3,15 @@
 from __future__ import annotations
 
 from itertools import combinations
+from types import SimpleNamespace
+from typing import cast
 
 import pytest
+from PySide6.QtCore import QRect
+from PySide6.QtGui import QScreen
 
 from app.screen.window_layout import LEAST, Rect, low_places, places, unit
+from tests.screen.hands import Hands
 
 SIZES = [
     LEAST,
@@ -71,3 +76,17 @@ def test_a_page_with_low_readouts_overlaps_nothing(size: tuple[int, int], dock: 
     for one, two in combinations(parts, 2):
         assert apart(one, two), (one, two)
     assert low.work.h >= 52 * unit(*size) - 1
+
+
+@pytest.mark.parametrize(
+    ("glass", "window"),
+    [((2560, 1440), (1280, 720)), ((3440, 1440), (1720, 720)), ((3840, 2160), (1920, 1080))],
+)
+def test_a_window_among_others_is_a_quarter_of_a_large_glass(
+    hands: Hands, glass: tuple[int, int], window: tuple[int, int]
+) -> None:
+    screen = SimpleNamespace(availableGeometry=lambda: QRect(0, 0, *glass))
+    hands.window.open_on(cast("QScreen", screen))
+    size = hands.window.size()
+    assert (size.width(), size.height()) == window
+    assert not hands.window.isMaximized()

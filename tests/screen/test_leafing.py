@@ -35,6 +35,7 @@ from app.screen.window_layout import FINGER
 from app.shapes.shapes_view import RowsPanel, _Line
 from app.special.special_view import ItemList
 from core.language.diagnostics import Diagnostic, Severity
+from core.store.store_rows import FIELDS
 
 if TYPE_CHECKING:
     from app.offsets.cell_table import CellTable
@@ -282,6 +283,31 @@ def test_a_finger_comes_to_every_tool_of_a_mill(above: QWidget) -> None:
     panel.resize(500, 300)
     assert chosen_rows(panel, lambda: chosen[-1], leaf_keys(panel)) == set(range(MANY))
     assert all(box.height() >= FINGER for box, _press in panel._places)
+
+
+@pytest.mark.parametrize(("wide", "shown"), [(788, 12), (605, 10), (350, 5)])
+def test_cells_of_a_mills_tools_take_a_finger_beside_the_pad(above: QWidget, wide: int, shown: int) -> None:
+    """With twelve columns at 1024x600 that of the teeth had 25 pixels beside the pad."""
+    names = (*FIELDS[MillTools.kind], "used")
+    chosen: list[int] = []
+    table = SimpleNamespace(
+        title="TOOL TABLE", words=names, kind=MillTools.kind, numbers=(1, 2),
+        columns=names, choose=lambda _row, column: chosen.append(column),
+        tone_at=lambda *_: Tone.OFF, value_at=lambda *_: "1.0", field_of=lambda _: "",
+    )  # fmt: skip
+    panel = CellPanel(Look(DARK, SMALL), cast("CellTable", table), above)
+    panel.resize(wide, 150)
+    for column in range(len(names)):
+        panel.cell = (0, column)
+        panel.grab()
+        chosen.clear()
+        for _box, press in panel._places:
+            press()
+        assert column in chosen
+        assert len(chosen) == 2 * len(set(chosen)) >= 2 * shown
+        assert sorted(set(chosen)) == list(range(min(chosen), max(chosen) + 1))
+        assert all(box.width() >= FINGER for box, _press in panel._places)
+    assert len(names) == 12
 
 
 def test_tiles_of_the_main_menu_fit_a_finger(above: QWidget) -> None:
