@@ -56,7 +56,7 @@ class Drafts:
         except (OSError, UnicodeDecodeError, StoreError) as error:
             why = str(error)
         aside = place.replace(place.with_suffix(".left"))  # what is typed now gets its own
-        return messages.DRAFT_STAYS.format(aside, why)
+        return messages.DRAFT_STAYS.format(name=aside, why=why)
 
     def poll(self) -> None:
         """Once a frame: take up what was written, and write what was typed since."""

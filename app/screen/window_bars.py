@@ -8,7 +8,7 @@ from collections.abc import Callable
 from functools import partial
 
 from PySide6.QtCore import QRectF, Qt
-from PySide6.QtGui import QFontMetricsF
+from PySide6.QtGui import QFont, QFontMetricsF
 from PySide6.QtWidgets import QWidget
 
 from app.desk.interrupted_notice import NoticeRow
@@ -17,7 +17,7 @@ from app.desk.prompt_line import Sort
 from app.desk.readouts import Lamp
 from app.desk.translation import tr
 from app.screen.keys import ANSWER
-from app.screen.look import CENTRE, LEFT, RIGHT, Look, Painter, draw_sign, put
+from app.screen.look import CENTRE, LEAST, LEFT, RIGHT, Look, Painter, draw_sign, put, width_of
 from app.screen.panel import Panel, Shown
 from app.screen.window_layout import FINGER
 
@@ -214,6 +214,7 @@ class LampStrip(Panel):
 
 NOTICE_ROW, NOTICE_KEY = 5.0, 17.0  # units: height of a row, width of a key
 NOTICE_LOW = 4.5  # units: height of a row that is only read
+_THREE_LINES = 6.0  # units: height of a row that has room for them
 
 
 class NoticeRows(Panel):
@@ -257,11 +258,15 @@ class NoticeRows(Panel):
         u = self.look.u
         painter.fill(box, row.tone)
         wide = box.width() - len(row.keys) * NOTICE_KEY * u - 2.4 * u
-        upper = QRectF(box.x() + 1.2 * u, box.y(), wide, box.height() * (0.52 if row.figures else 1.0))
+        lines = [row.figures] if row.figures else []
+        if box.height() > _THREE_LINES * u:
+            lines = _in_lines(row.figures, self.look.fit(row.figures, 1.7, wide), wide)
+        upper = QRectF(box.x() + 1.2 * u, box.y(), wide, box.height() * (1.0, 0.52, 0.4)[len(lines)])
         painter.write(upper, row.text, 2.0, "on_state", raw=True)
-        if row.figures:
-            below = upper.translated(0, upper.height())
-            painter.write(below, row.figures, 1.7, "on_state", bold=False, raw=True)
+        high = (box.height() - upper.height()) / max(1, len(lines))
+        for number, line in enumerate(lines):
+            below = QRectF(upper.x(), upper.bottom() + number * high, wide, high)
+            painter.write(below, line, 1.7 if len(lines) == 1 else LEAST, "on_state", bold=False, raw=True)
         for number, (name, label) in enumerate(row.keys):
             x = box.right() - (len(row.keys) - number) * NOTICE_KEY * u
             self._key(painter, QRectF(x, box.y(), NOTICE_KEY * u - 0.6 * u, box.height()), name, label)
@@ -272,3 +277,13 @@ class NoticeRows(Panel):
         painter.write(QRectF(box.x() + 0.8 * u, box.y(), 3.2 * u, box.height()), name, 1.8, "accent")
         painter.write(box.adjusted(3.8 * u, 0, -0.4 * u, 0), label, 1.8, "text", at=CENTRE, margin=0.2)
         self.place(box, partial(self._press, name))
+
+
+def _in_lines(text: str, font: QFont, wide: float) -> list[str]:
+    """Two lines where one has no room even in the smallest letters; the second may still be cut off."""
+    if not text or width_of(text, font) <= wide:
+        return [text] if text else []
+    words, first = text.split(" "), ""
+    while words and width_of(f"{first} {words[0]}".strip(), font) <= wide:
+        first = f"{first} {words.pop(0)}".strip()
+    return [first, " ".join(words)] if first else [text]

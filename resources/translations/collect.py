@@ -254,8 +254,10 @@ ALSO = (
 LOUD = ("app", "core/alarms", "core/executor")  # where a single word in capitals is read by somebody
 HOLE = re.compile(r"%\d|\{\w*(?:[:.][^{}]*)?\}")
 _NO_TEXT = re.compile(
-    r"^\s*(SELECT|INSERT|UPDATE|DELETE|CREATE|PRAGMA|BEGIN|WHERE|FROM|JOIN|LEFT|GROUP|ORDER|ON|AND|COMMIT) .*"
-    r"|^F\d+$|^:memory:$|^[A-Z]{1,3}$|^XYZABC$|^Callable|^finger|^\(?\?|.*[{};]\s*$|^%[YHd]|.*QLineEdit"
+    r"^\s*(SELECT|INSERT|UPDATE|DELETE|CREATE|PRAGMA|BEGIN|COMMIT) .*"
+    r"|^\s*(WHERE|FROM|JOIN|LEFT|GROUP|ORDER|ON|AND) [^{]*[a-z].*"  # of ours those are in capitals
+    r"|^F\d+$|^:memory:$|^[A-Z]{1,3}$|^XYZABC$|^Callable|^finger|^\(?\?|.*[{;]\s*$|^%[YHd]|.*QLineEdit"
+    r"|(?!.*\{\w*\}$).*\}\s*$"  # a bracket that ends no hole
     r"|^(Page|Zoom|Pan|Shift) \w+$|^QWERTY|.*\\|^[A-Z]{2}\d"
     r"|^<(rect|svg|text) |^KeptPass|^'?mill tool'?$|^CYCLE (DEF|CALL)$"
 )

@@ -515,11 +515,6 @@
     </message>
     <message>
       <location filename="" />
-      <source>AND %1 MORE</source>
-      <translation>Y %1 MÁS</translation>
-    </message>
-    <message>
-      <location filename="" />
       <source>Absolute or incremental</source>
       <translation>Absoluto o incremental</translation>
     </message>
@@ -1530,11 +1525,6 @@
     </message>
     <message>
       <location filename="" />
-      <source>FROM DIAMETER</source>
-      <translation>DESDE EL DIÁMETRO</translation>
-    </message>
-    <message>
-      <location filename="" />
       <source>Feed %1 is out of range: %2 to %3.</source>
       <translation>El avance %1 está fuera de rango: de %2 a %3.</translation>
     </message>
@@ -2012,16 +2002,6 @@
       <location filename="" />
       <source>LAYER: ALL</source>
       <translation>TODAS</translation>
-    </message>
-    <message>
-      <location filename="" />
-      <source>LEFT FOR FACING</source>
-      <translation>SOBRANTE PARA CAREAR</translation>
-    </message>
-    <message>
-      <location filename="" />
-      <source>LEFT FOR FINISHING</source>
-      <translation>SOBRANTE PARA ACABAR</translation>
     </message>
     <message>
       <location filename="" />
@@ -5721,7 +5701,7 @@
     <message>
       <location filename="app/desk/interrupted_notice.py" />
       <source>. NOT CERTAIN: THE LAST SECOND OF ITS WAY, AND IF THE CUT IS WHOLE. LOOK AT TOOL AND PART</source>
-      <translation>. NO ES SEGURO: EL ÚLTIMO SEGUNDO DE SU RECORRIDO, NI SI EL CORTE ESTÁ COMPLETO. MIRE HERRAMIENTA Y PIEZA</translation>
+      <translation>. INCIERTO: SU ÚLTIMO SEGUNDO Y SI EL CORTE ESTÁ ENTERO. MIRE HERRAMIENTA Y PIEZA</translation>
     </message>
     <message>
       <location filename="app/desk/interrupted_notice.py" />
@@ -6365,6 +6345,11 @@
     </message>
     <message>
       <location filename="app/desk/readouts.py" />
+      <source>FROM HOME</source>
+      <translation>DESDE REFERENCIA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/readouts.py" />
       <source>HEAD TURNED</source>
       <translation>CABEZAL GIRADO</translation>
     </message>
@@ -6845,6 +6830,11 @@
     </message>
     <message>
       <location filename="app/editor/editor_messages.py" />
+      <source>SAVED, BUT NO VERSION IS KEPT: {}</source>
+      <translation>GUARDADO, PERO NO QUEDA VERSIÓN: {}</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_messages.py" />
       <source>SAVED. WHAT RUNS IS THE PROGRAM AS IT WAS LOADED: LOAD IT AGAIN (F2) WHEN THE RUN HAS ENDED</source>
       <translation>GUARDADO. LO QUE CORRE ES EL PROGRAMA COMO SE CARGÓ: CÁRGUELO DE NUEVO (F2) CUANDO TERMINE</translation>
     </message>
@@ -6890,8 +6880,18 @@
     </message>
     <message>
       <location filename="app/editor/editor_messages.py" />
+      <source>WHAT IS TYPED IS SAFE ONLY WHEN IT IS SAVED: {}</source>
+      <translation>LO ESCRITO SÓLO ESTÁ SEGURO AL GUARDARLO: {}</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_messages.py" />
       <source>WHAT WAS TYPED HERE LAST TIME AND NOT SAVED IS IN THE HISTORY</source>
       <translation>LO QUE SE ESCRIBIÓ AQUÍ LA ÚLTIMA VEZ Y NO SE GUARDÓ ESTÁ EN EL HISTORIAL</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_messages.py" />
+      <source>WHAT WAS TYPED HERE LAST TIME AND NOT SAVED IS IN {name}: {why}</source>
+      <translation>LO QUE SE ESCRIBIÓ AQUÍ LA ÚLTIMA VEZ SIN GUARDARLO ESTÁ EN {name}: {why}</translation>
     </message>
     <message>
       <location filename="app/editor/editor_messages.py" />
@@ -7157,6 +7157,11 @@
       <location filename="app/editor/versions.py" />
       <source>COMPARING</source>
       <translation>COMPARANDO</translation>
+    </message>
+    <message>
+      <location filename="app/editor/versions.py" />
+      <source>FROM VERSION %1 TO THE TEXT IN THE EDITOR</source>
+      <translation>DE LA VERSIÓN %1 AL TEXTO DEL EDITOR</translation>
     </message>
     <message>
       <location filename="app/editor/versions.py" />
@@ -12690,6 +12695,11 @@
     </message>
     <message>
       <location filename="app/screen/readout_panels.py" />
+      <source>AND %1 MORE</source>
+      <translation>Y %1 MÁS</translation>
+    </message>
+    <message>
+      <location filename="app/screen/readout_panels.py" />
       <source>FEED %1</source>
       <translation>AVANCE %1</translation>
     </message>
@@ -12797,6 +12807,11 @@
       <location filename="app/screen/window_frame.py" />
       <source>CYCLE</source>
       <translation>CICLO</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window_frame.py" />
+      <source>FROM LINE 1</source>
+      <translation>LÍNEA 1</translation>
     </message>
     <message>
       <location filename="app/screen/window_frame.py" />
@@ -30205,6 +30220,11 @@
     </message>
     <message>
       <location filename="core/shapes/bar_work.py" />
+      <source>LEFT FOR FACING</source>
+      <translation>SOBRANTE PARA CAREAR</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/bar_work.py" />
       <source>No M code of this machine opens and closes the chuck: bind two to the output collet</source>
       <translation>Ningún código M de esta máquina abre y cierra el plato: asigne dos a la salida collet</translation>
     </message>
@@ -30960,6 +30980,11 @@
     </message>
     <message>
       <location filename="core/shapes/templates.py" />
+      <source>LEFT FOR FINISHING</source>
+      <translation>SOBRANTE PARA ACABAR</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/templates.py" />
       <source>START OF PROGRAM</source>
       <translation>INICIO DE PROGRAMA</translation>
     </message>
@@ -31175,6 +31200,11 @@
     </message>
     <message>
       <location filename="core/shapes/turning.py" />
+      <source>FROM DIAMETER</source>
+      <translation>DESDE EL DIÁMETRO</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/turning.py" />
       <source>G41 does not work in a subroutine, so not in a bar loop: type 0.</source>
       <translation>G41 no funciona en una subrutina, así que tampoco en un bucle de barra: escriba 0.</translation>
     </message>
@@ -31357,6 +31387,11 @@
       <location filename="core/sharing/sharing_errors.py" />
       <source>{place} may not be used so by this user ({why}); ask whoever looks after it for the right</source>
       <translation>este usuario no puede usar así {place} ({why}); pida el permiso a quien lo administra</translation>
+    </message>
+    <message>
+      <location filename="core/sharing/sharing_errors.py" />
+      <source>{place} refuses it: {why}</source>
+      <translation>{place} lo rechaza: {why}</translation>
     </message>
     <message>
       <location filename="core/sharing/sharing_errors.py" />

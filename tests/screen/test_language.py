@@ -33,7 +33,7 @@ from core.interpreter.modal_state import Modal
 from core.shapes.shape_setting import Setting
 from core.shapes.shape_table import SHAPES
 from core.store.store_rows import EventRow
-from resources.translations.collect import HERE, HOLE, HOUSE, texts
+from resources.translations.collect import _NO_TEXT, HERE, HOLE, HOUSE, texts
 from resources.translations.collect import catalogue as written
 from tests.screen.hands import Hands, Key
 
@@ -177,6 +177,12 @@ def test_every_alarm_is_told_whole_wherever_it_stands(entry: Entry) -> None:
             "LINE 50: A tool is fed where there is no metal, from one rapid to the next.",
             "LÍNEA 50: Una herramienta avanza donde no hay metal, de un rápido al siguiente.",
         ),
+        ("FROM HOME", "DESDE REFERENCIA"),
+        ("FROM LINE 1", "LÍNEA 1"),
+        (
+            "WHAT WAS TYPED HERE LAST TIME AND NOT SAVED IS IN A.NC: no room",
+            "LO QUE SE ESCRIBIÓ AQUÍ LA ÚLTIMA VEZ SIN GUARDARLO ESTÁ EN A.NC: no room",
+        ),
         (
             "PRESS ONE PALM BUTTON, THEN THE OTHER (F11, F12) TO GO ON",
             "PULSE UN PULSADOR Y LUEGO EL OTRO (F11, F12) PARA SEGUIR",
@@ -302,6 +308,15 @@ def test_every_text_has_its_spanish() -> None:
     """Run ``python -m resources.translations.collect``, then write what it has put in as unfinished."""
     known = written("es")
     assert sorted(text for text in every_text() if not known.get(text)) == []
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["SELECT %1 FROM %2", "DELETE FROM %1 WHERE %2 = ?", "FROM cycles", "QLabel { color: %1; }", "BEGIN PGM"],
+)
+def test_queries_and_style_sheets_are_no_texts(text: str) -> None:
+    assert text not in every_text()
+    assert _NO_TEXT.match(text)
 
 
 def test_the_templates_are_those_of_the_texts() -> None:

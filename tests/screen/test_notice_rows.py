@@ -5,10 +5,18 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
+from PySide6.QtGui import QPainter
+from PySide6.QtWidgets import QApplication
 
-from app.desk.interrupted_notice import NoticeRow
+from app.desk.interrupted_notice import NoticeRow, _uncertain
+from app.desk.translation import tr
 from app.screen import page_table
+from app.screen.language import speak_in
+from app.screen.look import Look, load_fonts
+from app.screen.theme import DARK
+from app.screen.window_bars import NoticeRows
 from app.screen.window_layout import FINGER
+from core.executor.interrupted_job import CONTROL_LOST
 from core.executor.snapshot import State
 from core.ports import ALL_UNKNOWN, Unknown
 from tests.interrupted import broken_off
@@ -126,3 +134,35 @@ def test_a_row_with_a_key_stays_a_fingertip_high(hands: Hands, monkeypatch: pyte
     with_key, read = rows._high_of(rows.rows[0]), rows._high_of(rows.rows[1])
     assert read < with_key
     assert rows.height() == with_key + read
+
+
+@pytest.mark.parametrize("language", ["en", "es"])
+def test_what_is_not_certain_behind_a_power_cut_is_whole_beside_its_keys(
+    qapp: QApplication, monkeypatch: pytest.MonkeyPatch, language: str
+) -> None:
+    """At 1024x600 its last words, to look at tool and part, were cut off."""
+    assert qapp is not None
+    load_fonts()
+    speak_in(language)
+    drawn: list[str] = []
+    real = QPainter.drawText
+
+    def spy(painter: QPainter, *what: object) -> object:
+        drawn.extend(each for each in what if isinstance(each, str))
+        return real(painter, *what)  # type: ignore[call-overload]
+
+    place = "X R−0.12500 Z −3.12130"
+    stood = tr("STOOD AT {stood}, STANDS AT {now} FROM HOME").format(stood=place, now=place)
+    unsure = _uncertain(broken_off(why=CONTROL_LOST))
+    rows = NoticeRows(Look(DARK, 6.4), lambda _key: None)
+    keys = (("F6", "SEARCHTO"), ("Y", tr("FROM LINE 1")))
+    rows.rows = (NoticeRow("INTERRUPTED", f"{stood}{unsure}", keys),)
+    rows.resize(858, rows.high)
+    monkeypatch.setattr(QPainter, "drawText", spy)
+    rows.grab()
+    speak_in("en")
+    assert " ".join(drawn[1:3]) == rows.rows[0].figures
+    rows.rows = (NoticeRow("INTERRUPTED", "T1", keys),)
+    drawn.clear()
+    rows.grab()
+    assert drawn[:2] == ["INTERRUPTED", "T1"]  # what fits has one line
