@@ -9,6 +9,7 @@ from pathlib import Path
 from app.desk import formats
 from app.desk.program_folder import ENDINGS
 from app.desk.sheet import Row, Sheet
+from app.desk.translation import tr
 from app.programs.removable_media import Medium, Stick, sticks, why_not
 from app.programs.whole_file import FileError
 from core.drawings.drawing_file import is_drawing
@@ -46,7 +47,7 @@ class FolderChooser:
         if self.at is None:
             self.medium = None
             places = [FolderLine(s.label, s.path, True, s.free, s.locked) for s in self.plugged()]
-            return (*places, FolderLine("THIS CONTROL", self.home, True))
+            return (*places, FolderLine(tr("THIS CONTROL"), self.home, True))
         if self.medium is None:
             self.medium = Medium.of(self.top or self.at)
         self.medium.check()

@@ -170,7 +170,7 @@ def _made(store: Store, desk: Desk, back: int) -> ShiftFigures:
 
 
 def _places(folder: Path, plugged: Sequence[Stick]) -> tuple[Place, ...]:
-    return (*(Place(stick.label, stick.path) for stick in plugged), Place("THIS CONTROL", folder))
+    return (*(Place(stick.label, stick.path) for stick in plugged), Place(tr("THIS CONTROL"), folder))
 
 
 def _write(found: ShiftFigures, machine: str, folder: Path, *, metric: bool) -> str:

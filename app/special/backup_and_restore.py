@@ -42,7 +42,7 @@ class BackupAndRestore(SpecialFunction):
     """Return on a place makes a backup there; Return on a backup restores it, after asking."""
 
     name = "BACKUP AND RESTORE"
-    use = "offsets, versions, counts, settings, log"
+    use = "offsets, versions, settings, log"
 
     def __init__(
         self,
@@ -216,7 +216,7 @@ class BackupAndRestore(SpecialFunction):
 
     def prompt(self) -> str:
         """What Return does, for the prompt line."""
-        return "RETURN ON A PLACE BACKS UP, ON A BACKUP RESTORES IT; F4 LOOKS FOR STICKS AGAIN"
+        return "RETURN OR A TOUCH ON A PLACE BACKS UP, ON A BACKUP RESTORES IT; F4 LOOKS FOR STICKS AGAIN"
 
 
 def _other(verdict: Verdict) -> str:
@@ -230,7 +230,7 @@ def _other(verdict: Verdict) -> str:
 def _places(folder: Path, plugged: Sequence[Stick], daily: Path | None) -> tuple[Place, ...]:
     """The control's own folder and the media, each followed by the backups in it, newest first."""
     found: list[Place] = []
-    kept = [("THIS CONTROL", folder), *([("DAILY", daily)] if daily is not None else [])]
+    kept = [(tr("THIS CONTROL"), folder), *([(tr("DAILY"), daily)] if daily is not None else [])]
     for label, path in (*kept, *((stick.label, stick.path) for stick in plugged)):
         found.append(Place(label, path))
         backups = sorted(path.glob(f"*{ENDING}"), key=lambda file: file.name, reverse=True)

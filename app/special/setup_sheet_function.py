@@ -348,4 +348,4 @@ def _changed(before: Sequence[str], now: Sequence[str]) -> str:
 
 def _places(folder: Path, plugged: Sequence[Stick]) -> tuple[Place, ...]:
     """The media, and the control's own folder."""
-    return (*(Place(stick.label, stick.path) for stick in plugged), Place("THIS CONTROL", folder))
+    return (*(Place(stick.label, stick.path) for stick in plugged), Place(tr("THIS CONTROL"), folder))

@@ -95,6 +95,7 @@ def received_sheet(received: Received, name: str) -> Sheet:
 SETTING = "rs232"
 BUSY = "A TRANSFER IS UNDER WAY: WAIT UNTIL IT IS DONE, OR F6 GIVES IT UP"
 UNDER_WAY_NAME = "A PROGRAM IS UNDER WAY: RETURN STORES IT AS IT IS NAMED; ANOTHER NAME CAN BE TYPED AT REST"
+SETS = "RETURN OR A TOUCH CHANGES THE MARKED SETTING; F4 SENDS THE PROGRAM ON THE DESK, F5 RECEIVES ONE"
 THROW_AWAY = "PRESS Y TO THROW THE RECEIVED PROGRAM AWAY, ESC TO KEEP IT"
 
 
@@ -183,7 +184,9 @@ class SerialTransfer(SpecialFunction):
             return "RETURN STORES IT AS A NEW PROGRAM AND STARTS NOTHING; F6 THROWS IT AWAY"
         if self.under_way is not None:
             return "F6 GIVES THE TRANSFER UP; IT GOES ON WHILE OTHER PAGES ARE SHOWN"
-        return "ARROWS MARK A SETTING, RETURN CHANGES IT; F4 SENDS THE PROGRAM ON THE DESK, F5 RECEIVES ONE"
+        return (
+            "RETURN OR A TOUCH CHANGES THE MARKED SETTING; F4 SENDS THE PROGRAM ON THE DESK, F5 RECEIVES ONE"
+        )
 
     def close(self) -> None:
         """The desk shuts: nothing goes on."""
@@ -226,27 +229,28 @@ class SerialTransfer(SpecialFunction):
         if self.under_way is not None or self.worker.busy:
             self.desk.say(BUSY)
         elif not self.settings.port:
-            self.desk.say("NO PORT IS SET: RETURN ON THE FIRST LINE CHOOSES ONE")
+            self.desk.say("NO PORT IS SET: RETURN OR A TOUCH ON THE FIRST LINE CHOOSES ONE")
         else:
             return True
         return False
 
     def _sent(self, count: int) -> None:
         self.under_way = None
-        self._say(tr("{name} IS SENT: {count} BYTES").format(name=self.sends, count=count))
+        self._done(tr("{name} IS SENT: {count} BYTES").format(name=self.sends, count=count))
 
     def _came(self, received: Received) -> None:
         self.under_way, self.received = None, received
         self.entry.text = free_name(self.own, received.name)
-        self._say(tr("A WHOLE PROGRAM HAS COME: {lines} LINES").format(lines=received.lines))
+        self._done(tr("A WHOLE PROGRAM HAS COME: {lines} LINES").format(lines=received.lines))
 
     def _failed(self, why: str) -> None:
         self.under_way = None
-        self._say(tr("NOTHING IS KEPT: {why}").format(why=why))
+        self.last = tr("NOTHING IS KEPT: {why}").format(why=why)
+        self.desk.say(self.last)
 
-    def _say(self, text: str) -> None:
+    def _done(self, text: str) -> None:
         self.last = text
-        self.desk.say(text)
+        self.desk.done(text)
 
     # --- the name of what has come -------------------------------------------------------------------
 
@@ -270,7 +274,7 @@ class SerialTransfer(SpecialFunction):
             return
         self.received = None
         self.persistence.note_change(f"program {path.name} received")
-        self._say(tr("STORED AS A NEW PROGRAM: {name}. NOTHING WAS STARTED").format(name=path.name))
+        self._done(tr("STORED AS A NEW PROGRAM: {name}. NOTHING WAS STARTED").format(name=path.name))
 
     def discard(self) -> None:
         """Throw away what has come, after asking."""
@@ -278,10 +282,13 @@ class SerialTransfer(SpecialFunction):
 
     def _discarded(self) -> None:
         self.received = None
-        self._say("THE RECEIVED PROGRAM IS THROWN AWAY")
+        self._done("THE RECEIVED PROGRAM IS THROWN AWAY")
 
     def _step(self) -> None:
         if self.desk.refused(Act.TRANSFER):
+            return
+        if self.marked == 0 and not self.ports:
+            self.desk.say("NO SERIAL PORT IS THERE: PLUG ITS ADAPTER IN, THEN F8 LOOKS AGAIN")
             return
         ports = list(dict.fromkeys((*self.ports, self.settings.port))) if self.settings.port else self.ports
         self.settings = replace(ROWS[self.marked][2](self.settings, ports))

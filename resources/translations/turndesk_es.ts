@@ -13965,8 +13965,8 @@
     </message>
     <message>
       <location filename="app/special/backup_and_restore.py" />
-      <source>RETURN ON A PLACE BACKS UP, ON A BACKUP RESTORES IT; F4 LOOKS FOR STICKS AGAIN</source>
-      <translation>RETURN SOBRE UN LUGAR RESPALDA, SOBRE UN RESPALDO LO RESTAURA; F4 BUSCA MEMORIAS OTRA VEZ</translation>
+      <source>RETURN OR A TOUCH ON A PLACE BACKS UP, ON A BACKUP RESTORES IT; F4 LOOKS FOR STICKS AGAIN</source>
+      <translation>RETURN O UN TOQUE EN UN LUGAR RESPALDA, EN UN RESPALDO LO RESTAURA; F4 BUSCA MEMORIAS OTRA VEZ</translation>
     </message>
     <message>
       <location filename="app/special/backup_and_restore.py" />
@@ -13995,7 +13995,7 @@
     </message>
     <message>
       <location filename="app/special/backup_and_restore.py" />
-      <source>offsets, versions, counts, settings, log</source>
+      <source>offsets, versions, settings, log</source>
       <translation>correctores, versiones, ajustes</translation>
     </message>
     <message>
@@ -15090,11 +15090,6 @@
     </message>
     <message>
       <location filename="app/transfer/serial_transfer.py" />
-      <source>ARROWS MARK A SETTING, RETURN CHANGES IT; F4 SENDS THE PROGRAM ON THE DESK, F5 RECEIVES ONE</source>
-      <translation>LAS FLECHAS MARCAN UN AJUSTE, RETURN LO CAMBIA; F4 ENVÍA EL PROGRAMA CARGADO, F5 RECIBE UNO</translation>
-    </message>
-    <message>
-      <location filename="app/transfer/serial_transfer.py" />
       <source>AS SET</source>
       <translation>COMO SE AJUSTÓ</translation>
     </message>
@@ -15175,13 +15170,18 @@
     </message>
     <message>
       <location filename="app/transfer/serial_transfer.py" />
-      <source>NO PORT IS SET: RETURN ON THE FIRST LINE CHOOSES ONE</source>
-      <translation>NO HAY PUERTO: RETURN EN LA PRIMERA LÍNEA ELIGE UNO</translation>
+      <source>NO PORT IS SET: RETURN OR A TOUCH ON THE FIRST LINE CHOOSES ONE</source>
+      <translation>NO HAY PUERTO ELEGIDO: RETURN O UN TOQUE EN LA PRIMERA LÍNEA ELIGE UNO</translation>
     </message>
     <message>
       <location filename="app/transfer/serial_transfer.py" />
       <source>NO PROGRAM IS ON THE DESK: CHOOSE THE ONE TO SEND FIRST (F2)</source>
       <translation>NO HAY PROGRAMA CARGADO: ELIJA ANTES EL QUE SE ENVÍA (F2)</translation>
+    </message>
+    <message>
+      <location filename="app/transfer/serial_transfer.py" />
+      <source>NO SERIAL PORT IS THERE: PLUG ITS ADAPTER IN, THEN F8 LOOKS AGAIN</source>
+      <translation>NO HAY NINGÚN PUERTO SERIE: CONECTE SU ADAPTADOR, LUEGO F8 BUSCA OTRA VEZ</translation>
     </message>
     <message>
       <location filename="app/transfer/serial_transfer.py" />
@@ -15207,6 +15207,11 @@
       <location filename="app/transfer/serial_transfer.py" />
       <source>RECEIVING</source>
       <translation>RECIBIENDO</translation>
+    </message>
+    <message>
+      <location filename="app/transfer/serial_transfer.py" />
+      <source>RETURN OR A TOUCH CHANGES THE MARKED SETTING; F4 SENDS THE PROGRAM ON THE DESK, F5 RECEIVES ONE</source>
+      <translation>RETURN O UN TOQUE CAMBIA EL AJUSTE MARCADO; F4 ENVÍA EL PROGRAMA CARGADO, F5 RECIBE UNO</translation>
     </message>
     <message>
       <location filename="app/transfer/serial_transfer.py" />

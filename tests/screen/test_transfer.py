@@ -12,6 +12,7 @@ import pytest
 from pytestqt.qtbot import QtBot
 
 from app.compose.journal import Journal
+from app.desk.prompt_line import Sort
 from app.special.special_functions import SpecialFunctions
 from app.special.special_view import SpecialPage
 from app.transfer.line_transfer import Received
@@ -205,6 +206,19 @@ def test_what_fails_on_the_line_is_told(hands: Hands, lines: FakeLines) -> None:
     assert lines.job is not None
     lines.job.go.set()
     hands.sees(lambda: "NOTHING IS KEPT: parity error in line 7" in hands.desk.notice)
+    assert hands.desk.answers.sort is Sort.ANSWER
+
+
+def test_where_no_port_is_there_that_is_told(hands: Hands) -> None:
+    section = page(hands).model.current
+    assert isinstance(section, SerialTransfer)
+    port, section.ports = section.settings.port, ()
+    hands.key(Key.Key_Return)
+    assert "NO SERIAL PORT IS THERE" in hands.desk.notice
+    assert section.settings.port == port
+    hands.key(Key.Key_Down)
+    hands.key(Key.Key_Return)  # the other settings need none
+    assert "NO SERIAL PORT" not in hands.desk.notice
 
 
 def test_without_a_program_on_the_desk_nothing_is_sent(hands: Hands, lines: FakeLines) -> None:
@@ -221,6 +235,7 @@ def test_the_program_on_the_desk_goes_out(hands: Hands, lines: FakeLines) -> Non
     assert lines.job is not None
     lines.job.go.set()
     hands.sees(lambda: "pin.nc IS SENT: 1280 BYTES" in hands.desk.notice)
+    assert hands.desk.answers.sort is Sort.DONE
     (said,) = lines.said
     assert said[1] is not None
     assert said[1].name == "pin.nc"
