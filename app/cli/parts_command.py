@@ -133,7 +133,7 @@ def _lines(store: Store, names: Sequence[str]) -> Iterator[str]:
         yield "no parts are known yet\n"
     for name in names:
         data = _data(store, name)
-        times = [row.seconds for row in data.cycles if row.part]
+        times = [row.seconds for row in data.whole_cycles]
         mean = f", cycle {sum(times) / len(times):.1f} s in the mean of {len(times)}" if times else ""
         yield f"{name}: parts {store.parts(name)}{mean}\n"
         for row in data.features:

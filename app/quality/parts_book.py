@@ -10,6 +10,7 @@ from typing import Any
 
 from app.desk.access import Access
 from app.desk.latest import Latest
+from app.quality.cycle_recorder import COMPLETE
 from core.access.access_table import Act
 from core.quality.measured_feature import CorrectedBy, Feature, FeatureKind
 from core.store import measured_parts, part_cycles, tool_lives
@@ -41,6 +42,11 @@ class PartsData:
     corrections: tuple[CorrectionRow, ...] = ()
     day: tuple[CycleTime, ...] = ()  # when all programs ran, as long ago as a shift may be
     jobs: tuple[JobRow, ...] = ()  # the queue
+
+    @property
+    def whole_cycles(self) -> tuple[CycleRow, ...]:
+        """Those whose time is that of the program: none that a restart has finished, or somebody given up."""
+        return tuple(row for row in self.cycles if row.outcome == COMPLETE and row.seconds > 0.0)
 
     def readings_of(self, feature: int) -> tuple[ReadingRow, ...]:
         """Readings of a feature in the order in which they were taken."""

@@ -13,7 +13,6 @@ from app.desk.formats import NOTHING, duration, fixed
 from app.desk.sheet import Row, Sheet, edited
 from app.desk.translation import tr
 from app.offsets.offset_values import signed
-from app.quality.cycle_recorder import COMPLETE
 from app.quality.parts_watch import PartsWatch
 from app.quality.plots import ChartDrawing, Curve, Level, Plot
 from app.quality.section import QualitySection
@@ -23,7 +22,6 @@ from core.access.access_table import Act
 from core.executor.snapshot import Snapshot
 from core.quality.availability import Availability, Span, availability
 from core.quality.stops import pareto, times_between
-from core.store.part_cycles import CycleRow
 from core.store.store_errors import StoreError
 
 KINDS = ("CYCLE TIME", "WEAR", "STOPS", "SPINDLE LOAD", "AVAILABILITY")
@@ -86,9 +84,6 @@ class TrendsSection(QualitySection):
 
     # --- figures -------------------------------------------------------------------------------------
 
-    def _cycles(self) -> list[CycleRow]:
-        return [row for row in self.data.cycles if row.outcome == COMPLETE and row.seconds > 0.0]
-
     def _figure(self, kind: str) -> str:
         return {
             "CYCLE TIME": self._cycle_words,
@@ -99,7 +94,7 @@ class TrendsSection(QualitySection):
         }[kind]()
 
     def _cycle_words(self) -> str:
-        times = [row.seconds for row in self._cycles()]
+        times = [row.seconds for row in self.data.whole_cycles]
         if not times:
             return tr("no part was made yet")
         text = tr("last {last}, shortest {best}, mean {mean} of {count} parts")
@@ -184,7 +179,7 @@ class TrendsSection(QualitySection):
         }[self.kind]()
 
     def _cycle_plots(self) -> tuple[Plot, ...]:
-        rows = self._cycles()
+        rows = self.data.whole_cycles
         if not rows:
             return ()
         times = np.asarray([row.seconds for row in rows])

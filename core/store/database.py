@@ -24,6 +24,7 @@ _MIGRATIONS = Path(__file__).with_name("migrations")
 _MAGIC = b"SQLite format 3\0"
 _BUSY_SECONDS = 5.0
 _LOCK = "turndesk.lock"
+_WRITTEN_HERE = set[Path]()  # folders whose store this process writes
 _NO_ROOM = frozenset({Cause.FULL, Cause.FORBIDDEN})
 
 
@@ -37,7 +38,13 @@ def migrations() -> tuple[str, ...]:
 
 
 def check_header(path: Path) -> None:
-    """Raises StoreError unless ``path`` begins like a store of ours. Reads 100 bytes, opens no database."""
+    """Raises StoreError unless ``path`` begins like a store of ours. Reads 100 bytes, opens no database.
+
+    One that this process writes was looked at before; a file that a process closes loses all the locks that
+    SQLite holds on it in that process, and the next other program that reads it takes its log away.
+    """
+    if path.name == FILE_NAME and path.parent.resolve() in _WRITTEN_HERE:
+        return
     try:
         with path.open("rb") as file:
             header = file.read(100)
@@ -247,14 +254,20 @@ class WriterLock:
             raise StoreError(
                 f"the store in {folder} is in use by another TurnDesk{who}; close that one, or enter it there"
             ) from error
+        self._folder = folder.resolve()
         with suppress(OSError):  # a courtesy to whoever finds it taken; a full disk has no room for it
             os.ftruncate(self._file, 0)
             os.lseek(self._file, 0, os.SEEK_SET)
             os.write(self._file, f"{os.getpid()}\n".encode("ascii"))
 
+    def opened(self) -> None:
+        """From now on SQLite holds the store's file open in this process."""
+        _WRITTEN_HERE.add(self._folder)
+
     def close(self) -> None:
         """Give the store free. Calling it again does nothing."""
         if self._file >= 0:
+            _WRITTEN_HERE.discard(self._folder)
             os.close(self._file)
             self._file = -1
 
@@ -329,6 +342,7 @@ def open_to_write(folder: Path) -> Opened:
             create(path)
         version, wrong = _checked(path, thorough=True)
         put_aside = _put_damaged_log_aside(path)
+        lock.opened()
         writer, mended = _writing(path, version, wrong)
         undo.callback(writer.close)
         reader = connect(path, read_only=True)
@@ -337,9 +351,14 @@ def open_to_write(folder: Path) -> Opened:
 
 
 def check_log(path: Path, reader: sqlite3.Connection) -> None:
-    """Raises StoreError where changes in the log can be read no more, and no desk runs that has told it."""
+    """Raises StoreError where changes in the log can be read no more, and no desk runs that has told it.
+
+    Beside a desk nothing is looked at: that opens SQLite's index and closes it (see ``check_header``).
+    """
+    if in_use(path.parent):
+        return
     lost = _lost_changes(path, reader)
-    if lost and not in_use(path.parent):
+    if lost:
         raise StoreError(
             f"{path}: its log is damaged, and {_changes(lost)} saved last cannot be read; start turndesk "
             "once, which keeps the log beside and goes on with what was there before, or restore a backup"

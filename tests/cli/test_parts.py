@@ -25,9 +25,8 @@ def made(home: Path) -> Path:
     with Store.open(home) as store:
         of = store.write(lambda c: measured_parts.save_feature(c, row)).result(60)
         for part in range(1, 11):
-            made = CycleRow(
-                f"c{part}", "peg.nc", part, "2026-01-01T00:00:00Z", "2026-01-01T00:01:00Z", 60.0 + part
-            )
+            began, ended = "2026-01-01T00:00:00Z", "2026-01-01T00:01:00Z"
+            made = CycleRow(f"c{part}", "peg.nc", part, began, ended, 60.0 + part, "COMPLETE")
             store.write(partial(part_cycles.save_cycle, row=made)).result(60)
             store.count_part("peg.nc")
             reading = ReadingRow(0, of, part, 12.69 if part % 2 else 12.71, "in", "2026", "gauge", "mic")
@@ -83,6 +82,10 @@ def test_csv_has_a_line_a_reading_in_the_unit_that_was_read(turndesk: Turndesk, 
 
 
 def test_in_words(turndesk: Turndesk, made: Path) -> None:
+    with Store.open(made) as store:  # its time is not that of the program
+        began, ended = "2026-01-01T00:02:00Z", "2026-01-01T00:02:05Z"
+        rest = CycleRow("r", "peg.nc", 10, began, ended, 5.0, "RESTARTED")
+        store.write(partial(part_cycles.save_cycle, row=rest)).result(60)
     out = turndesk("parts").out.splitlines()
     assert out[0] == "peg.nc: parts 10, cycle 65.5 s in the mean of 10"
     assert out[1] == "  SPIGOT 12.7000 mm: readings 10, last 12.7100 mm of part 10, Cpk 0.94"

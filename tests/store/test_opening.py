@@ -14,6 +14,7 @@ from pathlib import Path
 import pytest
 
 from core.store import backup, database
+from core.store.database import in_use
 from core.store.store import Store, StoreError
 from core.store.store_file import FILE_NAME
 from core.store.store_rows import ToolRow
@@ -244,3 +245,55 @@ def test_a_folder_that_this_user_may_not_look_into_is_told(closed: Path) -> None
         for what in tried:
             with pytest.raises(StoreError, match=r"its rights|space and rights|folder of yours"):
                 what()
+
+
+# Asks as another program would, for the locks by which SQLite knows that the store is open: one byte of its
+# index, the shared bytes of the file. 1: somebody holds them.
+_ASK = """
+import fcntl, sys
+taken = 0
+for path, at, count in ((sys.argv[1], 0x40000002, 510), (sys.argv[1] + "-shm", 128, 1)):
+    with open(path, "r+b") as file:
+        try:
+            fcntl.lockf(file, fcntl.LOCK_EX | fcntl.LOCK_NB, count, at)
+        except OSError:
+            taken += 1
+sys.exit(taken)
+"""
+
+
+def locks_held(path: Path) -> int:
+    return subprocess.run([sys.executable, "-c", _ASK, str(path)], check=False).returncode
+
+
+@pytest.mark.skipif(os.name != "posix", reason="locks that a process loses are those of POSIX")
+@pytest.mark.parametrize("look", ["backup", "verify", "read", "in use"])
+def test_an_open_store_keeps_sqlites_locks_whatever_else_the_desk_does(
+    folder: Path, tmp_path: Path, look: str
+) -> None:
+    """Without them the next other program that opens the store takes its log, and all that is saved later."""
+    path = folder / FILE_NAME
+    with Store.open(folder) as store:
+        store.set_setting("language", "es").result()
+        assert locks_held(path) == 2
+        if look == "backup":
+            backup.backup(folder, tmp_path / "b.db")
+        elif look == "verify":
+            assert backup.problems(path) == ()
+        elif look == "read":
+            Store.open(folder, read_only=True).close()
+        else:
+            assert in_use(folder)
+        assert locks_held(path) == 2
+
+
+@pytest.mark.skipif(os.name != "posix", reason="locks that a process loses are those of POSIX")
+def test_another_program_that_reads_an_open_store_leaves_its_log(folder: Path, tmp_path: Path) -> None:
+    """What is saved behind that would be gone with a desk that is killed."""
+    look = "import sqlite3, sys; c = sqlite3.connect(sys.argv[1]); c.execute('SELECT * FROM runs'); c.close()"
+    with Store.open(folder) as store:
+        store.set_setting("language", "es").result()
+        backup.backup(folder, tmp_path / "b.db")
+        log = (folder / f"{FILE_NAME}-wal").stat().st_ino
+        subprocess.run([sys.executable, "-c", look, str(folder / FILE_NAME)], check=True)
+        assert (folder / f"{FILE_NAME}-wal").stat().st_ino == log
