@@ -23,6 +23,7 @@ from core.shapes.pieces import (
     pieces,
     renewed,
     setting_at,
+    unreadable,
     with_shape,
 )
 from core.shapes.program_head import HEAD
@@ -112,7 +113,18 @@ class Shapes:
             self._open_piece(here)
         else:
             self.marked = 0 if not self.listed else max(1, self.marked)
+            self._tell_unreadable(line - 1)
         return ""
+
+    def _tell_unreadable(self, line: int) -> None:
+        """Lines that a form has written, and none can open any more."""
+        found = unreadable(self.lines, line, self.new.dialect) if self.of_shapes else None
+        if found is not None and line < len(self.lines):
+            at, shape = found
+            text = tr(
+                "LINE {line}: THE COMMENT OF THIS {shape} WAS CHANGED AND CANNOT BE READ ANY MORE; UNDO IT"
+            )
+            self.notice = text.format(line=at + 1, shape=tr(shape.name))
 
     @property
     def of_shapes(self) -> bool:

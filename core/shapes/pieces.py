@@ -159,6 +159,24 @@ def _head_of(line: str, dialect: Dialect) -> tuple[Shape, dict[str, Value]] | No
     return shape, values
 
 
+def unreadable(lines: Sequence[str], at: int, dialect: Dialect) -> tuple[int, Shape] | None:
+    """A shape whose comment was spoilt, and its line from 0, where ``at`` may be one of its lines.
+
+    Such a comment begins with the name and still has two words of its fields: others write DRILL there too.
+    """
+    for line in range(min(at, len(lines) - 1), -1, -1):
+        found = _COMMENT[dialect].search(lines[line])
+        known = named(found[1].split(), dialect) if found is not None else None
+        if known is None:
+            continue
+        shape, words = known
+        if _head_of(lines[line], dialect) is not None:
+            return None
+        if sum(each.word in words for each in shape.fields) > 1:
+            return line, shape
+    return None
+
+
 # --- the pieces of a text
 
 

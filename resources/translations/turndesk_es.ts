@@ -13450,6 +13450,11 @@
     </message>
     <message>
       <location filename="app/shapes/shapes_model.py" />
+      <source>LINE {line}: THE COMMENT OF THIS {shape} WAS CHANGED AND CANNOT BE READ ANY MORE; UNDO IT</source>
+      <translation>LÍNEA {line}: EL COMENTARIO DE ESTA FORMA ({shape}) SE CAMBIÓ Y YA NO SE PUEDE LEER; DESHÁGALO</translation>
+    </message>
+    <message>
+      <location filename="app/shapes/shapes_model.py" />
       <source>PAD</source>
       <translation>TECLAS</translation>
     </message>

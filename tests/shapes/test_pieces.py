@@ -11,7 +11,7 @@ from core.shapes.shape import Filled, filled
 from core.shapes.shape_fields import Value
 from core.shapes.shape_setting import Setting, Shop
 from core.shapes.shape_table import SHAPES
-from tests.shapes.hand import bad, proved
+from tests.shapes.hand import Programmer, bad, proved
 
 SHOP = Shop(slide_accel=3048.0)
 PROFILE = (Row(0.0, 0.0), Row(0.5, chamfer=0.05), Row(z=-0.5), Row(0.7, -0.6, arc=0.2), Row(0.7, -0.9))
@@ -332,3 +332,32 @@ def test_nose_compensation_in_a_bar_loop_is_refused() -> None:
     assert setting.called
     one = filled(SHAPES["T"], {"COMP": 1.0}, setting, PROFILE[:3])
     assert [each.word for each in one.refusals(setting)] == ["COMP"]
+
+
+DRILLED = "T1(DRILL 0P25 DIA 0P5 DEEP 0 PECK 0P004 FEED 1200 RPM)"
+
+
+@pytest.mark.parametrize("line", [3, 6, 9])
+@pytest.mark.parametrize(
+    "spoilt",
+    [DRILLED.replace("DEEP", "DEEPER"), DRILLED.replace(")", " BY JOE)"), DRILLED.removeprefix("T1")],
+)
+def test_a_comment_that_is_spoilt_is_told_with_its_line(spoilt: str, line: int) -> None:
+    text = Programmer().strike("n§d.25⏎.5§").close()
+    assert DRILLED in text
+    hand = Programmer(text=text)
+    hand.open(text.replace(DRILLED, spoilt), line)
+    assert hand.shapes.form is None
+    told = "LINE 3: THE COMMENT OF THIS DRILL WAS CHANGED AND CANNOT BE READ ANY MORE; UNDO IT"
+    assert hand.shapes.prompt() == told
+
+
+@pytest.mark.parametrize(
+    ("comment", "line"), [("(DRILL)", 3), ("(DRILL .25 DIA BY HAND)", 5), (DRILLED.removeprefix("T1"), 2)]
+)
+def test_a_comment_of_another_hand_is_none_of_ours(comment: str, line: int) -> None:
+    """Of the last one the cursor stands in the head, which can be read."""
+    text = Programmer().strike("n§d.25⏎.5§").close()
+    hand = Programmer(text=text)
+    hand.open(text.replace(DRILLED, f"T1{comment}" if line > 2 else comment), line)
+    assert "CANNOT BE READ" not in hand.shapes.prompt()
