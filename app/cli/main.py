@@ -37,6 +37,7 @@ COMMANDS = (
     "shift",
     "scope",
     "setup",
+    "shapes",
     "profile",
 )
 

@@ -12,7 +12,8 @@ from app.desk.standard_input import DASH, standard_input
 from core.nearest import nearest
 
 _MOST_BYTES = 16 * 1024 * 1024
-_POINT_FIRST = re.compile(r"^(\s*[\w.\"-]+\s*=\s*[-+]?)(?=\.\d)", re.MULTILINE)
+# Texts and comments stay as they are; behind =, [ or , a figure may begin with its point.
+_POINT_FIRST = re.compile(r"""(?:"(?:\\.|[^"\\\n])*"|'[^'\n]*'|\#.*)|([=\[,]\s*[-+]?)(?=\.\d)""")
 
 
 def read_toml(path: Path) -> dict[str, object]:
@@ -22,13 +23,17 @@ def read_toml(path: Path) -> dict[str, object]:
     """
     try:
         text = _bytes_of(path).decode("utf-8").replace("\r\n", "\n")
-        return tomllib.loads(_POINT_FIRST.sub(r"\g<1>0", text))
+        return tomllib.loads(_POINT_FIRST.sub(_with_nought, text))
     except OSError as error:
         raise CommandError(f"{path} cannot be read ({error.strerror}); check name and rights") from error
     except UnicodeDecodeError as error:
         raise CommandError(f"{path} is not UTF-8 text; save it as such") from error
     except tomllib.TOMLDecodeError as error:
         raise CommandError(f"{path} is no TOML: {error}") from error
+
+
+def _with_nought(found: re.Match[str]) -> str:
+    return found[0] if found[1] is None else f"{found[1]}0"
 
 
 def _bytes_of(path: Path) -> bytes:

@@ -93,7 +93,7 @@ RULES: dict[Act, Rule] = {
         "saving, copying, renaming, deleting, importing and receiving a program; publishing it by a command, "
         "taking that of another desk or keeping one's own against it",
         "F3, F6, F10, X",
-        "serial receive, share publish, share take, share keep, profile --out",
+        "serial receive, share publish, share take, share keep, profile --out, shapes --out",
     ),
     Act.STOCK: Rule(
         Level.SETUP,

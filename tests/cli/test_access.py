@@ -142,6 +142,7 @@ CHANGES: dict[str, tuple[str, ...]] = {
     "prove": ("{program}", "--stock", "bar:1.0", "--keep-stock"),
     "run": ("{program}", "--headless", "--stock", "bar:1.0", "--keep-stock"),
     "profile": ("{file}", "--out", "{folder}/new.nc"),
+    "shapes": ("{file}", "--out", "{folder}/new.nc"),
 }  # fmt: skip
 """Each command that changes something, with what it needs to come to the question who does it."""
 

@@ -109,6 +109,8 @@ COVERED = {
        for option in ("--list", "--unit", "--layer", "--axis", "--contour", "--front", "--zero", "--shift",
                       "--side", "--gap", "--metric", "--material", "--bar", "--face", "--hole", "--rough",
                       "--tool", "--groove-tool", "--comp", "--tools", "--machine", "--out", "--json")},
+    **{("shapes", option): "tests/cli/test_shapes.py"
+       for option in ("--list", "--out", "--tools", "--machine", "--json")},
     **{(f"share {action}", option): "tests/cli/test_share.py"
        for action in ("begin", "status", "publish", "compare", "take", "keep")
        for option in ("--machine", "--json")},
@@ -123,7 +125,7 @@ COVERED = {
        for command in ("prove", "run", "offsets set", "offsets clear", "offsets undo", "store restore",
                        "store import", "setup load", "machine accept", "jobs add", "jobs move", "jobs remove",
                        "jobs clear", "access add", "access pin", "access remove", "share begin",
-                       "share publish", "share take", "share keep", "serial receive", "profile")},
+                       "share publish", "share take", "share keep", "serial receive", "profile", "shapes")},
     **{("access " + action, "--json"): "tests/cli/test_access.py" for action in ("list", "table")},
     ("access add", "--level"): "tests/cli/test_access.py",
     ("serial receive", "--out"): "tests/drivers/transfer",

@@ -1,0 +1,188 @@
+"""``turndesk shapes FORM.toml --out part.nc``: the forms of the editor as a file, and their program."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from app.cli.program_options import out_file
+from app.cli.store_command import opened_store
+from app.cli.who_changes import add_as_option, note_change, who_may
+from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError
+from core.access.access_table import Act
+from core.language.source import Dialect, Source, dialect_of
+
+if TYPE_CHECKING:
+    from app.cli.program_options import SubParsers
+    from app.cli.shape_steps import Step, Written
+    from core.machine.machine_model import Machine
+
+_ABOUT = """\
+Each [[step]] is a form of the editor, with its fields as keys; what is not said is proposed, as there:
+
+  [[step]]
+  kind = "head"
+  bar = 1.0
+  [[step]]
+  kind = "face"
+  t = 1
+  [[step]]
+  kind = "turn"
+  points = [{x = .5, z = 0}, {z = -.5}, {x = .7, r = .1}, {z = -1.1}]
+
+turndesk shapes --list names all kinds and their keys.
+"""
+
+
+def add_parser(subparsers: SubParsers) -> None:
+    """Declare the command."""
+    parser = subparsers.add_parser(
+        "shapes",
+        help="make a program of the forms that a file fills in",
+        description=_ABOUT,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("file", metavar="FORM.toml", nargs="?", help="- is stdin")
+    parser.add_argument("--list", action="store_true", help="the kinds of steps and their keys")
+    parser.add_argument(
+        "--out",
+        type=out_file,
+        metavar="FILE",
+        help="the program: .nc is OmniTurn, .mpf SINUMERIK (default: stdout)",
+    )
+    parser.add_argument("--tools", metavar="FILE", help="shapes of the tools, instead of the stored ones")
+    parser.add_argument("--machine", metavar="FILE", help="machine file (default: the simulated lathe)")
+    add_as_option(parser)
+    parser.add_argument("--json", action="store_true", help="machine-readable output alone on stdout")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Write the program and prove it; 1 when it would have errors. Raises CommandError."""
+    from app.compose.machine_setup import read_machine
+
+    machine = read_machine(args.machine)
+    dialect = _language(args.out, machine)
+    if args.list:
+        return _list(dialect, as_json=args.json)
+    if args.file is None:
+        raise CommandError("name the file with the steps; --list says what may stand in it")
+    who = _may_write(args)
+    made = _written(args, machine, dialect)
+    text = "\n".join(made.lines) + "\n"
+    errors, cycle = _proved(args, machine, Source(_name(args, dialect), text, dialect))
+    if args.out is not None:
+        _write(args, text, who)
+    _tell(args, made, text, errors, cycle)
+    return EXIT_ERRORS if errors else EXIT_OK
+
+
+def _language(out: str | None, machine: Machine) -> Dialect:
+    """By the name of the program, without one that of the machine."""
+    said = Dialect(machine.language) if out is None else dialect_of(Path(out).name)
+    if said is Dialect.KLARTEXT:
+        raise CommandError(f"{out or machine.source}: shapes are OmniTurn or SINUMERIK; name it .nc or .mpf")
+    return said
+
+
+def _may_write(args: argparse.Namespace) -> str:
+    if args.out is None:
+        return ""
+    if Path(args.out).exists():
+        raise CommandError(f"{args.out} is there already and is never replaced; take another name")
+    if not Path(args.out).parent.is_dir():
+        raise CommandError(f"{args.out}: cannot be written: its folder is not there")
+    return who_may(opened_store, args, Act.PROGRAMS)
+
+
+def _name(args: argparse.Namespace, dialect: Dialect) -> str:
+    from core.language.source import usual_ending
+
+    return Path(args.out).name if args.out is not None else f"shapes{usual_ending(dialect)}"
+
+
+def _written(args: argparse.Namespace, machine: Machine, dialect: Dialect) -> Written:
+    from app.cli.shape_steps import StepError, written
+    from app.compose.shapes_desk import shop_of
+    from app.compose.stored_offsets import stored_shapes
+    from app.offsets.offsets_file import read_tool_shapes
+    from core.shapes.shape_setting import Setting
+
+    steps = _steps(Path(args.file))
+    shapes = stored_shapes() if args.tools is None else read_tool_shapes(Path(args.tools))
+    new = Setting(metric=not machine.inch, shop=shop_of(machine, shapes), dialect=dialect)
+    try:
+        return written(steps, new)
+    except StepError as error:
+        raise CommandError(f"{args.file}: {error}") from error
+
+
+def _steps(path: Path) -> list[Step]:
+    from app.desk.toml_file import read_toml, refuse, unknown
+
+    data = read_toml(path)
+    refuse(path, [unknown(key, ["step"]) for key in data if key != "step"])
+    steps = data.get("step")
+    if not isinstance(steps, list) or not steps or not all(isinstance(each, dict) for each in steps):
+        raise CommandError(
+            f'{path} has no steps; each is a table [[step]] with a kind, such as kind = "head"'
+        )
+    return steps
+
+
+def _proved(args: argparse.Namespace, machine: Machine, source: Source) -> tuple[tuple[str, ...], float]:
+    from app.compose.program_transfer import proving
+    from app.compose.stored_offsets import chosen_offsets
+    from app.compose.workshop import workshop
+
+    return proving(workshop(machine, chosen_offsets(args.tools), pictures=False))(source)
+
+
+def _write(args: argparse.Namespace, text: str, who: str) -> None:
+    from app.programs.whole_file import FileError, write_new
+
+    try:
+        write_new(Path(args.out), text.encode("ascii"))
+    except FileError as error:
+        raise CommandError(str(error)) from error
+    note_change(opened_store, who, f"program {Path(args.out).name} made of {Path(args.file).name}")
+
+
+def _tell(args: argparse.Namespace, made: Written, text: str, errors: tuple[str, ...], cycle: float) -> None:
+    if args.json:
+        told = {"file": args.file, "out": args.out, "program": text, "steps": list(made.kinds)}
+        more = {"words": list(made.words), "errors": list(errors), "cycle_time_s": round(cycle, 3)}
+        sys.stdout.write(json.dumps({**told, **more}) + "\n")
+        return
+    if args.out is None:
+        sys.stdout.write(text)
+    else:
+        sys.stdout.write(
+            f"{args.out}: {len(made.lines)} lines, steps: {len(made.kinds)}, cycle {cycle:.1f} s\n"
+        )
+    for line in (*made.words, *errors):
+        sys.stderr.write(f"turndesk: {line}\n")
+
+
+def _list(dialect: Dialect, *, as_json: bool) -> int:
+    from app.cli.shape_steps import POINTS, keys_of, kinds_of
+
+    found = {
+        kind: [*keys_of(shape), *((POINTS,) if shape.contour else ())]
+        for kind, shape in kinds_of(dialect).items()
+    }
+    if as_json:
+        sys.stdout.write(json.dumps(found) + "\n")
+        return EXIT_OK
+    for kind, shape in kinds_of(dialect).items():
+        sys.stdout.write(f"{kind}: {shape.use}\n")
+        for key, word in keys_of(shape).items():
+            known = shape.field(word)
+            choices = f": {', '.join(known.choices).lower()}" if known is not None and known.choices else ""
+            label = known.label.lower() if known is not None else ""
+            sys.stdout.write(f"  {key:<10} {label}{choices}\n")
+        if shape.contour:
+            sys.stdout.write(f"  {POINTS:<10} a list of x, z, and chamfer c, radius r or arc a\n")
+    return EXIT_OK
