@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from pathlib import Path
 
-from app.shapes.drawing_plan import Asked, Plan, pictured
+from app.shapes.drawing_plan import ALL, OWN, UNITS, Asked, Plan, pictured
 from app.shapes.shape_form import ShapeForm
 from core.drawings.drawing_view import Front, Side, Zero
 from core.drawings.part_against_drawing import Comparison
@@ -22,6 +22,7 @@ from core.shapes.sketch import Dim, Sketch, cut, part, sketch
 
 NO_DRAWINGS = "There is no drawing beside the programs: copy a DXF or SVG there by F6, F8."
 WAITS = "THE DRAWING IS BEING READ"
+_WORDS = {"DUNIT": (*UNITS, OWN), "LAYER": (ALL,)}  # choices of a drawing that are words of ours
 
 
 def _inside(values: Values) -> bool:
@@ -189,6 +190,10 @@ class DrawingForm(ShapeForm):
         if each.choices or self.plan is None:
             return each.choices
         return self.plan.choices.get(each.word, ())
+
+    def is_word(self, each: Field, choice: str) -> bool:
+        """Also of what the drawing brings: its layers have names, but for that of all."""
+        return choice in each.choices or choice in _WORDS.get(each.word, ())
 
     def dimension(self, word: str) -> str:
         """The number of a contour."""

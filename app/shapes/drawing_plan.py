@@ -35,6 +35,7 @@ if TYPE_CHECKING:
 
 ALL = "ALL"
 UNITS = {"MM": 1.0, "INCH": 25.4}
+OWN = "AS DRAWN"
 _MOST_DRAWN = 3000  # elements of a picture
 _CHORD = 0.15  # rad of an arc of the picture
 _NUMBERS = ("FROM", "STOCK", "HOLE", "ROUGH", "T", "BLADE", "COMP")
@@ -153,8 +154,8 @@ class _Making:
         self.choices["DUNIT"] = tuple(UNITS)
         own = next((name for name, mm in UNITS.items() if abs(mm - self.drawing.unit) < 1e-9), "")
         if self.drawing.unit and not own:
-            self.choices["DUNIT"] = (*UNITS, _OWN)
-            own = _OWN
+            self.choices["DUNIT"] = (*UNITS, OWN)
+            own = OWN
         said = self.word("DUNIT", own)
         if not said:
             raise DrawingError(f"{self.drawing.name} does not say its unit: choose MM or INCH.")
@@ -196,7 +197,6 @@ class _Making:
         return profile_program(chosen, fields, asked.lines, asked.setting), fields
 
 
-_OWN = "AS DRAWN"
 _FIELDS = frozenset(
     {"FILE", "DUNIT", "LAYER", "AXIS", "CONTOUR", "FRONT", "ZERO", "SHIFT", "SIDE", *_NUMBERS}
 )

@@ -187,7 +187,11 @@ class ShapeForm:
     def shown(self, each: Field) -> str:
         """The same as an operator reads it: a choice in his language, names and sizes as they are."""
         said = self.figure(each)
-        return shown_choice(each, said) if said in each.choices else said
+        return shown_choice(each, said) if self.is_word(each, said) else said
+
+    def is_word(self, each: Field, choice: str) -> bool:
+        """Whether a choice is a word of ours, and no name or size."""
+        return choice in each.choices
 
     def dimension(self, word: str) -> str:
         """The figure of a dimension of the drawing."""
@@ -300,7 +304,7 @@ class ShapeForm:
 
     def _begins(self, here: Field, choice: str, key: str) -> bool:
         """Whether a choice begins with a letter as it is shown."""
-        said = shown_choice(here, choice) if choice in here.choices else choice
+        said = shown_choice(here, choice) if self.is_word(here, choice) else choice
         return said.upper().startswith(key.upper())
 
     def _write_point(self, key: str) -> None:

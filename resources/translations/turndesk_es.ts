@@ -8826,7 +8826,7 @@
     <message>
       <location filename="app/offsets/offset_history.py" />
       <source>{names} SAVED</source>
-      <translation>{names} GUARDADAS</translation>
+      <translation>{names}: GUARDADO</translation>
     </message>
     <message>
       <location filename="app/offsets/offset_history.py" />

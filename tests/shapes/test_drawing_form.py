@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 
 from app.compose.shapes_desk import attempt
+from app.screen.language import speak_in
 from app.shapes.drawing_form import DrawingForm
 from app.shapes.shapes_model import Shapes
 from core.shapes.shape_setting import Setting, Shop
@@ -52,6 +53,22 @@ def desk(tmp_path: Path) -> Any:
     made = Desk(tmp_path)
     yield made
     made.shapes.close()
+
+
+def test_unit_and_layer_are_told_in_spanish_and_names_of_layers_are_not(desk: Desk, tmp_path: Path) -> None:
+    dxf(tmp_path / "step.dxf", chain(*STEP))
+    form = desk.open()
+    unit, layer = (next(each for each in form.fields if each.word == word) for word in ("DUNIT", "LAYER"))
+    speak_in("es")
+    try:
+        assert form.shown(layer) == "TODAS"
+        form.typed = {"DUNIT": "INCH", "LAYER": "OUTSIDE"}
+        assert form.shown(unit) == "PULGADAS"
+        assert form.shown(layer) == "OUTSIDE"
+        form.typed = {"LAYER": "NO COUNT is on"}
+        assert form.shown(layer) == "NO COUNT is on"
+    finally:
+        speak_in("en")
 
 
 def test_a_drawing_becomes_pieces_that_are_opened_again(desk: Desk, tmp_path: Path) -> None:
