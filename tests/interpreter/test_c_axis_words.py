@@ -223,6 +223,13 @@ def test_too_fast_for_the_slide() -> None:
     assert (6, 0, "feed-over-speed") in result.errors
 
 
+def test_the_slide_may_go_as_fast_as_it_can() -> None:
+    """1.5 in/rev at 200 rpm is 300 in/min, which is its most, and .001 in more is refused."""
+    head = ("G35F2", "G92X0Z0", "M19")
+    assert "feed-over-speed" not in [code for *_, code in run(*head, "G95F1.5", "Z-1C240S200").errors]
+    assert (6, 0, "feed-over-speed") in run(*head, "G95F1.501", "Z-1C240S200").errors
+
+
 def test_the_degrees_needed_are_said() -> None:
     """.3 in at .2 in/rev is one and a half turns."""
     result = run("M19", "G95F.2", "Z-.3C360S5")

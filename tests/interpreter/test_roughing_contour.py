@@ -256,6 +256,13 @@ def test_a_contour_that_falls_at_once_is_told_how_it_begins() -> None:
     assert not passed(body("X.5Z.1", "G75I.05U.01F4", "X.2Z0", "X.4", *fall[1:])).errors
 
 
+def test_a_first_point_under_a_later_line_is_refused_without_an_allowance_too() -> None:
+    """X.3 at Z-.2 lies under the line at X.45 from Z-.4 back to Z-.1: the way down to it goes through."""
+    lip = ("X.3Z-.2", "X.2Z-.3", "Z-.4", "X.45", "Z-.1", "X.4Z0", "RF")
+    found = passed(body("X.5Z.1", "G75I.05F4", *lip)).errors
+    assert [code for *_, code in found] == ["cycle-start-near"]
+
+
 def test_refused_per_revolution_of_a_spindle_that_stands() -> None:
     result = passed(body("M05", "X.4Z.1", "G95G75I.1F.003", *SHAFT, "RF"))
     assert result.errors == [(5, 0, "spindle-stopped")]

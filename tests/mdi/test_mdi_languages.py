@@ -68,6 +68,16 @@ def lathe() -> Mdi:
 # --- what stands between two lines ----------------------------------------------------------------------
 
 
+def test_a_line_begins_with_what_somebody_has_switched_by_hand_since(lathe: Mdi) -> None:
+    lathe.runs("M8")
+    assert (lathe.point.modal.coolant, lathe.line("coolant")) == (True, "M8")
+    by_hand = lathe.point.modal._replace(coolant=False, outputs=frozenset({"catcher"}))
+    lathe.point = lathe.point._replace(modal=by_hand)
+    lathe.runs("G4 F0.1")
+    assert (lathe.point.modal.coolant, lathe.point.modal.outputs) == (False, {"catcher"})
+    assert (lathe.line("coolant"), lathe.line("outputs")) == ("M9", "CATCHER")
+
+
 def test_a_mill_keeps_tool_plane_and_parameters_from_line_to_line(mill: Mdi) -> None:
     # Zero at 230, 210, -350; L 80: Z+100 is -350 + 100 + 80 = -170. A+30 about the line Y 250, Z -430 at X.
     mill.runs("TOOL CALL 5 Z S2000", "L Z+100 FMAX M3", "Q1 = 30", "PLANE AXIAL A+Q1 C+0 TURN FMAX")

@@ -191,6 +191,14 @@ def test_facing_takes_passes_along_x() -> None:
     assert sorted({round(b.z, 4) for b in cuts}) == [-4, -3, -2, -1]
 
 
+def test_a_taper_begins_in_its_line_wherever_the_thread_lies() -> None:
+    """Ø20 at Z-5, Ø24 at Z-25: R .1 a mm; 5 before it R9.5, 3 behind it R12.3; a depth of 1."""
+    (cut,) = [
+        b for b in good(THREAD + "CYCLE97(2,,-5,-25,20,24,5,3,1,0,0,,1,0,1,1)") if b.kind is Kind.THREAD
+    ]
+    assert (cut.x0, cut.z0, cut.x, cut.z) == pytest.approx((8.5, 0.0, 11.3, -28.0))
+
+
 def test_a_thread_in_passes_of_equal_chip() -> None:
     text = THREAD + "CYCLE97(2,,0,-20,24,24,6,3,1.2,0.1,30,,3,1,3,1)"
     cuts = [b for b in good(text) if b.kind is Kind.THREAD]

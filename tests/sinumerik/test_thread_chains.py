@@ -78,6 +78,13 @@ def test_a_start_angle_begins_further_back() -> None:
     assert (taper.x, taper.z) == pytest.approx((10.0 - 5.0 / 25.0, 6.0))
 
 
+def test_a_start_angle_of_a_whole_turn_is_none() -> None:
+    def ways(words: str) -> list[tuple[Kind, float, float]]:
+        return [(b.kind, b.z0, b.z) for b in good(BEGIN + f"G33 Z-20 K2 {words}") if b.line == 3]
+
+    assert ways("SF=360") == ways("SF=0") == ways("") == [(Kind.THREAD, 5.0, -20.0)]
+
+
 def test_cycle98_goes_along_the_crest_less_its_depth() -> None:
     made = good(BEGIN + "CYCLE98(0,30,-20,30,-40,36,-50,36,6,3,1,0,0,,1,0,1.5,2,3,1)")
     cut = [b for b in made if b.kind is Kind.THREAD]
