@@ -9,13 +9,14 @@ from dataclasses import replace
 from core.part.tool_shape import ToolKind
 from core.shapes.code_lines import Code, Tap
 from core.shapes.cutting_data import Work, rpm
+from core.shapes.drill_sizes import drill_for
 from core.shapes.number_words import plain
 from core.shapes.shape import Filled, Shape
 from core.shapes.shape_fields import Field, Kind, Refusal, Value, Values, number, text
 from core.shapes.shape_setting import Setting
 from core.shapes.sketch import Dim, Sketch, cut, part, sketch, tool
 from core.shapes.thread_limits import in_unit
-from core.shapes.thread_series import TAPERED, Series, size_of
+from core.shapes.thread_series import METRIC, TAPERED, Series, size_of
 from core.shapes.threading import INSIDE, LEFT, RIGHT, class_choices, limits_of, series_of, unknown_name
 from core.shapes.usual_fields import MOST_RPM, too_deep, too_fast, tool_field
 
@@ -95,8 +96,20 @@ def _says(filled: Filled, setting: Setting) -> tuple[str, ...]:
     known = limits_of({**filled.values, "SIDE": INSIDE, "CLASS": _usual_class(filled)}, setting)
     if known is None:
         return ()
-    hole = in_unit(known.crest, series_of(filled.values), metric=setting.metric)
-    return (f"the hole before it: {plain(hole, 4 if not setting.metric else 2)}",)
+    series = series_of(filled.values)
+    places, unit = (2 if setting.metric else 4), in_unit(1.0, series, metric=setting.metric)
+    least, most = (plain(value * unit, places) for value in known.minor)
+    told = f"the hole before it: {plain(known.crest * unit, places)}, from {least} to {most}"
+    drill = drill_for(*known.minor, metric=series in METRIC)
+    return (told,) if drill is None else (told, f"a drill for it: {_called(*drill, series, setting)}")
+
+
+def _called(name: str, size: float, series: Series, setting: Setting) -> str:
+    """By its name, and its size in the unit of the program where the name is another."""
+    size = in_unit(size, series, metric=setting.metric)
+    shown = plain(size, 3 if setting.metric else 4)
+    named = f"{name} mm" if series in METRIC else name
+    return named if series in METRIC and setting.metric else f"{named}, {shown}"
 
 
 def _usual_class(filled: Filled) -> str:

@@ -30975,13 +30975,18 @@
     </message>
     <message>
       <location filename="core/shapes/tapping.py" />
+      <source>a drill for it: %1</source>
+      <translation>una broca para él: %1</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/tapping.py" />
       <source>on the axis by a tap: in, spindle back, out at the pitch</source>
       <translation>en el eje con un macho: entra, husillo atrás, sale al paso</translation>
     </message>
     <message>
       <location filename="core/shapes/tapping.py" />
-      <source>the hole before it: %1</source>
-      <translation>el agujero previo: %1</translation>
+      <source>the hole before it: %1, from %2 to %3</source>
+      <translation>el agujero previo: %1, de %2 a %3</translation>
     </message>
     <message>
       <location filename="core/shapes/templates.py" />

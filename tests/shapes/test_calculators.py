@@ -10,6 +10,7 @@ import pytest
 from app.shapes.shapes_model import Shapes
 from core.part.tool_shape import ToolKind, ToolShape
 from core.shapes.calculators import SPEED, THREADS, TRIANGLE, triangle
+from core.shapes.drill_sizes import drill_for
 from core.shapes.shape import Filled, filled
 from core.shapes.shape_fields import Value
 from core.shapes.shape_setting import Setting, Shop
@@ -158,16 +159,61 @@ def test_a_tap_goes_in_and_out_at_its_pitch() -> None:
 
 
 def test_the_hole_before_a_tap() -> None:
-    """M10: minor diameter of 6H from 8.376 to 8.676, its middle 8.53 (ISO 965-1)."""
+    """M10: minor diameter of 6H from 8.376 to 8.676 (ISO 965-1); G 1/2: from 18.631 to 19.172 (ISO 228-1)."""
     one = filled(TAP, {"SERIES": "M", "SIZE": "M10", "DEEP": 12.0}, MM)
-    assert TAP.says(one, MM) == ("the hole before it: 8.53",)
+    assert TAP.says(one, MM) == ("the hole before it: 8.53, from 8.38 to 8.68", "a drill for it: 8.5 mm")
     assert one.n("PITCH") == 1.5
+    pipe = filled(TAP, {"SERIES": "BSP", "SIZE": "1/2", "DEEP": 15.0}, MM)
+    assert TAP.says(pipe, MM)[0] == "the hole before it: 18.9, from 18.63 to 19.17"
 
 
-def test_the_hole_before_a_pipe_tap() -> None:
-    """G 1/2: minor diameter from 18.631 to 19.172 (ISO 228-1); drills of 18.9 to 19 are sold for it."""
-    one = filled(TAP, {"SERIES": "BSP", "SIZE": "1/2", "DEEP": 15.0}, MM)
-    assert TAP.says(one, MM) == ("the hole before it: 18.9",)
+DRILLS = {
+    "UNC": {
+        "#4": "#43",
+        "#6": "#36",
+        "#8": "#29",
+        "#10": "#25",
+        "1/4": "#7",
+        "5/16": "F",
+        "3/8": "5/16",
+        "7/16": "U",
+    }
+    | {"1/2": "27/64", "5/8": "17/32", "3/4": "21/32", "1": "7/8"},
+    "UNF": {"#10": "#21", "1/4": "#3", "5/16": "I", "3/8": "Q", "1/2": "29/64"},
+    "M": {
+        "M3": "2.5",
+        "M4": "3.3",
+        "M5": "4.2",
+        "M6": "5",
+        "M8": "6.8",
+        "M10": "8.5",
+        "M12": "10.2",
+        "M16": "14",
+    }
+    | {"M20": "17.5"},
+    "MF": {"M8X1": "7", "M10X1": "9", "M12X1.5": "10.5"},
+}
+"""Tap drills as charts have them."""
+
+
+@pytest.mark.parametrize(
+    ("series", "size"), [(series, size) for series, sizes in DRILLS.items() for size in sizes]
+)
+def test_the_drill_before_a_tap_is_that_of_the_charts(series: str, size: str) -> None:
+    setting = MM if series.startswith("M") else INCH
+    told = TAP.says(filled(TAP, {"SERIES": series, "SIZE": size, "DEEP": 1.0}, setting), setting)[1]
+    assert told.removeprefix("a drill for it: ").split(" mm")[0].split(",")[0] == DRILLS[series][size]
+
+
+def test_a_drill_in_the_other_unit_is_told_with_its_size() -> None:
+    inch = TAP.says(filled(TAP, {"SERIES": "M", "SIZE": "M6", "DEEP": 0.5}, INCH), INCH)
+    metric = TAP.says(filled(TAP, {"SERIES": "UNC", "SIZE": "1/4", "DEEP": 12.0}, MM), MM)
+    assert (inch[1], metric[1]) == ("a drill for it: 5 mm, .1969", "a drill for it: #7, 5.105")
+
+
+def test_no_drill_is_told_where_none_is_sold() -> None:
+    assert drill_for(0.2015, 0.2028, metric=False) is None
+    assert drill_for(60.0, 61.0, metric=True) is None
 
 
 @pytest.mark.parametrize(
