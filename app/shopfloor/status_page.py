@@ -172,15 +172,18 @@ def _picture(name: str, address: str, picture: bytes, words: str) -> str:
 
 
 def _desk(status: Status) -> str:
-    alarms = status["alarms"]
-    told = "".join(_alarm(each) for each in (alarms if isinstance(alarms, list) else []))
+    alarms = found if isinstance(found := status["alarms"], list) else []
+    told = "".join(map(_alarm, alarms))
+    if any(each["text"] == status["stop"] for each in alarms):
+        status = {**status, "stop": ""}  # the alarm says it, and what to do
     made = f'<p class="made">{escape(_local(status["updated"]))}</p>'
     return f"{_head(status)}{told}{_table(_figures(status))}{_stops(status)}{made}"
 
 
 def _alarm(alarm: Mapping[str, Any]) -> str:
     number, text, remedy = alarm["number"] or alarm["code"], alarm["text"], alarm["remedy"]
-    words = f"{escape(str(number))} {escape(tr(text))}<br>{escape(tr(remedy))}"
+    words = f"{escape(str(number))} {escape(tr(text))}"
+    words += f"<br>{escape(tr(remedy))}" if remedy else ""
     return f'<p class="alarm">{words}</p>'
 
 

@@ -235,6 +235,18 @@ def test_the_page_is_read_in_the_language_of_the_screen() -> None:
     assert json.loads(told) == STATUS  # which programs read
 
 
+def test_an_alarm_is_told_once_and_without_an_empty_line() -> None:
+    text = "AXIS SENT, ITS ENCODER DOES NOT COUNT: X"
+    alarm = {"number": 117, "code": "117", "text": text, "remedy": "look where the slide stands"}
+    bare = {"number": None, "code": "interrupted", "text": "pin.nc line 52", "remedy": ""}
+    body = get(page(status={**STATUS, "state": "ALARM", "stop": text, "alarms": [alarm, bare]}))[2]
+    assert body.count(text) == 1
+    assert "<br>look where the slide stands" in body
+    assert '<p class="alarm">interrupted pin.nc line 52</p>' in body
+    held = get(page(status={**STATUS, "state": "FEED HOLD", "stop": "GUARD OPEN"}))[2]
+    assert '<p class="why">GUARD OPEN</p>' in held
+
+
 def test_the_same_for_a_script() -> None:
     assert json.loads(get(page(), "/status.json")[2]) == STATUS
 
