@@ -145,12 +145,22 @@ def _send(args: argparse.Namespace, settings: DncModel) -> int:
     from app.compose.program_transfer import SerialLines
 
     path = Path(args.file)
+    _check_readable(path)
     lines = SerialLines(lambda _source: ((), 0.0))
     sent = carry(lines.send(settings, path), f"sending {path.name}")
     if sent is None:
         return EXIT_ERRORS
     sys.stdout.write(f"{path.name}: {sent} bytes sent to {settings.port}\n")
     return EXIT_OK
+
+
+def _check_readable(path: Path) -> None:
+    """Before the line is opened, and with the status of a file that cannot be read. Raises CommandError."""
+    try:
+        with path.open("rb") as file:
+            file.read(1)
+    except OSError as error:
+        raise CommandError(f"{path} cannot be read: {error.strerror}") from error
 
 
 def _receive(args: argparse.Namespace, machine: Machine, settings: DncModel) -> int:

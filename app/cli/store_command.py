@@ -1,4 +1,4 @@
-"""``turndesk store``: backup, restore, export, import and verify of the store."""
+"""``turndesk store``: backup, restore, export, import, upgrade and verify of the store."""
 
 from __future__ import annotations
 
@@ -34,6 +34,7 @@ def add_parser(subparsers: SubParsers) -> None:
         action.add_argument("path", metavar=what)
         if name in {"restore", "import"}:
             add_as_option(action)
+    actions.add_parser("upgrade", help="bring the store of an older TurnDesk up to date, as the screen does")
     verify = actions.add_parser("verify", help="look at every page, reference and program text")
     verify.add_argument("--json", action="store_true", help="machine-readable output alone on stdout")
 
@@ -121,6 +122,23 @@ def _import(args: argparse.Namespace) -> int:
     return EXIT_OK
 
 
+def _upgrade(_args: argparse.Namespace) -> int:
+    """What opening it to be written does anyway: the older one is kept beside it."""
+    from core.store.store_file import has_store
+
+    there = has_store(data_folder())
+    if there:
+        with opened_store():
+            pass
+    told = (
+        f"the store in {data_folder()} is up to date"
+        if there
+        else f"there is no store in {data_folder()} yet"
+    )
+    sys.stdout.write(f"{told}\n")
+    return EXIT_OK
+
+
 def _verify(args: argparse.Namespace) -> int:
     from core.store import backup
     from core.store.store_file import FILE_NAME, has_store
@@ -145,5 +163,6 @@ STORE_ACTIONS: dict[str, Callable[[argparse.Namespace], int]] = {
     "restore": _restore,
     "export": _export,
     "import": _import,
+    "upgrade": _upgrade,
     "verify": _verify,
 }

@@ -319,7 +319,7 @@ def open_to_read(folder: Path) -> Opened:
         return Opened(path, empty())
     version = check_file(path, thorough=False)
     if version < len(migrations()):
-        raise StoreError(f"{path} is from an older TurnDesk; start turndesk once to bring it up to date")
+        raise StoreError(f"{path} is from an older TurnDesk; bring it up to date: turndesk store upgrade")
     reader = connect(path, read_only=True)
     try:
         check_log(path, reader)

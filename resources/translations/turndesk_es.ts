@@ -31570,8 +31570,8 @@
     </message>
     <message>
       <location filename="core/store/database.py" />
-      <source>%1 is from an older TurnDesk; start turndesk once to bring it up to date</source>
-      <translation>%1 es de un TurnDesk anterior; arranque turndesk una vez para actualizarlo</translation>
+      <source>%1 is from an older TurnDesk; bring it up to date: turndesk store upgrade</source>
+      <translation>%1 es de un TurnDesk anterior; póngalo al día: turndesk store upgrade</translation>
     </message>
     <message>
       <location filename="core/store/database.py" />

@@ -150,6 +150,7 @@ READS = {
     "expand", "trace", "alarms", "parts", "shift", "scope", "offsets show", "offsets history",
     "store verify", "access list", "access table", "jobs list", "share status", "share compare",
     "machine check", "machine hal", "machine mtconnect", "serial ports", "serial send", "setup completion",
+    "store upgrade",  # what the screen does when it starts
     "store backup", "store export", "setup save",  # to a file of whoever asks; the store stays as it is
     "machine peer",  # the other end of a machine that is simulated
     "setup desktop",  # the menu of the system's user

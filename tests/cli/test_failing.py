@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 
 from app.cli.crash_report import report_crash, report_thread
+from app.cli.main import main
 from app.compose import error_log
 from app.compose.error_log import Log
 from core.executor.raised_alarm import AlarmError, alarm_and_reaction, log_alarm
@@ -110,6 +111,30 @@ def test_a_screen_that_cannot_be_opened_is_one_line(
     assert says in done.stderr
     assert "headless" in done.stderr
     assert list(tmp_path.glob("logs/crash*")) == []
+
+
+def test_a_library_of_the_system_that_is_missing_is_no_fault_of_ours(
+    home: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def missing() -> str:
+        raise ImportError("libGL.so.1: cannot open shared object file: No such file or directory")
+
+    monkeypatch.setenv("QT_QPA_PLATFORM", "offscreen")
+    monkeypatch.setattr("app.screen.display.trouble", missing)
+    assert main([]) == 2
+    said = capsys.readouterr().err
+    assert said.startswith("turndesk: libGL.so.1: cannot open shared object file")
+    assert said.endswith("install the system packages that README.md names\n")
+
+
+def test_a_module_of_ours_that_is_missing_is_a_fault(home: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def missing() -> str:
+        raise ImportError("cannot import name 'x' from 'app'")
+
+    monkeypatch.setenv("QT_QPA_PLATFORM", "offscreen")
+    monkeypatch.setattr("app.screen.display.trouble", missing)
+    with pytest.raises(ImportError):
+        main([])
 
 
 def test_a_log_folder_that_cannot_be_made_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

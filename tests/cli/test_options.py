@@ -160,6 +160,7 @@ def test_an_option_before_a_command_acts_or_is_refused(
         "history",
         "undo",
         "verify",
+        "upgrade",
         "ports",
         "receive",
         "alarms",

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from app.cli.main import main
+from core.store import database
 from core.store.store import Store
 from core.store.store_rows import SecondaryRow, ToolRow
 
@@ -29,6 +30,32 @@ def filled(home: Path) -> Path:
         store.set_secondary(4, "x", x=-0.0127)
         store.save_program("PIN.nc", b"G90\r\n", "x").result()
     return home
+
+
+def test_the_store_of_an_older_turndesk_is_brought_up_to_date(
+    filled: Path, monkeypatch: pytest.MonkeyPatch, capsys: Captured
+) -> None:
+    newer = (*database.migrations(), "CREATE TABLE extra (a);")
+    monkeypatch.setattr(database, "migrations", lambda: newer)
+    assert main(["offsets", "show"]) == 2
+    assert "bring it up to date: turndesk store upgrade\n" in capsys.readouterr().err
+    assert main(["store", "upgrade"]) == 0
+    assert main(["offsets", "show"]) == 0
+    assert "T1" in capsys.readouterr().out
+
+
+def test_without_a_store_nothing_is_brought_up_to_date(home: Path, capsys: Captured) -> None:
+    assert main(["store", "upgrade"]) == 0
+    assert "there is no store" in capsys.readouterr().out
+    assert not home.exists()
+
+
+def test_the_store_of_a_newer_turndesk_is_left_as_it_is(
+    filled: Path, monkeypatch: pytest.MonkeyPatch, capsys: Captured
+) -> None:
+    older = database.migrations()[:-1]
+    monkeypatch.setattr(database, "migrations", lambda: older)
+    assert "newer" in refused(capsys, "upgrade")
 
 
 def refused(capsys: Captured, *argv: str) -> str:

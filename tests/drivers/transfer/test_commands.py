@@ -123,8 +123,8 @@ def test_what_is_not_whole_leaves_nothing(far: FarEnd, tmp_path: Path, pool: Thr
 
 
 def test_commands_that_cannot_be(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["serial", "send", str(tmp_path / "none.nc"), "--port", "/dev/ttyNONE7"]) == 1
-    assert "CANNOT BE READ" in capsys.readouterr().err
+    assert main(["serial", "send", str(tmp_path / "none.nc"), "--port", "/dev/ttyNONE7"]) == 2
+    assert "none.nc cannot be read: No such file" in capsys.readouterr().err
     program = tmp_path / "p.nc"
     program.write_text("M30\n")
     assert main(["serial", "send", str(program), "--port", "/dev/ttyNONE7"]) == 1
