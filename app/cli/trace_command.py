@@ -101,20 +101,19 @@ class _Table:
 
 
 def _write_file(timeline: Timeline, table: _Table, args: argparse.Namespace, source: Source) -> None:
-    """Whole or not at all: a program with errors leaves no setpoints behind, nor does a full disk."""
+    """Whole or not at all: a program with errors leaves nothing behind, nor a full disk or Ctrl+C."""
     out = Path(args.out)
     partial = out.with_name(out.name + ".part")
     try:
         with partial.open("w", encoding="ascii", newline="") as file:
             _write(timeline, table, args.dt, file.write, source)
-        if timeline.errors:
-            partial.unlink()
-        else:
+        if not timeline.errors:
             put_in_place(partial, out)
     except OSError as error:
+        raise CommandError(f"{out}: cannot be written: {error.strerror}") from error
+    finally:  # also by Ctrl+C
         with contextlib.suppress(OSError):
             partial.unlink(missing_ok=True)
-        raise CommandError(f"{out}: cannot be written: {error.strerror}") from error
 
 
 def _write(

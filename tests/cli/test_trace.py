@@ -94,3 +94,16 @@ def test_a_folder_that_is_not_there_is_named(turndesk: Turndesk, tmp_path: Path)
     told = turndesk("trace", program, "--out", tmp_path / "absent" / "out.csv")
     assert told.status == 2
     assert "absent" in told.err
+
+
+def test_ctrl_c_leaves_nothing_behind(
+    turndesk: Turndesk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def interrupted(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    (tmp_path / "part.nc").write_text("G90G94F300\nT1\nX.5Z.1\nM30\n")
+    monkeypatch.setattr("app.cli.trace_command._write", interrupted)
+    told = turndesk("trace", tmp_path / "part.nc", "--out", tmp_path / "out.csv")
+    assert told.status == 130
+    assert not list(tmp_path.glob("out.csv*"))
