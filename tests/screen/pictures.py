@@ -276,7 +276,7 @@ def _z(desk: Desk) -> float:
 # --- what is pictured ---------------------------------------------------------------------------------
 
 
-SETTLE = 0.5  # seconds for workers to read, prove and draw
+SETTLE = 1.5  # seconds for workers to read, prove and draw
 
 
 @dataclass(frozen=True, slots=True)
@@ -325,7 +325,7 @@ SCENES = (
     Scene("log", "F10 5"),
     Scene("backup", "F10 6"),
     Scene("screen", "F10 7"),
-    Scene("lamps", f"F10 {'Down ' * 14}Enter"),
+    Scene("lamps", f"F10 {'Up ' * 15}{'Down ' * 14}Enter"),  # from where the list stands
     Scene("automatic", running=True),
     Scene("spanish", running=True, language="es"),
     Scene("levels", f'F10 {"Down " * 15}Enter Down Enter "12', levels=True),
