@@ -8,7 +8,10 @@ cause fails at once, and so does a computer that is late every time.
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TypeVar
 
@@ -18,6 +21,7 @@ from _pytest.runner import runtestprotocol
 from core.alarms import CATALOGUE
 
 TRIES = 8
+LOOK, STALL = 0.02, 0.15  # s
 # Codes of alarms and of holds that a late computer alone causes on a machine that is whole.
 LATE = frozenset(
     {"late", "low-queue", "queue-dry", "hal-silent", "hal-thread", "feeder-tripped", "feeder-silent"}
@@ -64,6 +68,27 @@ def command_was_late(home: Path) -> bool:
             if event["kind"] == "alarm" or (event["kind"] == "stop" and code in LATE | OF_SILENCE):
                 tell("late" if away and code in OF_SILENCE else code)
     return told_late()
+
+
+@contextmanager
+def stalls_told(longest: float = STALL) -> Iterator[None]:
+    """Tell when this process has stood still for longer: what it plays has answered nobody meanwhile."""
+    ended = threading.Event()
+
+    def look() -> None:
+        looked = time.monotonic()
+        while not ended.wait(LOOK):
+            before, looked = looked, time.monotonic()
+            if looked - before > longest:
+                tell("late")
+
+    looking = threading.Thread(target=look, name="stalls")
+    looking.start()
+    try:
+        yield
+    finally:
+        ended.set()
+        looking.join()
 
 
 def run_again(

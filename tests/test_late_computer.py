@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import json
+import threading
 from pathlib import Path
 
 import pytest
 
-from tests.late_computer import TRIES, command_was_late, played_again, tell, told_late
+from tests.late_computer import TRIES, command_was_late, forget, played_again, stalls_told, tell, told_late
 
 
 def told_by(home: Path, *events: tuple[str, str]) -> bool:
@@ -49,3 +50,15 @@ def test_and_behind_one_it_is(tmp_path: Path) -> None:
     assert told_by(
         tmp_path, ("starved", "the control was away"), ("stop", "225 SPINDLE HAS STOPPED: something")
     )
+
+
+def test_a_process_that_stood_still_is_told_and_one_that_did_not_is_not() -> None:
+    forget()
+    tick = threading.Event()
+    with stalls_told(-1.0):  # whatever it took, it was longer
+        while not told_late():
+            tick.wait(0.001)
+    forget()
+    with stalls_told(1e9):
+        tick.wait(0.1)
+    assert not told_late()

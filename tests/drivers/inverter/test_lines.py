@@ -22,6 +22,9 @@ from drivers.clocks import RealClock, StepClock
 from tests.drivers.inverter.benches import FAMILIES
 from tests.drivers.inverter.inverter_lookalikes import DeltaMemory, HitachiMemory, HuanyangSlave, Inverter
 from tests.drivers.inverter.lines import HuanyangEnd, ModbusServer, Pair, inverter, until
+from tests.late_computer import stalls_told
+
+pytestmark = pytest.mark.real_time  # an inverter that answers late is one that does not answer
 
 
 @dataclass
@@ -50,6 +53,7 @@ def wired(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Wired]:
     """Each family at the end of its line."""
     one = inverter()
     with ExitStack() as stack:
+        stack.enter_context(stalls_told())
         cable = stack.enter_context(Pair())
         if request.param == "huanyang":
             stack.enter_context(HuanyangEnd(cable.far, HuanyangSlave(one)))
