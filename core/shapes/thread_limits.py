@@ -94,22 +94,27 @@ def _v_root(pitch_diameter: float, pitch: float, nose: float, *, inside: bool) -
 # --- ASME B1.1
 
 
+def _printed(value: float) -> float:
+    """B1.1 rounds each tolerance, the allowance and the basic diameters, half upwards, before adding them."""
+    return math.floor(value * 10_000.0 + 0.5 + 1e-9) / 10_000.0
+
+
 def _unified(series: Series, size: ThreadSize, tolerance: str, nose: float, *, inside: bool) -> Limits:
     d, p = size.diameter, size.pitch
     grade = int(tolerance[0])
     engaged = 9.0 * p if series is Series.UNEF else d
-    pitch_2a = 0.0015 * d ** (1 / 3) + 0.0015 * math.sqrt(engaged) + 0.015 * p ** (2 / 3)
-    basic_pitch, basic_minor = d - 0.75 * V60 * p, d - 1.25 * V60 * p
+    pitch_2a = round(0.0015 * d ** (1 / 3) + 0.0015 * math.sqrt(engaged) + 0.015 * p ** (2 / 3), 6)
+    basic_pitch, basic_minor = _printed(d - 0.75 * V60 * p), d - 1.25 * V60 * p
     if inside:
-        wide = {1: 1.95, 2: 1.3, 3: 0.975}[grade] * pitch_2a
+        wide = _printed({1: 1.95, 2: 1.3, 3: 0.975}[grade] * pitch_2a)
         pitch = basic_pitch, basic_pitch + wide
         minor = basic_minor, basic_minor + _minor_tolerance(d, p, grade)
         return Limits(
             (d, math.inf), pitch, minor, _middle(minor), _v_root(_middle(pitch), p, nose, inside=True)
         )
-    allowance = 0.3 * pitch_2a if grade < 3 else 0.0
-    wide = {1: 1.5, 2: 1.0, 3: 0.75}[grade] * pitch_2a
-    major_wide = (0.09 if grade == 1 else 0.06) * p ** (2 / 3)
+    allowance = _printed(0.3 * pitch_2a) if grade < 3 else 0.0
+    wide = _printed({1: 1.5, 2: 1.0, 3: 0.75}[grade] * pitch_2a)
+    major_wide = _printed((0.09 if grade == 1 else 0.06) * p ** (2 / 3))
     major = d - allowance - major_wide, d - allowance
     pitch = basic_pitch - allowance - wide, basic_pitch - allowance
     root = _v_root(_middle(pitch), p, nose, inside=False)

@@ -200,11 +200,12 @@ def _thread(filled: Filled, setting: Setting, code: Code) -> None:
     coarse = lead * setting.mm / 25.4 > _COARSE[0]
     for k in range(starts):
         start_z = near(begin + k * filled.n("PITCH"))
-        code.rapid(at, start_z if k else None)
+        on_cone = -outwards * taper * k * filled.n("PITCH")  # the same cone, begun farther away
+        code.rapid(near(at + on_cone), start_z if k else None)
         if coarse and k == 0:
             f2 = "F2" if lead * setting.mm / 25.4 > _COARSE[1] else ""
             code.write(f"G35{f2}", f"G92{code.point(at, start_z)}")
-        words = f"G33{code.x(root)}{code.z(end)}{code.x(first, 'I')}K{plain(lead, 6)}"
+        words = f"G33{code.x(near(root + on_cone))}{code.z(end)}{code.x(first, 'I')}K{plain(lead, 6)}"
         if taper:
             far = (begin + k * filled.n("PITCH") - end) * taper * outwards
             words += code.x(far, "A")
@@ -224,6 +225,27 @@ def _thread(filled: Filled, setting: Setting, code: Code) -> None:
     code.forget()
     code.rapid(clear)
     code.away()
+
+
+def _says(filled: Filled, setting: Setting) -> tuple[str, ...]:
+    """What it is measured by, and the cone that is turned or bored before a tapered one."""
+    known = limits_of(filled.values, setting)
+    if known is None:
+        return ()
+    places = 3 if setting.metric else 4
+    unit = in_unit(1.0, series_of(filled.values), metric=setting.metric)
+    inside = filled.t("SIDE") == INSIDE
+    pairs = (known.minor if inside else known.major, known.pitch)
+    least, most, low, high = (plain(value * unit, places) for pair in pairs for value in pair)
+    if series_of(filled.values) in TAPERED:
+        far = plain(_far(filled), places)
+        return (
+            f"pitch diameter {low} where it begins",
+            f"the cone before it: {plain(filled.n('CREST'), places)} there, {far} where it ends",
+        )
+    if inside:
+        return (f"minor diameter {least} to {most}, pitch diameter {low} to {high}",)
+    return (f"major diameter {least} to {most}, pitch diameter {low} to {high}",)
 
 
 def _coarse_step(filled: Filled, setting: Setting) -> float:
@@ -389,6 +411,7 @@ THREAD = Shape(
     _sketch,
     _checks,
     first=unknown_name,
+    says=_says,
 )
 
 

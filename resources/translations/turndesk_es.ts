@@ -31159,6 +31159,26 @@
       <translation>por serie, medida y clase: UNC, UNF, M, NPT, BSP, ACME, o sus propias cifras</translation>
     </message>
     <message>
+      <location filename="core/shapes/threading.py" />
+      <source>major diameter %1 to %2, pitch diameter %3 to %4</source>
+      <translation>diámetro exterior %1 a %2, diámetro de flancos %3 a %4</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/threading.py" />
+      <source>minor diameter %1 to %2, pitch diameter %3 to %4</source>
+      <translation>diámetro interior %1 a %2, diámetro de flancos %3 a %4</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/threading.py" />
+      <source>pitch diameter %1 where it begins</source>
+      <translation>diámetro de flancos %1 donde empieza</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/threading.py" />
+      <source>the cone before it: %1 there, %2 where it ends</source>
+      <translation>el cono previo: %1 ahí, %2 donde termina</translation>
+    </message>
+    <message>
       <location filename="core/shapes/turning.py" />
       <source>%1 is more than the radius of %2: type %3 or less.</source>
       <translation>%1 es más que el radio de %2: escriba %3 o menos.</translation>

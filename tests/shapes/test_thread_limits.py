@@ -20,6 +20,9 @@ OUTSIDE = [
     (Series.UNC, "1/4-20", "2A", (0.2408, 0.2489), (0.2127, 0.2164)),
     (Series.UNF, "10-32", "2A", (0.1831, 0.1891), (0.1658, 0.1688)),
     (Series.UNC, "3/8", "2A", (0.3643, 0.3737), (0.3287, 0.3331)),
+    (Series.UNC, "3/4", "2A", (0.7353, 0.7482), (0.6773, 0.6832)),
+    (Series.UNF, "1", "2A", (0.9868, 0.9982), (0.9382, 0.9441)),
+    (Series.UNF, "#0", "2A", (0.0563, 0.0595), (0.0496, 0.0514)),
     (Series.UNC, "1/2", "2A", (0.4876, 0.4985), (0.4435, 0.4485)),
     (Series.UNC, "1/2", "3A", (0.4891, 0.5000), (0.4463, 0.4500)),
     (Series.UNC, "1", "2A", (0.9830, 0.9980), (0.9100, 0.9168)),
@@ -66,6 +69,8 @@ def of(series: Series, name: str, tolerance: str, *, inside: bool) -> Limits:
 
 def rounding(series: Series) -> float:
     """Half of the last printed place, and what rounding on the way there adds."""
+    if series in {Series.UNC, Series.UNF}:
+        return 0.00002  # a diameter by number has three figures more
     return 0.00016 if series not in METRIC else 0.001 if series is Series.BSP else 0.0006
 
 
@@ -251,3 +256,38 @@ def test_a_thread_of_its_own_figures_has_the_angle_of_its_tool() -> None:
     assert [each.text[:44] for each in named.refusals(setting)] == [
         "T1 cuts 30°, this thread has 60°: take anoth"
     ]
+
+
+def test_what_a_thread_is_measured_by() -> None:
+    """ASME B1.1, 1/2-13: 2A outside, 2B in a bore; M10 of 6g in mm (ISO 965-2)."""
+    says = SHAPES["R"].says
+    assert says(thread({"SIZE": "1/2", "LONG": 0.5}), Setting()) == (
+        "major diameter .4876 to .4985, pitch diameter .4435 to .4485",
+    )
+    assert says(thread({"SIZE": "1/2", "SIDE": "BORE", "LONG": 0.5}), Setting()) == (
+        "minor diameter .4167 to .4336, pitch diameter .45 to .4565",
+    )
+    (metric,) = says(thread({"SERIES": "M", "SIZE": "M10", "LONG": 12.0}, metric=True), Setting(metric=True))
+    assert metric == "major diameter 9.732 to 9.968, pitch diameter 8.862 to 8.994"
+
+
+def test_the_cone_before_a_pipe_thread() -> None:
+    """1/2-14 NPT: E0 .7584 and .8 / 14 to the crest; 1 in 16 over the .5337 of L2 (B1.20.1)."""
+    assert SHAPES["R"].says(thread({"SERIES": "NPT", "SIZE": "1/2"}), Setting()) == (
+        "pitch diameter .7584 where it begins",
+        "the cone before it: .8156 there, .849 where it ends",
+    )
+
+
+def test_nothing_is_told_of_a_thread_of_its_own_figures() -> None:
+    own: dict[str, float | str] = {"SERIES": "OWN", "PITCH": 0.05, "CREST": 0.5, "ROOT": 0.44, "LONG": 0.5}
+    assert SHAPES["R"].says(thread(own), Setting()) == ()
+
+
+def test_every_start_of_a_tapered_thread_lies_on_the_same_cone() -> None:
+    one = thread({"SERIES": "NPT", "SIZE": "1/2", "STARTS": 2.0, "RPM": 200.0})
+    text = "\n".join(["G90G94F300G72", *one.lines(Setting()), "M30", ""])
+    cuts = [b for b in blocks_of(text) if b.kind is Kind.THREAD and b.z < b.z0 and b.travel is None]
+    ends = [b for b in cuts if b.z == pytest.approx(-0.534 * 25.4, abs=0.01)]
+    deepest = min(b.x for b in ends)
+    assert sum(abs(b.x - deepest) < 0.003 for b in ends) == 2
