@@ -36,17 +36,27 @@ store import exported
 store verify
 shift --report shift.html
 machine check mine.toml
+jobs add part.nc 3
+share begin --machine sharing.toml
+share publish --machine sharing.toml
+share status --machine sharing.toml
+machine accept mine.toml
 setup save desk.setup --machine mine.toml
 setup load desk.setup
 setup load desk.setup
 """
-DESK = """\
-from app.compose import backends
+DESK = r"""from app.compose import backends
 from app.compose.screen_desk import build_desk
 assert not backends.FEEDER
 desk = build_desk()
 assert not desk.book.locked
 desk.close()
+from pathlib import Path
+from app.programs.whole_file import settle, write_out, write_whole
+for write in (write_whole, write_out):
+    for text in (b"G90\nM30\n", b"G90\nX1\nM30\n"):
+        write(Path("part.nc").resolve(), text)
+settle(Path.cwd())
 import app.screen.run_screen
 print("a desk")
 """
@@ -76,7 +86,12 @@ def office(tmp_path: Path) -> Path:
     (tmp_path / "parts").mkdir()
     for path in (tmp_path / "part.nc", tmp_path / "parts" / "a.nc", tmp_path / "parts" / "b.nc"):
         path.write_text(PART)
-    (tmp_path / "mine.toml").write_text(resources.machine_file("gt75.toml"))
+    (tmp_path / "home" / "programs").mkdir(parents=True)
+    (tmp_path / "home" / "programs" / "part.nc").write_text(PART)
+    (tmp_path / "place").mkdir()
+    lathe = resources.machine_file("gt75.toml")
+    (tmp_path / "mine.toml").write_text(lathe)
+    (tmp_path / "sharing.toml").write_text(f'{lathe}\n[sharing]\nfolder = "{tmp_path / "place"}"\n')
     return tmp_path
 
 
