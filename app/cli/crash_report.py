@@ -44,10 +44,12 @@ def keep_crash(kind: type[BaseException], error: BaseException, trace: Traceback
 def _logs() -> Path | None:
     """Where the log lies; it may be the folder itself that has failed."""
     try:
-        from app.desk.data_folder import data_folder
-
+        from app.desk.data_folder import DataFolderError, data_folder
+    except (OSError, ImportError):
+        return None
+    try:
         return data_folder() / "logs"
-    except (OSError, RuntimeError, ImportError):
+    except (OSError, DataFolderError):
         return None
 
 

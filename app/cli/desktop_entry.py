@@ -29,7 +29,10 @@ Terminal=false
 
 def _under(variable: str, otherwise: str) -> Path:
     named = os.environ.get(variable, "")
-    return Path(named) if named else Path.home() / otherwise
+    try:
+        return Path(named) if named else Path.home() / otherwise
+    except RuntimeError as error:
+        raise CommandError(f"this user has no home folder; name a folder in {variable}") from error
 
 
 def _places() -> tuple[Path, Path, Path]:

@@ -11,7 +11,7 @@ RECORDS = "records"  # the folder of what the scope has recorded, within it
 
 
 class DataFolderError(Exception):
-    """TURNDESK_HOME names no folder; ``str()`` is the sentence for whoever set it."""
+    """TURNDESK_HOME names no folder, or has to; ``str()`` is the sentence for whoever can set it."""
 
 
 def check_data_folder() -> None:
@@ -32,10 +32,16 @@ def check_data_folder() -> None:
 
 
 def data_folder() -> Path:
-    """The folder of store, logs and settings: ``TURNDESK_HOME``, else the platform's data folder."""
-    named = os.environ.get(HOME, "")
-    if named:
-        return Path(named).expanduser().absolute()
-    from platformdirs import user_data_path  # noqa: PLC0415  asked only where nobody has named a folder
+    """The folder of store, logs and settings: ``TURNDESK_HOME``, else the platform's data folder.
 
-    return user_data_path("turndesk", appauthor=False)
+    Raises DataFolderError for a user without a home, as in a container.
+    """
+    named = os.environ.get(HOME, "")
+    try:
+        if named:
+            return Path(named).expanduser().absolute()
+        from platformdirs import user_data_path  # noqa: PLC0415  asked only where nobody has named a folder
+
+        return user_data_path("turndesk", appauthor=False)
+    except RuntimeError as error:
+        raise DataFolderError("this user has no home folder; name a folder in TURNDESK_HOME") from error

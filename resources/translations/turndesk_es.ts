@@ -5469,6 +5469,11 @@
       <translation>está debajo de %1, que es</translation>
     </message>
     <message>
+      <location filename="app/desk/data_folder.py" />
+      <source>this user has no home folder; name a folder in TURNDESK_HOME</source>
+      <translation>este usuario no tiene carpeta personal; nombre una carpeta en TURNDESK_HOME</translation>
+    </message>
+    <message>
       <location filename="app/desk/desk.py" />
       <source>A PROGRAM IS UNDER WAY: LET IT END, OR STOP IT AND PRESS R, BEFORE CHOOSING ANOTHER</source>
       <translation>HAY UN PROGRAMA EN CURSO: DEJE QUE TERMINE, O PÁRELO Y PULSE R, ANTES DE ELEGIR OTRO</translation>

@@ -339,6 +339,23 @@ def test_a_home_that_is_a_file_is_told(
     assert "no folder" in said
 
 
+@pytest.mark.parametrize("words", [["offsets", "show"], ["setup", "desktop"], ["store", "verify"]])
+def test_a_user_without_a_home_is_told_to_name_a_folder(
+    words: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def nowhere(*_: object, **__: object) -> Path:
+        raise RuntimeError("Could not determine home directory.")
+
+    for name in ("TURNDESK_HOME", "XDG_DATA_HOME", "XDG_CONFIG_HOME"):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setattr("platformdirs.user_data_path", nowhere)
+    monkeypatch.setattr("pathlib.Path.home", nowhere)
+    assert main(words) == 2
+    said = capsys.readouterr().err
+    assert said.startswith("turndesk: this user has no home folder; name a folder in ")
+    assert said.count("\n") == 1
+
+
 @pytest.mark.parametrize(("words", "meant"), [
     (["prov", "a.nc"], "did you mean prove?"), (["offsets", "sho"], "did you mean show?"),
     (["prove", "a.nc", "--ofsets", "b"], "did you mean --offsets?"),
