@@ -61,7 +61,7 @@ SERVICES = {Act.MACHINE_FILE, Act.RESTORE, Act.SHARED_PLACE, Act.PEOPLE}
 WRITES = re.compile(
     r"\.(save_setting|keep_settings|set_setting|save_version|correct_parts|reset_parts|import_all|set_offset)\("
     r"|\.(keep_person|remove_person|remove_people|keep_program|renamed|set_input|unlink|rename|write_text)\("
-    r"|\b(write_whole|write_new|write_out|store_new|ForceOutput|SpindleLimit)\("
+    r"|\b(write_whole|write_new|write_out|write_in_place|store_new|ForceOutput|SpindleLimit)\("
 )
 BEHIND_A_RULE = {
     "cli/who_changes.py": "the PINs that were wrong",
@@ -95,8 +95,10 @@ NO_CHANGE = {
     "jog/hand_functions.py": "coolant off: it brings to rest",
     "mdi/mdi_line.py": "the lines that were typed",
     "programs/whole_file.py": "how a file is written; who calls it asks",
+    "quality/readings_file.py": "readings, to a file of whoever asks",
     "quality/shift_function.py": "a report",
     "scope/record_shelf.py": "how records are kept; asked by scope_model.py",
+    "shopfloor/status_file.py": "what the machine does, for other programs",
     "special/setup_sheet_work.py": "the sheet on paper",
 }
 
