@@ -17,7 +17,7 @@ from core.store import row_sums
 from core.store.log_damage import lost_changes
 from core.store.store_errors import Cause, StoreError, cause_of, why
 from core.store.store_file import FILE_NAME, has_store
-from core.unfinished import forget_killed
+from core.unfinished import forget_killed, unfinished_file
 
 APPLICATION_ID = 0x5475724E  # "TurN": tells a store of ours from any other SQLite file
 _MIGRATIONS = Path(__file__).with_name("migrations")
@@ -433,7 +433,7 @@ def _writing(path: Path, version: int, wrong: list[str]) -> tuple[sqlite3.Connec
         connection.execute("PRAGMA journal_mode = WAL")
         mended = _mend_indexes(connection, path, wrong)
         migrate(connection, migrations())
-    except sqlite3.Error as error:
+    except (OSError, sqlite3.Error) as error:
         connection.close()
         raise why(path, error) from error
     except StoreError:
@@ -443,6 +443,9 @@ def _writing(path: Path, version: int, wrong: list[str]) -> tuple[sqlite3.Connec
 
 
 def _keep_copy(connection: sqlite3.Connection, target: Path) -> None:
-    """The store as the older version had it, kept beside the one that is about to change."""
-    with closing(sqlite3.connect(target)) as copy:
-        connection.backup(copy)
+    """The store as the older version had it, kept beside the one that is about to change. Raises OSError."""
+    with unfinished_file(target) as unfinished:
+        with closing(sqlite3.connect(unfinished)) as copy:
+            connection.backup(copy)
+            copy.execute("PRAGMA journal_mode = DELETE")
+        put_in_place(unfinished, target)

@@ -31781,7 +31781,7 @@
     <message>
       <location filename="core/store/offset_tables.py" />
       <source>entry %1 of the history of offsets</source>
-      <translation>la entrada %1 de la historia de correctores</translation>
+      <translation>la entrada %1 del historial de correctores</translation>
     </message>
     <message>
       <location filename="core/store/offset_tables.py" />
@@ -31826,7 +31826,7 @@
     <message>
       <location filename="core/store/offset_tables.py" />
       <source>the record of</source>
-      <translation>la historia de</translation>
+      <translation>el historial de</translation>
     </message>
     <message>
       <location filename="core/store/offset_tables.py" />

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from app.programs.whole_file import write_new, write_whole
-from core.store import backup
+from core.store import backup, database
 from core.store.store import Store, StoreError
 from core.store.store_export import export
 from core.unfinished import forget_killed, unfinished_file, unfinished_folder
@@ -75,6 +75,29 @@ def test_a_killed_export_leaves_nothing_for_the_next_one(store: Store, tmp_path:
     killed("unfinished_folder", there / "june")
     export(store, there / "july")
     assert names(there) == ["july"]
+
+
+def test_a_killed_copy_of_the_older_version_has_no_name(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Half a file would be taken for the way back."""
+    scripts = database.migrations()
+    monkeypatch.setattr(database, "migrations", lambda: scripts[:-1])
+    with Store.open(folder) as store:
+        store.set_tool(3, "touched", x=1.0).result()
+    monkeypatch.setattr(database, "migrations", lambda: scripts)
+
+    def cut(_finished: Path, _target: Path) -> None:
+        raise OSError(28, "No space left on device")
+
+    with monkeypatch.context() as patch:
+        patch.setattr(database, "put_in_place", cut)
+        with pytest.raises(StoreError, match="the disk is full"):
+            Store.open(folder)
+    assert not [name for name in names(folder) if "version" in name or "unfinished" in name]
+    with Store.open(folder) as store:
+        assert store.tools()[3].x == 1.0
+    assert backup.problems(folder / f"turndesk-version-{len(scripts) - 1}.db") == ()
 
 
 def test_what_another_process_writes_stays(tmp_path: Path) -> None:
