@@ -191,6 +191,22 @@ def test_a_text_whose_type_was_flipped_is_none(kept: Path) -> None:
         assert [text.split(" is ")[0] for text in store.damaged()] == ["the setting units"]
 
 
+def test_two_rows_that_changed_places_with_their_sums_are_none(kept: Path) -> None:
+    """The number of a tool is in its sum."""
+    with Store.open(kept) as store:
+        store.set_tool(5, "touched", x=-25.4, z=-5.0).result()
+    for table, key in (("tool_offsets", "number"), ("row_sums", "key")):
+        of_tools = " AND tbl = 'tool_offsets'" if table == "row_sums" else ""
+        for before, after in ((3, 30), (5, 3), (30, 5)):
+            spoil(kept, f"UPDATE {table} SET {key} = ? WHERE {key} = ?{of_tools}", after, before)
+    with Store.open(kept, read_only=True) as store:
+        assert store.tools() == {}
+        assert [text.split(" is ")[0] for text in store.damaged()] == ["T3", "T5"]
+    with Store.open(kept) as store:
+        assert store.tools() == {}
+        assert store.repaired == ()
+
+
 # --- tables as they are made, and stores of before ---------------------------------------------------------
 
 
