@@ -233,9 +233,17 @@ class NoticeRows(Panel):
         return sum(self._high_of(row) for row in self.rows)
 
     def _high_of(self, row: NoticeRow) -> int:
-        """A fingertip where there is something to press; else as high as its two lines."""
+        """A fingertip where there is something to press, or more for words that need it; else two lines."""
         u = self.look.u
-        return max(FINGER + 2, round(NOTICE_ROW * u)) if row.keys else round(NOTICE_LOW * u)
+        if not row.keys:
+            return round(NOTICE_LOW * u)
+        wide = self._room(row, self.width())
+        fits = width_of(row.figures, self.look.fit(row.figures, 1.7, wide)) <= wide
+        return max(FINGER + 2, round(NOTICE_ROW * u) if fits else round(_THREE_LINES * u) + 3)
+
+    def _room(self, row: NoticeRow, wide: float) -> float:
+        """For its words, beside its keys."""
+        return wide - (len(row.keys) * NOTICE_KEY + 2.4) * self.look.u
 
     @property
     def other_room(self) -> bool:
@@ -257,7 +265,7 @@ class NoticeRows(Panel):
     def _row(self, painter: Painter, box: QRectF, row: NoticeRow) -> None:
         u = self.look.u
         painter.fill(box, row.tone)
-        wide = box.width() - len(row.keys) * NOTICE_KEY * u - 2.4 * u
+        wide = self._room(row, box.width())
         lines = [row.figures] if row.figures else []
         if box.height() > _THREE_LINES * u:
             lines = _in_lines(row.figures, self.look.fit(row.figures, 1.7, wide), wide)
