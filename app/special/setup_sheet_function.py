@@ -244,8 +244,11 @@ class SetupSheetFunction(SpecialFunction):
         program = self.program
 
         def save() -> None:
+            told = _changed(
+                self.notes, notes
+            )  # before they are kept: whoever reads them behind that sees these
             self.persistence.save_setting(notes_key(program), notes or None)
-            self.persistence.note_change(f"notes of {program}: {_changed(self.notes, notes)}")
+            self.persistence.note_change(f"notes of {program}: {told}")
             self._notes_of = program, notes
 
         self.desk.clear()

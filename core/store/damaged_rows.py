@@ -17,6 +17,7 @@ def repair(connection: sqlite3.Connection) -> tuple[str, ...]:
     is damaged.
     """
     told = []
+    connection.execute("DELETE FROM row_sums WHERE typeof(key) = 'blob'")  # nobody has such a key
     for table, key in _broken(connection, KEYS):
         row = history_of(connection, table, key, row_sums.columns(connection, table))
         saved, now = row_sums.saved_sum(connection, table, key), row_sums.row(connection, table, key)

@@ -212,10 +212,10 @@ def _rows(connection: sqlite3.Connection, table: str, since: int | None = None) 
 
 
 def _key(value: Value) -> Key:
-    """A key whose own bytes are damaged is one that nobody asks for."""
-    if isinstance(value, bytes):
+    """A key whose own bytes, or whose type, are damaged is one that nobody asks for."""
+    if isinstance(value, Text):
         return value.decode("utf-8", "backslashreplace")
-    return value if isinstance(value, int) else str(value)
+    return value if isinstance(value, int) else repr(value)
 
 
 def _sums(connection: sqlite3.Connection, table: str, since: int | None = None) -> dict[Key, str]:

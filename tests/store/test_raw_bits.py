@@ -191,6 +191,19 @@ def test_a_text_whose_type_was_flipped_is_none(kept: Path) -> None:
         assert [text.split(" is ")[0] for text in store.damaged()] == ["the setting units"]
 
 
+def test_a_sum_whose_key_is_no_text_any_more_is_told(kept: Path) -> None:
+    """The setting read as never set, and nobody said so."""
+    spoil(kept, "UPDATE row_sums SET key = CAST(key AS BLOB) WHERE tbl = 'settings'")
+    assert len(backup.problems(kept / FILE_NAME)) == 2
+    with Store.open(kept) as store:
+        [told] = store.damaged()
+        assert told.startswith("the setting units is not as it was saved")
+        assert store.setting("units") is None
+        store.set_setting("units", "metric").result()
+        assert (store.setting("units"), store.damaged()) == ("metric", ())
+    assert backup.all_problems(kept / FILE_NAME) == ()
+
+
 def test_two_rows_that_changed_places_with_their_sums_are_none(kept: Path) -> None:
     """The number of a tool is in its sum."""
     with Store.open(kept) as store:
