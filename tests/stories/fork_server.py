@@ -149,6 +149,8 @@ def _becomes(what: dict[str, Any], streams: Sequence[int]) -> None:
     for number, each in enumerate(streams):
         os.dup2(each, number)
         os.close(each)
+    # Those of before may be files, which Python asks where they stand; these are pipes.
+    sys.stdout, sys.stderr = (open(number, "w", closefd=False) for number in (1, 2))  # noqa: SIM115
     os.environ.clear()
     os.environ.update(what["environment"])
     sys.argv[1:] = what["arguments"]
