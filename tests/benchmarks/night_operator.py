@@ -265,6 +265,7 @@ class Operator:
         lives = next(each for each in found.functions if isinstance(each, ToolLifeSection))
         lives.marked = 0  # T1
         self._kept()  # right behind the start its life may not be read yet
+        self.shift.settle(lambda: 1 in self.shift.parts_book.now.lives)  # its worker may be late
         made = self.shift.parts_book.now.lives[1].parts
         for _ in range(20):  # another answer may have taken the place of the question
             lives.insert()
