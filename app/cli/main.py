@@ -11,7 +11,6 @@ import os
 import sys
 import threading
 from collections.abc import Sequence
-from contextlib import suppress
 
 from app.cli import dropped_interrupt
 from app.cli.command_parser import Parser, add_screen_options, settled
@@ -182,8 +181,7 @@ def _streams_for_any_text() -> None:
         sys.stderr = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
-            with suppress(OSError):  # a pipe put in the place of a file has no position to go on from
-                stream.reconfigure(errors="replace")
+            stream.reconfigure(errors="replace")
 
 
 def console() -> int:
