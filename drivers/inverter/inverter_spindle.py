@@ -67,7 +67,8 @@ class InverterSpindle:
                 )
             if why := self.fault() or self._lost():
                 raise DriverError(f"the spindle stays off: {why}", "spindle-off")
-            if not self._attendant.warm:
+            # One that turns goes on: a surface speed that is refused for a lost answer costs the part.
+            if not (self._attendant.want or self._attendant.warm):
                 raise DriverError(
                     "the spindle stays off: the inverter has not yet answered often enough", "spindle-off"
                 )

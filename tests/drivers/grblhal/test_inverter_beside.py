@@ -23,7 +23,9 @@ from drivers.lookalikes.spindle_motor import SpindleFaults
 from tests.drivers.grblhal.bench import SHIPPED, quirky
 from tests.drivers.inverter.inverter_lookalikes import HuanyangSlave, Inverter
 from tests.drivers.inverter.lines import HuanyangEnd, Pair, inverter, until
+from tests.late_computer import stalls_told
 
+pytestmark = pytest.mark.real_time  # an inverter that answers late is one that does not answer
 Captured = pytest.CaptureFixture[str]
 _VFD = 'driver = "vfd"\nvfd = {{ family = "huanyang", port = "{}", comm_loss_s = 1.5, hz_per_rpm = 0.01667 }}'
 
@@ -72,6 +74,7 @@ def both(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Both]:
     end, over = TcpEnd("127.0.0.1", 0), threading.Event()
     peer = threading.Thread(target=serve, args=(end, firmware, lambda: not over.is_set()))
     with ExitStack() as stack:
+        stack.enter_context(stalls_told())
         cable = stack.enter_context(Pair())
         stack.enter_context(HuanyangEnd(cable.far, HuanyangSlave(one)))
         peer.start()

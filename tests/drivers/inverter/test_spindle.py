@@ -51,6 +51,17 @@ def test_an_answer_lost_now_and_then_does_no_harm(turning: Bench) -> None:
         assert turning.spindle.fault() == ""
 
 
+def test_nor_while_a_surface_speed_changes_at_every_tick(turning: Bench) -> None:
+    """Who has answered too seldom is given no start; a cut that turns already is not broken off for it."""
+    for step in range(1, 41):
+        turning.wire.loses = int(step % 10 == 0)
+        turning.attendant.exchange()
+        turning.spindle.run(1200.0 + 10.0 * step)
+    turning.run(1.5)
+    assert turning.spindle.fault() == ""
+    assert turning.rpm == pytest.approx(1600.0, abs=1.0)
+
+
 def test_the_wrong_direction_is_told(stand: Bench) -> None:
     """The inverter's own "at speed" would be true."""
     stand.inverter.backwards = True
