@@ -160,8 +160,9 @@ def draw_approach(painter: QPainter, look: Look, pane: Pane, legs: Sequence[Draw
     painter.setBrush(look.colour("panel"))
     for spot in spots[:1]:
         painter.drawEllipse(spot, 0.8 * u, 0.8 * u)
-    for leg, (start, end) in zip(legs[1:], pairwise(spots), strict=True):
-        _label(painter, look, (start + end) / 2, leg.label)
+    middles = [(start + end) / 2 for start, end in pairwise(spots)]
+    for box, text in leg_labels(look, middles, [leg.label for leg in legs[1:]]):
+        _label(painter, look, box, text)
 
 
 def _arrow(painter: QPainter, look: Look, start: QPointF, end: QPointF) -> None:
@@ -180,13 +181,30 @@ def _arrow(painter: QPainter, look: Look, start: QPointF, end: QPointF) -> None:
     painter.restore()
 
 
-def _label(painter: QPainter, look: Look, at: QPointF, text: str) -> None:
-    if not text:
-        return
-    u = look.u
+def leg_labels(look: Look, middles: Sequence[QPointF], labels: Sequence[str]) -> list[tuple[QRectF, str]]:
+    """The labels in the middle of their legs; of legs that lie too near to each other one, ``5–15``."""
+    drawn: list[tuple[QRectF, str]] = []
+    for at, label in zip(middles, labels, strict=True):
+        if not label:
+            continue
+        box = _label_box(look, at, label)
+        near = next((n for n, (other, _) in enumerate(drawn) if other.intersects(box)), None)
+        if near is None:
+            drawn.append((box, label))
+        else:
+            other, first = drawn[near]
+            text = f"{first.partition(' ')[0].partition('–')[0]}–{label.partition(' ')[0]}"
+            drawn[near] = _label_box(look, other.center(), text), text
+    return drawn
+
+
+def _label_box(look: Look, at: QPointF, text: str) -> QRectF:
+    wide = QFontMetricsF(look.font(1.6, bold=True)).horizontalAdvance(text) + 1.2 * look.u
+    return QRectF(at.x() - wide / 2, at.y() - 1.2 * look.u, wide, 2.4 * look.u)
+
+
+def _label(painter: QPainter, look: Look, box: QRectF, text: str) -> None:
     painter.setFont(look.font(1.6, bold=True))
-    wide = QFontMetricsF(painter.font()).horizontalAdvance(text) + 1.2 * u
-    box = QRectF(at.x() - wide / 2, at.y() - 1.2 * u, wide, 2.4 * u)
     painter.fillRect(box, look.colour("lit"))
     painter.setPen(look.colour("on_lit"))
     put(painter, box, CENTRE, text)

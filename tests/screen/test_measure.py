@@ -14,6 +14,7 @@ from pytestqt.qtbot import QtBot
 
 from app.path.measuring import Point, PointKind
 from app.path.path_aspects import Aspect, DrawnLeg, Tip
+from app.path.path_marks_view import leg_labels
 from app.path.path_picture import Picture, PictureBuilder
 from app.path.path_view import PathView
 from app.screen.look import Look
@@ -333,6 +334,16 @@ def test_the_way_back_is_drawn_and_taken_away(view: PathView) -> None:
     assert not drawn_in(DARK.lit, plain, view, [(-3.0, 8.0)])
     view.show_approach(None)
     assert settle(view) == plain
+
+
+def test_legs_that_lie_on_each_other_have_one_label(view: PathView) -> None:
+    """A short way beside a long one: no number hides another."""
+    spots = [QPointF(300.0, 50.0), QPointF(100.0, 50.0), QPointF(104.0, 52.0), QPointF(98.0, 49.0)]
+    one, rest = leg_labels(view.look, spots, ["1 X", "2 Z", "3 X", "4 XZ"])
+    assert (one[1], rest[1]) == ("1 X", "2–4")
+    assert rest[0].center() == spots[1]
+    assert not one[0].intersects(rest[0])
+    assert [text for _, text in leg_labels(view.look, spots[:3], ["1 X", "", "3 X"])] == ["1 X", "3 X"]
 
 
 def test_keys_on_the_automatic_page(hands: Hands) -> None:
