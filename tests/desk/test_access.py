@@ -50,6 +50,8 @@ from core.store.store_file import FILE_NAME
 from core.store.store_rows import Kind
 from core.store.tool_lives import insert_changes
 from drivers.clocks import StepClock
+from tests.texts import begins, pattern, shows
+from tests.texts import text as wording
 
 T = TypeVar("T", bound=SpecialFunction)
 HOUSE = Path(__file__).parents[2]
@@ -224,7 +226,7 @@ def test_without_people_nothing_is_asked_and_nothing_more_is_logged(room: Room) 
 def test_a_refusal_says_which_level_and_how_to_get_it(room: Room) -> None:
     room.enter_people()
     why = room.desk.book.change(Kind.TOOL, 3, {"x": 1.0, "z": -1.0}, "typed")
-    assert why == "TOOL OFFSETS: SETUP LEVEL IS NEEDED, OPERATOR IS IN FORCE; SIGN IN: F10, ACCESS LEVELS"
+    assert why == wording("screen.level-needed", what="TOOL OFFSETS", level="SETUP", now="OPERATOR")
     room.settle()
     assert room.store.tools() == {}
 
@@ -233,10 +235,12 @@ def test_wear_is_the_operators_and_position_is_not(room: Room) -> None:
     room.store.set_tool(3, "touched off", x=1.0, z=-1.0).result(LIMIT)
     room.enter_people()
     book = room.desk.book
-    assert "SETUP LEVEL" in book.change(Kind.TOOL, 3, {"wear_x": 0.01, "x": 2.0}, "both")
-    assert "SETUP LEVEL" in book.undo(Kind.TOOL)
-    assert "SETUP LEVEL" in book.clear(Kind.ZERO, "all")
-    assert "SETUP LEVEL" in book.choose_master(3, "master")
+    assert shows(
+        book.change(Kind.TOOL, 3, {"wear_x": 0.01, "x": 2.0}, "both"), "screen.level-needed", level="SETUP"
+    )
+    assert shows(book.undo(Kind.TOOL), "screen.level-needed", level="SETUP")
+    assert shows(book.clear(Kind.ZERO, "all"), "screen.level-needed", level="SETUP")
+    assert shows(book.choose_master(3, "master"), "screen.level-needed", level="SETUP")
     assert book.change(Kind.TOOL, 3, {"wear_x": 0.01}, "too large") == ""
     room.settle()
     assert book.change(Kind.SECONDARY, 1, {"x": -0.01}, "too large") == ""
@@ -250,12 +254,12 @@ def test_pages_without_a_book_refuse_too(room: Room) -> None:
     programs, editor = room.desk.attached(ProgramList), room.desk.attached(Editor)
     assert programs is not None
     assert editor is not None
-    assert "PROGRAMS: SETUP LEVEL" in editor.may_save()
+    assert shows(editor.may_save(), "screen.level-needed", what="PROGRAMS", level="SETUP")
     programs.transfer.begin((), None, out=False)
     assert not programs.transfer.open
-    assert "PROGRAMS: SETUP LEVEL" in room.desk.notice
+    assert shows(room.desk.notice, "screen.level-needed", what="PROGRAMS", level="SETUP")
     room.find(MachineFileAcceptance)._accept()
-    assert "THE MACHINE FILE: SERVICE LEVEL" in room.desk.notice
+    assert shows(room.desk.notice, "screen.level-needed", what="THE MACHINE FILE", level="SERVICE")
     room.sign_in("BEN")
     assert editor.may_save() == ""
     programs.transfer.begin((), None, out=False)
@@ -270,9 +274,11 @@ def test_a_lower_spindle_limit_is_everybodys_and_a_higher_one_is_not(room: Room)
     assert limit.take("1200")
     room.run()
     assert not limit.take("1500")
-    assert "A HIGHER SPINDLE LIMIT: SETUP LEVEL IS NEEDED, OPERATOR IS IN FORCE" in room.desk.notice
+    assert shows(
+        room.desk.notice, "screen.level-needed", what="A HIGHER SPINDLE LIMIT", level="SETUP", now="OPERATOR"
+    )
     limit.lift()
-    assert "SETUP LEVEL IS NEEDED" in room.desk.notice
+    assert shows(room.desk.notice, "screen.level-needed", level="SETUP")
     room.run()
     assert room.desk.snapshot().spindle_limit == 1200.0
     room.sign_in("BEN")
@@ -294,7 +300,7 @@ def test_outputs_by_hand_are_of_setup_and_the_lamp_test_is_not(room: Room) -> No
     page.marked = tuple(page.machine.outputs).index("coolant")
     room.desk.clear()
     page.act()
-    assert "OUTPUTS BY HAND: SETUP LEVEL IS NEEDED" in room.desk.notice
+    assert shows(room.desk.notice, "screen.level-needed", what="OUTPUTS BY HAND", level="SETUP")
     page._force("coolant", True)  # the level fell back while it was asked
     room.run()
     assert "coolant" not in room.desk.snapshot().outputs
@@ -312,7 +318,7 @@ def test_what_has_come_by_the_line_is_not_stored_when_the_level_fell_back(room: 
     line.received = Received(b"M30\n", "PIN", 1, "", False, 0, (), 0.0)
     room.access.sign_out()
     line._store()
-    assert "PROGRAMS: SETUP LEVEL IS NEEDED" in room.desk.notice
+    assert shows(room.desk.notice, "screen.level-needed", what="PROGRAMS", level="SETUP")
     assert line.received is not None
     assert not (line.own / "PIN").exists()
 
@@ -332,7 +338,7 @@ def test_a_shared_program_asks_again_when_it_is_taken_and_has_the_name_of_who_to
         room.desk.clear()  # what was asked is answered when the level has fallen back
         refused()
         page.worker.settle(LIMIT)
-        assert "PROGRAMS: SETUP LEVEL IS NEEDED" in room.desk.notice
+        assert shows(room.desk.notice, "screen.level-needed", what="PROGRAMS", level="SETUP")
     assert not peg.exists()
     room.sign_in("BEN")
     page._take(version)
@@ -386,7 +392,7 @@ def test_taking_a_shared_program_is_no_operators_work(room: Room, tmp_path: Path
     model, peg = shared(room, tmp_path), tmp_path / "home" / "programs" / "peg.nc"
     model.take()
     model.worker.settle(LIMIT)
-    assert "PROGRAMS: SETUP LEVEL" in room.desk.notice
+    assert shows(room.desk.notice, "screen.level-needed", what="PROGRAMS", level="SETUP")
     assert not peg.exists()
     room.sign_in("BEN")
     model.take()
@@ -408,11 +414,11 @@ def test_who_has_gone_away_finishes_nothing_by_other_hands(room: Room) -> None:
     room.at += 600.0
     room.run(1)
     typed(levels, "1357")
-    assert "PEOPLE AND THEIR PINS: SERVICE LEVEL" in room.desk.notice
+    assert shows(room.desk.notice, "screen.level-needed", what="PEOPLE AND THEIR PINS", level="SERVICE")
     room.desk.clear()
     programs.transfer.worker.settle(LIMIT)
     programs.transfer._carry((HOUSE / "setup.cfg",), HOUSE, replace=True)
-    assert "PROGRAMS: SETUP LEVEL" in room.desk.notice
+    assert shows(room.desk.notice, "screen.level-needed", what="PROGRAMS", level="SETUP")
     assert not programs.transfer.worker.busy
     room.settle()
     assert room.access.people.named("EVE") is None
@@ -496,10 +502,10 @@ def test_wrong_pins_wait_longer_and_longer_and_are_logged(room: Room) -> None:
     room.enter_people()
     for _ in range(3):
         room.sign_in("BEN", "0815")
-    assert "NEXT IS TAKEN IN 5 S" in room.desk.notice
+    assert shows(room.desk.notice, "desk.wrong-pin", seconds=5)
     room.sign_in("BEN")  # the right one, but too early
     assert room.access.name == ""
-    assert room.desk.notice == "TOO MANY WRONG PINS: THE NEXT IS TAKEN IN 5 S"
+    assert room.desk.notice == wording("desk.too-many-pins", seconds=5)
     room.at += 5.0
     room.sign_in("BEN")
     assert room.access.name == "BEN"
@@ -559,7 +565,7 @@ def test_a_level_falls_back_and_says_so_before(room: Room) -> None:
     assert room.desk.notice == ""
     room.at += 1.0
     room.run(1)
-    assert room.desk.notice.endswith("ENDS IN 30 S: ANY KEY KEEPS IT")
+    assert shows(room.desk.notice, "desk.level-ends", seconds=30)
     room.access.used()
     room.at += 599.0
     room.run(1)
@@ -567,7 +573,7 @@ def test_a_level_falls_back_and_says_so_before(room: Room) -> None:
     room.at += 1.0
     room.run(1)
     assert (room.access.name, room.access.level) == ("", Level.OPERATOR)
-    assert "WHAT IS TYPED STAYS" in room.desk.notice
+    assert shows(room.desk.notice, "desk.was-away")
     assert room.log("access")[-1] == ("ANNA has signed out, after 10 min without a key", "ANNA")
 
 
@@ -589,7 +595,7 @@ def test_levels_come_back_with_a_store_that_was_away_at_the_start(room: Room) ->
     room.journal._store = store
     room.at += 1.0
     room.run(1)
-    assert "SERVICE LEVEL IS NEEDED" in again.refusal(Act.PEOPLE)
+    assert shows(again.refusal(Act.PEOPLE), "screen.level-needed", level="SERVICE")
     again.close()
 
 
@@ -607,12 +613,12 @@ def test_the_first_one_is_of_service_and_switches_levels_on(room: Room) -> None:
     levels = room.find(AccessLevels)
     levels.keys()["F3"].action()
     typed(levels, "anna", "4711")
-    assert levels.sheet(room.desk.snapshot()).question == "THE SAME PIN AGAIN?"
+    assert levels.sheet(room.desk.snapshot()).question == wording("desk.same-pin-again")
     typed(levels, "4711")
     room.settle()
     assert [(row.name, row.level) for row in room.access.people.rows] == [("ANNA", 3)]
     levels.keys()["F3"].action()
-    assert "PEOPLE AND THEIR PINS: SERVICE LEVEL" in room.desk.notice
+    assert shows(room.desk.notice, "screen.level-needed", what="PEOPLE AND THEIR PINS", level="SERVICE")
     typed(levels, "", "4711")  # Return on her name, and her PIN
     room.settle()
     levels.keys()["F3"].action()
@@ -628,7 +634,7 @@ def test_two_different_pins_keep_nothing(room: Room) -> None:
     typed(levels, "anna", "4711", "4712")
     room.settle()
     assert not room.access.people.on
-    assert "TWO DIFFERENT PINS" in room.desk.notice.upper()
+    assert wording("desk.two-different-pins").upper() in room.desk.notice.upper()
 
 
 def test_a_pin_is_not_shown(room: Room) -> None:
@@ -645,7 +651,7 @@ def test_a_pin_is_not_shown(room: Room) -> None:
 
 def test_one_of_service_stays(room: Room) -> None:
     room.enter_people()
-    with pytest.raises(StoreError, match="SERVICE level has to stay"):
+    with pytest.raises(StoreError, match=pattern("desk.service-stays")):
         room.journal.remove_person("ANNA")
     for name in ("BEN", "CARLA", "ANNA"):
         room.journal.remove_person(name)
@@ -660,7 +666,10 @@ def test_a_damaged_row_lets_nobody_in_and_switches_nothing_off(room: Room, tmp_p
     room.access.reload()
     assert room.access.people.on
     assert room.access.people.named("CARLA") is None
-    assert any(text.startswith("the PIN of CARLA is not as it was saved") for text in room.store.damaged())
+    assert any(
+        begins(text, "desk.not-as-saved", what=f"{wording('desk.pin-of')} CARLA")
+        for text in room.store.damaged()
+    )
 
 
 def test_a_store_of_before_has_no_levels_and_keeps_its_log(tmp_path: Path) -> None:
@@ -688,7 +697,7 @@ def pressed(room: Room) -> Callable[[], None]:
     room.run()
     levels = room.find(AccessLevels)
     levels.keys()["F9"].action()
-    assert room.desk.notice.startswith("PRESS Y TO TAKE ALL PINS AWAY")
+    assert begins(room.desk.notice, "desk.take-all-pins-away")
     levels.service_reset.begin()
     return levels.service_reset.begin
 
@@ -698,21 +707,21 @@ def test_ten_minutes_of_estop_take_all_pins_away(room: Room) -> None:
     room.at += WAIT - 1.0
     room.run(1)
     assert room.access.people.on
-    assert room.access.words == "PINS ARE RESET IN 0:01"
+    assert room.access.words == wording("desk.pins-reset-in", time="0:01")
     room.at += 1.0
     room.run(1)
     room.settle()
     assert not room.access.people.on
     assert room.access.words == ""
     told = [text for text, _who in room.log("access")]
-    assert told[0].startswith("service reset begun")
-    assert told[-1] == "service reset done: all people and PINs are taken away, levels are off"
+    assert begins(told[0], "desk.reset-begun")
+    assert told[-1] == wording("desk.reset-done")
 
 
 def test_the_reset_needs_the_estop_and_ends_with_it(room: Room) -> None:
     room.enter_people()
     room.find(AccessLevels).ask_reset()
-    assert room.desk.notice.startswith("PRESS THE E-STOP FIRST")
+    assert begins(room.desk.notice, "desk.e-stop-for-reset")
     pressed(room)
     room.at += 300.0
     room.run(1)
@@ -722,7 +731,7 @@ def test_the_reset_needs_the_estop_and_ends_with_it(room: Room) -> None:
     room.run(1)
     room.settle()
     assert room.access.people.on
-    assert room.log("access")[-1][0] == "service reset given up"
+    assert room.log("access")[-1][0] == wording("desk.reset-given-up")
 
 
 def test_a_pin_ends_the_reset(room: Room) -> None:

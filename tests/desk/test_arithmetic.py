@@ -9,6 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.desk.arithmetic import EntryError, line_of, value_of
+from tests.texts import pattern
 
 
 @pytest.mark.parametrize(
@@ -60,7 +61,7 @@ def test_refusals(entry: str, told: str) -> None:
 
 def test_no_entry_is_too_deep() -> None:
     assert value_of("(" * 39 + "1" + ")" * 39) == 1.0
-    with pytest.raises(EntryError, match="stops short"):
+    with pytest.raises(EntryError, match=pattern("desk.stops-short")):
         value_of("(" * 80)
 
 

@@ -14,6 +14,7 @@ from core.store import backup
 from core.store.store import Store
 from core.store.store_errors import StoreError
 from tests.store.disk import small_disk
+from tests.texts import pattern, shows
 
 
 class Days:
@@ -97,7 +98,7 @@ def test_a_backup_that_is_no_good_is_told_once_a_day_and_leaves_the_others(
         assert daily.look() is None
     assert names(folder) == [f"daily-2026-11-23-060000{ENDING}"]
     assert len(days.told) == 3  # once a day
-    assert "it was written, but the file is damaged" in days.told[0]
+    assert shows(days.told[0], "desk.backup-damaged", what=pattern("desk.file-damaged"))
     daily.look()
     assert len(days.told) == 3
 
@@ -169,5 +170,5 @@ def test_a_place_on_another_disk_is_not_hinted_at(home: Path, tmp_path: Path) ->
         disk.fill()
         days.now += timedelta(days=1)
         assert daily.look() is None
-        assert "the disk is full" in days.told[0]
+        assert shows(days.told[0], "desk.disk-full")
         assert len(names(disk.path / "lathe3")) == 1

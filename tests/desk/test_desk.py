@@ -17,6 +17,7 @@ from core.executor.commands import CycleStart, EnableDrives, FeedHold, FeedOverr
 from core.executor.snapshot import Alarm, Event, State
 from tests.screen.desks import desk_on
 from tests.screen.fake import FakeMachine
+from tests.texts import shows, text
 
 
 @pytest.fixture
@@ -52,7 +53,7 @@ def test_an_unknown_switch_is_a_mistake(desk: Desk) -> None:
 def test_no_other_program_while_one_is_under_way(desk: Desk, machine: FakeMachine, state: State) -> None:
     at(machine, state)
     assert desk.may_choose() is False
-    assert "UNDER WAY" in desk.notice
+    assert shows(desk.notice, "screen.program-runs-no-other")
 
 
 def test_an_unknown_program_is_not_loaded(desk: Desk) -> None:
@@ -62,11 +63,11 @@ def test_an_unknown_program_is_not_loaded(desk: Desk) -> None:
 
 def test_block_delete_needs_a_program_and_rest(desk: Desk, machine: FakeMachine) -> None:
     desk.block_delete()
-    assert "CHOOSE A PROGRAM FIRST" in desk.notice
+    assert shows(desk.notice, "screen.choose-program-for-block-delete")
     assert desk.choose("grooves")
     at(machine, State.HOLD)
     desk.block_delete()
-    assert "BETWEEN TWO CYCLES" in desk.notice
+    assert shows(desk.notice, "desk.block-delete-between-cycles")
     assert desk.session.now.block_delete is False
     at(machine, State.IDLE)
     desk.block_delete()
@@ -85,7 +86,7 @@ def test_reset_of_a_moving_machine_is_refused(desk: Desk, machine: FakeMachine, 
     at(machine, state)
     desk.reset()
     assert Reset() not in machine.posted
-    assert "FEED HOLD FIRST" in desk.notice
+    assert shows(desk.notice, "screen.feed-hold-first")
 
 
 def test_an_answer_to_a_question_of_another_state_is_none(desk: Desk, machine: FakeMachine) -> None:
@@ -179,11 +180,11 @@ def test_one_palm_of_a_simulated_machine_says_how_one_hand_starts(machine: FakeM
 
 def test_the_prompt_says_how_the_palms_on_the_glass_start(machine: FakeMachine) -> None:
     desk = replace(desk_on(machine), one_hand=True)
-    assert desk.start_words == "PRESS BOTH PALM BUTTONS (F11 + F12)"
+    assert desk.start_words == text("screen.both-palms")
     desk.choose_setting("latched", True)
-    assert desk.start_words == "PRESS ONE PALM BUTTON, THEN THE OTHER (F11, F12)"
+    assert desk.start_words == text("screen.one-palm")
     desk.one_hand = False  # something real moves: the choice counts for nothing
-    assert desk.start_words == "PRESS BOTH PALM BUTTONS (F11 + F12)"
+    assert desk.start_words == text("screen.both-palms")
 
 
 def test_a_held_palm_that_repeats_is_pressed_once(desk: Desk, machine: FakeMachine) -> None:
@@ -207,7 +208,7 @@ def test_a_refused_start_says_why_each_time(desk: Desk, machine: FakeMachine) ->
         desk.hands.palm("right", down=True)
         desk.hands.let_go()
         desk.look()
-        assert desk.notice == "NO START: NO PROVED PROGRAM"
+        assert desk.notice == text("screen.no-start", why="NO PROVED PROGRAM")
         desk.clear()
 
 
@@ -215,7 +216,7 @@ def test_what_the_executor_refuses_is_said(desk: Desk, machine: FakeMachine) -> 
     desk.hear(Event(1.0, "refused", "wait until the slides are at rest"))
     desk.hear(Event(1.1, "state", "READY"))
     desk.look()
-    assert desk.notice == "REFUSED: wait until the slides are at rest"
+    assert desk.notice == text("screen.refused", why=text("desk.slides-at-rest"))
 
 
 def test_an_answer_is_gone_with_the_next_state(desk: Desk, machine: FakeMachine) -> None:
@@ -224,7 +225,7 @@ def test_an_answer_is_gone_with_the_next_state(desk: Desk, machine: FakeMachine)
     assert desk.prompt(snapshot, loaded) == "AN ANSWER"
     at(machine, State.DISABLED)
     snapshot, _view, loaded = desk.look()
-    assert desk.prompt(snapshot, loaded) == "DRIVES ARE OFF: PRESS D FOR DRIVES ON"
+    assert desk.prompt(snapshot, loaded) == text("screen.drives-off")
 
 
 def test_the_override_key_turns_the_stations_pot(machine: FakeMachine) -> None:
@@ -315,10 +316,10 @@ def test_a_store_that_fails_in_the_middle_of_a_run_is_told_once(desk: Desk, mach
     desk.not_kept = lambda: trouble
     at(machine, State.HOLD)
     desk.look()
-    assert "NOT KEPT" not in desk.notice
+    assert not shows(desk.notice, "screen.not-kept")
     trouble = "turndesk.db: the disk is full"
     desk.look()
-    assert desk.notice == "NOT KEPT: turndesk.db: the disk is full"
+    assert desk.notice == text("screen.not-kept", why="turndesk.db: the disk is full")
     desk.clear()
     desk.look()
     assert desk.notice == ""

@@ -10,6 +10,7 @@ from typing import cast
 from app.desk.first_job import STEPS, FirstJob
 from app.desk.program_loading import Loaded, Phase
 from core.executor.snapshot import Snapshot, State
+from tests.texts import text
 
 REST = Snapshot()
 
@@ -51,7 +52,7 @@ def test_each_step_waits_for_what_it_asks() -> None:
     assert card.at == 4
     card.see(REST, loaded(), 2)
     assert card.at == len(STEPS)
-    assert card.row.text == "FIRST JOB: DONE"
+    assert card.row.text == text("desk.first-job-done")
 
 
 def test_where_every_tool_is_set_nobody_is_asked_to_touch_one_off() -> None:
@@ -62,5 +63,5 @@ def test_where_every_tool_is_set_nobody_is_asked_to_touch_one_off() -> None:
 
 def test_the_card_says_which_step_of_how_many() -> None:
     row = FirstJob().row
-    assert row.text == f"FIRST JOB, STEP 1 OF {len(STEPS)}: CHOOSE A PROGRAM"
+    assert row.text == text("desk.first-job-step", number=1, count=f"{len(STEPS)}: CHOOSE A PROGRAM")
     assert row.keys[0][1] == "CLOSE"

@@ -22,6 +22,7 @@ from core.language.source import Dialect, Source
 from tests.interrupted import broken_off
 from tests.screen.desks import desk_on
 from tests.screen.fake import FakeMachine
+from tests.texts import begins, shows, text
 
 STOOD = Snapshot(
     state=State.IDLE,
@@ -45,7 +46,17 @@ def test_line_tool_part_time_and_cause_stand_in_one_row() -> None:
     )
     assert found is not None
     at = datetime.fromisoformat(now).astimezone().strftime("%H:%M")
-    assert found.text == f"INTERRUPTED: PIN.NC LINE 8, T3, PART 5, {at}: E-STOP"
+    assert found.text == text(
+        "desk.interrupted",
+        program="PIN.NC",
+        line=8,
+        passed="",
+        tool=3,
+        part=5,
+        at=at,
+        why="E-STOP",
+        changed="",
+    )
 
 
 def test_yesterdays_job_has_its_date() -> None:
@@ -54,25 +65,27 @@ def test_yesterdays_job_has_its_date() -> None:
 
 
 def test_where_it_stood_and_where_it_stands_now() -> None:
-    assert figures(STOOD) == "STANDS AT X R0.37500 Z −2.30000 FROM HOME"
+    assert figures(STOOD) == text("desk.stands-at", stood="X R0.37500 Z −2.30000")
     moved = replace(STOOD, actual=(25.4, -58.42, 0.0))
-    assert figures(moved) == "STOOD AT X R0.37500 Z −2.30000, STANDS AT X R1.00000 Z −2.30000 FROM HOME"
+    assert figures(moved) == text(
+        "desk.stood-and-stands-at", stood="X R0.37500 Z −2.30000", now="X R1.00000 Z −2.30000"
+    )
     dia = replace(STOOD, modal=STOOD.modal._replace(diameter=True))
-    assert figures(dia) == "STANDS AT X Ø0.75000 Z −2.30000 FROM HOME"
-    assert figures(STOOD, Units.METRIC) == "STANDS AT X R9.5250 Z −58.4200 FROM HOME"
+    assert figures(dia) == text("desk.stands-at", stood="X Ø0.75000 Z −2.30000")
+    assert figures(STOOD, Units.METRIC) == text("desk.stands-at", stood="X R9.5250 Z −58.4200")
 
 
 def test_after_a_power_cut_it_says_what_nobody_knows() -> None:
     cut = replace(STOOD, interrupted=broken_off(why=CONTROL_LOST))
-    assert figures(cut).startswith("STANDS AT X R0.37500 Z −2.30000 FROM HOME. NOT CERTAIN: THE LAST SECOND")
-    assert "NOT CERTAIN" not in figures(STOOD)  # an E-stop is noted where the tool has come to rest
+    assert figures(cut).startswith(
+        text("desk.stands-at", stood="X R0.37500 Z −2.30000") + text("desk.not-certain")
+    )
+    assert not shows(figures(STOOD), "desk.not-certain")  # an E-stop is noted where the tool has come to rest
 
 
 def test_without_a_home_nobody_knows_where_it_stands() -> None:
     lost = replace(STOOD, homed=(True, False, True), actual=(9.525, 0.0, 0.0))
-    assert figures(lost) == (
-        "STOOD AT X R0.37500 Z −2.30000 FROM HOME; WHERE IT STANDS NOW IS NOT KNOWN BEFORE HOMING"
-    )
+    assert figures(lost) == (text("desk.stood-position-lost", stood="X R0.37500 Z −2.30000"))
 
 
 @pytest.mark.parametrize(
@@ -85,19 +98,20 @@ def test_without_a_home_nobody_knows_where_it_stands() -> None:
     ],
 )
 def test_where_the_next_start_begins_something_else_it_is_not_asked_for(other: Snapshot) -> None:
-    assert interrupted_notice.interrupted_prompt(STOOD, Loaded(), "PRESS").startswith(
-        "LINE 8 WAS INTERRUPTED: F6"
+    assert begins(
+        interrupted_notice.interrupted_prompt(STOOD, Loaded(), "PRESS"), "desk.was-interrupted", line=8
     )
-    assert interrupted_notice.interrupted_prompt(
-        replace(STOOD, confirmed=True), Loaded(), "PRESS"
-    ).startswith("BEGINS AT LINE 1")
+    assert begins(
+        interrupted_notice.interrupted_prompt(replace(STOOD, confirmed=True), Loaded(), "PRESS"),
+        "desk.begins-at-line-1",
+    )
     assert interrupted_notice.interrupted_prompt(other, Loaded(), "PRESS") == ""
 
 
 def test_where_searchto_does_not_read_the_language_it_is_not_offered() -> None:
     loaded = Loaded(source=Source("PIN.NC", "G0 X10\n", Dialect.SINUMERIK))
     assert interrupted_notice.interrupted_prompt(STOOD, loaded, "PRESS") == (
-        "LINE 8 WAS INTERRUPTED: JOG THE TOOL CLEAR; Y, THEN THE START: LINE 1"
+        text("desk.was-interrupted-jog-clear", line=8)
     )
 
 
@@ -138,7 +152,7 @@ def test_y_means_nothing_where_no_cycle_is_started(desk: Desk) -> None:
     desk.starts_here = False
     desk.yes()
     assert posted(desk) == []
-    assert desk.notice.startswith("Y MEANS SOMETHING ON THE AUTOMATIC PAGE")
+    assert begins(desk.notice, "desk.y-on-automatic")
     desk.close()
 
 
@@ -146,10 +160,7 @@ def test_another_program_is_asked_for_and_loaded_by_y_alone(desk: Desk) -> None:
     loads = desk.session.loads
     assert desk.choose("OTHER.NC")
     assert desk.session.loads == loads
-    assert (
-        desk.notice
-        == "T3 MAY STAND IN THE PART OF PIN.NC LINE 8: Y GIVES THAT JOB UP FOR OTHER.NC, ESC KEEPS IT"
-    )
+    assert desk.notice == text("desk.gives-job-up", tool=3, program="PIN.NC", line=8, name="OTHER.NC")
     assert desk.choose("OTHER.NC")  # the same again is no answer
     assert desk.session.loads == loads
     has_been_read(desk)
@@ -192,7 +203,7 @@ def test_the_interrupted_program_keeps_its_name_and_its_file(
         files.changer.ask(RENAME)
     else:
         files.changer.delete()
-    assert desk.notice == "PIN.NC IS INTERRUPTED: FINISH IT, OR GIVE IT UP, FIRST"
+    assert desk.notice == text("desk.finish-interrupted", name="PIN.NC")
     assert files.changer.question == ""
     assert (tmp_path / "PIN.NC").exists()
     desk.close()
@@ -208,14 +219,14 @@ def test_the_same_program_is_read_again_without_a_question(desk: Desk) -> None:
 def test_at_the_start_the_interrupted_program_goes_before_the_one_of_the_command_line(desk: Desk) -> None:
     desk.begin_with("OTHER.NC")
     assert desk.session.settled(20).name == "PIN.NC"
-    assert desk.notice == "OTHER.NC IS NOT LOADED: A JOB WAS INTERRUPTED"
+    assert desk.notice == text("desk.not-loaded-interrupted", name="OTHER.NC")
     desk.close()
 
 
 def test_at_the_start_an_interrupted_program_that_is_not_there_is_told(desk: Desk, tmp_path: Path) -> None:
     (tmp_path / "PIN.NC").unlink()
     desk.begin_with(None)
-    assert desk.notice == "THE INTERRUPTED PROGRAM PIN.NC IS NOT IN THE FOLDER: F2"
+    assert desk.notice == text("desk.interrupted-not-in-folder", name="PIN.NC")
     desk.close()
 
 

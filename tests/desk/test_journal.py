@@ -16,6 +16,7 @@ from core.store.store import Store
 from core.store.store_errors import Cause, StoreError
 from core.store.store_rows import Kind
 from tests.interrupted import broken_off
+from tests.texts import begins, pattern, shows
 
 
 @pytest.fixture
@@ -35,7 +36,7 @@ def test_a_bad_backup_leaves_everything_as_it_was(journal: Journal, tmp_path: Pa
     bad = tmp_path / "bad.db"
     bad.write_bytes(b"no database" * 50)
     journal.hear(Event(0.0, "start", "before"))
-    with pytest.raises(StoreError, match="is not a database"):
+    with pytest.raises(StoreError, match=pattern("screen.not-a-database")):
         journal.restore(bad)
     journal.hear(Event(0.0, "start", "after"))
     journal.save_version("a.nc", b"M30", "so that all is written")
@@ -115,7 +116,7 @@ def away(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Journal]:
     with monkeypatch.context() as disk:
         disk.setattr("core.store.store.open_to_write", raising(full))
         journal = Journal(tmp_path / "home")
-    assert "the disk is full" in journal.trouble
+    assert shows(journal.trouble, "desk.disk-full")
     yield journal
     journal.close()
 
@@ -129,8 +130,10 @@ def raising(error: StoreError) -> Callable[[object], NoReturn]:
 
 def test_offsets_are_changed_as_soon_as_the_store_is_there(away: Journal) -> None:
     book, parts = away.book(), away.parts_book()
-    assert "OFFSETS CANNOT BE KEPT: the disk is full" in book.change(Kind.TOOL, 3, {"x": 2.0}, "test")
-    assert "MEASURED PARTS CANNOT BE KEPT: the disk is full" in parts.locked
+    assert shows(
+        book.change(Kind.TOOL, 3, {"x": 2.0}, "test"), "desk.offsets-not-kept", why=pattern("desk.disk-full")
+    )
+    assert shows(parts.locked, "desk.parts-not-kept", why=pattern("desk.disk-full"))
     away._open_again()
     assert book.poll() == ""
     assert book.tools[3].x == 1.25
@@ -150,10 +153,10 @@ def test_a_store_that_stays_away_changes_nothing(away: Journal, monkeypatch: pyt
     monkeypatch.setattr("core.store.store.open_to_write", raising(locked))
     away._open_again()
     assert book.poll() == ""
-    assert book.locked.startswith("OFFSETS CANNOT BE KEPT: turndesk.db is locked by another program")
+    assert begins(book.locked, "desk.offsets-not-kept", why=pattern("desk.locked", path="turndesk.db"))
     assert book.changes == 0
     parts.look("")
-    assert parts.locked.startswith("MEASURED PARTS CANNOT BE KEPT: turndesk.db is locked")
+    assert begins(parts.locked, "desk.parts-not-kept", why=pattern("desk.locked", path="turndesk.db"))
     parts.worker.close()
 
 
@@ -196,9 +199,9 @@ def test_a_store_that_could_not_be_read_at_the_start_is_read_by_the_second_try(
     with monkeypatch.context() as disk:
         disk.setattr(Store, "damaged", raising(locked))
         journal = Journal(tmp_path / "home")
-        assert "is locked by another program" in journal.trouble
+        assert shows(journal.trouble, "desk.locked")
         assert journal.waiting
-        with pytest.raises(StoreError, match="is locked by another program"):
+        with pytest.raises(StoreError, match=pattern("desk.locked")):
             journal.opened()
         journal.hear(Event(0.0, "load", "/programs/pin.nc"))
         journal.hear(Event(0.0, "part", "part 1"))
@@ -220,7 +223,7 @@ def test_a_store_too_damaged_to_be_read_is_left_to_a_restore(
     with monkeypatch.context() as disk:
         disk.setattr(Store, "damaged", raising(damaged))
         journal = Journal(tmp_path / "home")
-    assert journal.trouble.endswith("Restore a backup: turndesk store restore FILE")
+    assert shows(journal.trouble, "desk.damaged")
     assert not journal.waiting  # no try will read it
     Store.open(tmp_path / "home").close()  # the command that restores finds it free
     journal.close()

@@ -24,6 +24,8 @@ from core.executor.snapshot import State
 from core.machine.machine_model import Machine
 from drivers.clocks import StepClock
 from tests.attached import attached
+from tests.texts import begins, shows
+from tests.texts import text as wording
 
 SHIPPED = resources.machine_file("gt75.toml")
 
@@ -98,16 +100,16 @@ def test_a_changed_file_keeps_the_drives_off_until_it_is_accepted(
         SHIPPED.replace("vmax = 300", "vmax = 280", 1).replace("max_feed = 300", "max_feed = 250")
     )
     with room(file, monkeypatch) as made:
-        assert "HAS CHANGED (2)" in made.desk.notice
+        assert shows(made.desk.notice, "desk.machine-file-changed", count=2)
         assert made.cells() == [("limits.max_feed", "300", "250"), ("axis.X.vmax", "300", "280")]
         made.desk.enable()
         made.run()
         assert made.state is State.DISABLED
-        assert "HAS CHANGED (2)" in made.desk.notice
+        assert shows(made.desk.notice, "desk.machine-file-changed", count=2)
         accept = made.section.keys()["F2"].action
         accept()
         accept()
-        assert made.desk.notice.startswith("PRESS Y TO ACCEPT")
+        assert begins(made.desk.notice, "desk.accept-machine-file")
         assert made.desk.changes.barred
         made.desk.answers._since = float("-inf")
         made.desk.answer()
@@ -142,8 +144,8 @@ def test_the_changes_and_their_acceptance_are_in_the_log(file: Path, monkeypatch
     journal = Journal.at_home()
     told = [event.text for event in journal.events("", (), 50)]
     journal.close()
-    assert any(text == "machine file: sim.seed: 1 → 2" for text in told)
-    assert any(text.endswith("own.toml accepted: sim.seed: 1 → 2") for text in told)
+    assert any(text == wording("desk.machine-file", what="sim.seed: 1 → 2") for text in told)
+    assert any(shows(text, "desk.machine-file-accepted", what="sim.seed: 1 → 2") for text in told)
 
 
 def bus_machine(tmp_path: Path) -> Machine:

@@ -13,6 +13,7 @@ from core.executor.raised_alarm import make_alarm
 from core.executor.snapshot import Alarm, Snapshot, State
 from core.interpreter.modal_state import Modal
 from core.ports import ALL_UNKNOWN, Unknown
+from tests.texts import text
 
 INCH = 25.4
 AT = Snapshot(
@@ -152,7 +153,7 @@ def test_lamps_follow_the_outputs_and_not_the_programs_word() -> None:
     make_alarm = replace(AT, modal=Modal(coolant=True, collet_closed=True), outputs=frozenset())
     words = {lamp.word: lamp.lit for lamp in status_of(make_alarm, Readout.POSITION, True).lamps}
     assert words["COOLANT"] is False
-    assert "COLLET OPEN" in words
+    assert text("desk.collet-open") in words
     done = replace(make_alarm, outputs=frozenset({"coolant", "collet", "live2"}))
     words = {lamp.word: lamp.lit for lamp in status_of(done, Readout.POSITION, True).lamps}
     assert {"COOLANT", "COLLET CLOSED", "LIVE TOOL"} <= {word for word, lit in words.items() if lit}
@@ -168,7 +169,7 @@ def test_every_state_has_a_word_and_a_tone() -> None:
 
 def test_a_wait_says_for_what() -> None:
     view = status_of(replace(AT, state=State.WAIT, waiting_for="AT SPEED"), Readout.POSITION, True)
-    assert view.state == "WAITING: AT SPEED"
+    assert view.state == text("desk.waiting", what="AT SPEED")
 
 
 def test_the_message_of_a_stop_lasts_as_long_as_the_stop() -> None:
@@ -183,14 +184,14 @@ def test_the_alarm_that_came_first_is_named_first() -> None:
     first, then = (Alarm(n, "axis", f"TROUBLE {n}", "", "") for n in (101, 102))
     view = status_of(replace(AT, state=State.FAULT, alarms=(first, then)), Readout.POSITION, True)
     assert view.alarms == (first, then)
-    assert view.state == "ALARM 101: TROUBLE 101"
+    assert view.state == text("screen.alarm", number=101, what="TROUBLE 101")
 
 
 def test_a_hold_that_nobody_pressed_is_named_and_one_that_was_pressed_is_not() -> None:
     silent = make_alarm("station-silent", "", 4, 0.0)
     view = status_of(replace(AT, state=State.HOLD, stop=silent), Readout.POSITION, True)
     assert view.stop is silent
-    assert view.state == "FEED HOLD 601: OPERATOR STATION SILENT"
+    assert view.state == text("screen.feed-hold", number=601, what=text("screen.station-silent"))
     pressed = make_alarm("feed-hold", "H at the keyboard", 4, 0.0)
     view = status_of(replace(AT, state=State.HOLD, stop=pressed), Readout.POSITION, True)
     assert (view.stop, view.state) == (None, "FEED HOLD")
@@ -254,4 +255,4 @@ def test_only_the_part_that_is_silent_is_unknown() -> None:
 
 def test_a_hold_that_waits_for_a_tap_is_in_the_title() -> None:
     held = replace(AT, state=State.RUN, waiting_for="FEED HOLD BEHIND THE TAP")
-    assert status_of(held, Readout.POSITION, True).state == "FEED HOLD BEHIND THE TAP"
+    assert status_of(held, Readout.POSITION, True).state == text("desk.hold-after-tap")

@@ -26,6 +26,8 @@ from core.language.diagnostics import Severity
 from core.machine.machine_model import ClampingModel, Machine
 from core.part.tool_shape import ToolKind, ToolShape
 from core.proving import part_history
+from tests.texts import begins, pattern
+from tests.texts import text as wording
 
 LIMIT = 60.0
 SHAFT = "G90G94F100\nM03S1500\nT1\nX.6Z.05\nX.4\nG95F.008Z-.5\nX.45Z-.6\nX.55\nG94F100Z.05\nM30\n"
@@ -99,7 +101,7 @@ def test_what_rests_on_an_assumed_bar_is_a_warning_that_is_announced(desk: Make)
     assert (found.line, found.check, found.severity) == (11, "rapid-into-stock", Severity.WARNING)
     assert found.assumed == ("stock", "T1")
     assert found.hint.endswith("Assumed: stock, T1.")
-    assert "G00 left on" in found.hint
+    assert wording("desk.left-on") in found.hint
     assert found.n > 0
     assert loaded.phase is Phase.READY
     assert bench.kinds == [LoadJob, GiveProof, GiveProof]
@@ -160,7 +162,7 @@ def test_a_silenced_check_is_a_note_with_its_reason(desk: Make) -> None:
     loaded = desk(silenced, {1: TURNING}).load(SLIP)
     (found,) = loaded.diagnostics
     assert (found.severity, found.silenced) == (Severity.NOTE, "the bar is drilled before")
-    assert found.hint == "Silenced: the bar is drilled before"
+    assert found.hint == wording("desk.silenced", why="the bar is drilled before")
     assert loaded.phase is Phase.READY
     assert part_of(loaded).warned == ()
 
@@ -212,7 +214,7 @@ def test_of_a_program_that_is_too_long_it_is_told_why_there_is_no_part(
     monkeypatch.setattr(part_history, "MOST_MOVES", 5)
     bench = desk(BAR, {1: TURNING})
     loaded = bench.load(SLIP)
-    assert part_of(loaded).trouble.startswith("12 blocks: the desk makes the part of up to 5")
+    assert begins(part_of(loaded).trouble, "desk.too-many-blocks", count=12, most=5)
     assert loaded.picture is not None
     assert loaded.picture.no_part == part_of(loaded).trouble
     assert loaded.phase is Phase.READY
@@ -250,11 +252,13 @@ def test_what_was_warned_of_is_told_where_cycles_are_started() -> None:
     shot = Snapshot(announced=("WARNING: LINE 11: RAPID-INTO-STOCK", "THE SPINDLE STARTS AT 900 RPM FORWARD"))
     here = "WARNING: LINE 11: RAPID-INTO-STOCK · THE SPINDLE STARTS AT 900 RPM FORWARD · "
     assert announced(shot) == here
-    assert announced(shot, starts_here=False) == "THE SPINDLE STARTS AT 900 RPM FORWARD · "
+    assert announced(shot, starts_here=False) == wording(
+        "screen.spindle-starts", rpm=900, direction="FORWARD · "
+    )
 
 
 def test_beside_the_warning_stands_what_to_do(desk: Make) -> None:
     loaded = desk().load(SLIP)
     words = remedy(loaded, "WARNING: LINE 11: RAPID-INTO-STOCK · TO START PRESS BOTH PALM BUTTONS")
-    assert words.startswith("LINE 11: A rapid goes into metal")
-    assert "G00 left on" in words
+    assert begins(words, "screen.line-what", line=11, what=pattern("desk.rapid-into-stock"))
+    assert wording("desk.left-on") in words

@@ -28,6 +28,8 @@ from core.part.stock_spec import stock_spec
 from core.proving.part_checks import CHECKS
 from core.store.store_errors import StoreError
 from tests.desk.test_part_found import LIMIT, SHAFT, SLIP, TOOLS, TURNING
+from tests.texts import begins, shows
+from tests.texts import text as wording
 
 
 class Bench:
@@ -152,7 +154,7 @@ def test_a_bar_is_said_kept_and_the_program_proved_on_it(bench: Bench) -> None:
     bench.press("Down")
     bench.types(".8")
     assert bench.kept == KeptPart("bar:1+0.02", pytest.approx(20.32))
-    assert "COUNTS ONLY WITH [clamping]" in table(bench.page).notes[0]
+    assert shows(table(bench.page).notes[0], "desk.needs-clamping")
 
 
 def test_what_was_said_is_forgotten(bench: Bench) -> None:
@@ -162,9 +164,9 @@ def test_what_was_said_is_forgotten(bench: Bench) -> None:
     bench.press("F6")
     assert bench.kept == KeptPart()
     assert bench.desk.session.now.phase is Phase.READY
-    assert "NOTHING IS SAID" in bench.desk.notice
+    assert shows(bench.desk.notice, "desk.stock-forgotten")
     bench.press("F6")
-    assert bench.desk.notice == "NOTHING IS SAID OF THIS PROGRAM'S STOCK"
+    assert bench.desk.notice == wording("desk.no-stock")
 
 
 def test_a_file_is_found_beside_the_program_and_kept_by_its_whole_path(bench: Bench) -> None:
@@ -175,7 +177,7 @@ def test_a_file_is_found_beside_the_program_and_kept_by_its_whole_path(bench: Be
     bench.press("Down", "Enter")
     assert bench.page.has_keyboard
     bench.types("gone.csv")
-    assert "there is no file gone.csv" in bench.desk.notice
+    assert shows(bench.desk.notice, "desk.no-file-beside", name="gone.csv")
     bench.press(*["Back"] * 8)
     bench.types("blank.csv")
     assert bench.kept.stock == f"profile:{bench.folder / 'blank.csv'}"
@@ -191,7 +193,7 @@ def test_what_is_no_length_changes_nothing(bench: Bench, text: str) -> None:
     bench.load(SHAFT)
     bench.press("F2", "Right", "Down")
     bench.types(text)
-    assert bench.desk.notice.startswith("REFUSED")
+    assert begins(bench.desk.notice, "screen.refused")
     assert bench.kept == KeptPart()
 
 
@@ -199,7 +201,7 @@ def test_under_a_running_program_nothing_is_changed(bench: Bench) -> None:
     bench.load(SLIP)
     bench.state = State.RUN
     bench.press("F4")
-    assert "BETWEEN TWO CYCLES ONLY" in bench.desk.notice
+    assert shows(bench.desk.notice, "desk.stock-between-cycles")
     assert not bench.page.has_keyboard
     bench.press("F2", "Right")
     assert bench.cells["STOCK"][0] == "–"
@@ -210,7 +212,7 @@ def test_on_a_mill_no_stock_is_said(bench: Bench) -> None:
     bench.load(SHAFT)
     bench.desk.lathe = parse_machine(resources.machine_file("ac-table-mill.toml"), "mill")
     bench.press("F2", "Right")
-    assert bench.desk.notice == "NO PART IS PROVED ON A MILL"
+    assert bench.desk.notice == wording("desk.no-part-on-mill")
     assert bench.kept == KeptPart()
 
 
@@ -218,7 +220,7 @@ def test_without_a_program_there_is_nothing_to_say(bench: Bench) -> None:
     bench.page.look()
     assert table(bench.page).rows == ()
     bench.press("F2", "Right")
-    assert "LOAD A PROGRAM FIRST" in bench.desk.notice
+    assert shows(bench.desk.notice, "screen.load-program-for-stock")
     assert not bench.page.takes("1")
 
 
@@ -230,7 +232,7 @@ def test_a_disk_that_takes_nothing_is_told(bench: Bench, monkeypatch: pytest.Mon
     monkeypatch.setattr(Persistence, "keep_settings", full)
     bench.press("F2", "Right", "Down")
     bench.types("1")
-    assert bench.desk.notice == "NOT KEPT: the disk is full"
+    assert bench.desk.notice == wording("screen.not-kept", why="the disk is full")
     assert bench.desk.session.now.phase is Phase.READY
 
 
@@ -241,7 +243,7 @@ def test_a_finding_is_listed_with_its_remedy_and_shows_its_place(bench: Bench) -
     bench.load(SLIP)
     (row,) = table(bench.page).rows
     assert row.cells[:2] == ("11", "rapid-into-stock")
-    assert "G00 left on" in " ".join(table(bench.page).notes)
+    assert wording("desk.left-on") in " ".join(table(bench.page).notes)
     bench.press("Enter")
     assert [found.line for found in bench.shown] == [11]
 
@@ -249,9 +251,9 @@ def test_a_finding_is_listed_with_its_remedy_and_shows_its_place(bench: Bench) -
 def test_a_check_is_silenced_with_a_reason_and_speaks_again(bench: Bench) -> None:
     bench.load(SLIP)
     bench.press("F4")
-    assert table(bench.page).question == "WHY IS rapid-into-stock SILENCED?"
+    assert table(bench.page).question == wording("desk.why-silenced", check="rapid-into-stock")
     bench.types("")
-    assert "without a reason" in bench.desk.notice
+    assert shows(bench.desk.notice, "desk.reason-needed")
     bench.types("drilled before")
     assert bench.kept.silenced == {"rapid-into-stock": "drilled before"}
     (found,) = bench.desk.session.now.diagnostics
@@ -276,7 +278,7 @@ def test_what_the_interpreter_has_found_is_not_silenced(bench: Bench) -> None:
     bench.load("G90G94F100\nT1\nX.5Q7\nM30\n")
     assert bench.page.finding is not None
     bench.press("F4")
-    assert "ONLY CHECKS OF THE PART" in bench.desk.notice
+    assert shows(bench.desk.notice, "desk.only-part-checks")
     assert not bench.page.has_keyboard
 
 
@@ -284,5 +286,5 @@ def test_what_the_machine_file_silences_is_not_undone_here(tmp_path: Path) -> No
     bench = Bench(tmp_path, frozenset({"rapid-into-stock"}))
     bench.load(SLIP)
     bench.press("F4")
-    assert "THE MACHINE FILE SILENCES rapid-into-stock" in bench.desk.notice
+    assert shows(bench.desk.notice, "desk.machine-silences", check="rapid-into-stock")
     bench.desk.close()

@@ -11,6 +11,7 @@ import pytest
 from app.desk.program_folder import ProgramFile, ProgramFolders
 from app.desk.program_loading import Loaded, Phase
 from core.language.source import load_source
+from tests.texts import begins
 
 
 @pytest.fixture
@@ -89,7 +90,7 @@ def test_a_changed_file_is_told_until_it_is_read_or_put_back(tmp_path: Path) -> 
     file.look()
     touched(path, TEXT.replace("X.5", "X1.5"))
     file.look()
-    assert file.differs.startswith("part.nc HAS CHANGED")
+    assert begins(file.differs, "programs.changed-on-disk", name="part.nc")
     touched(path, TEXT)
     file.look()
     assert file.differs == ""
@@ -106,10 +107,10 @@ def test_a_file_that_is_gone_or_spoilt_is_told(tmp_path: Path) -> None:
     file = ProgramFile(lambda: loaded)
     path.write_bytes(b"G90\0\0")
     file.look()
-    assert file.differs.startswith("part.nc HAS CHANGED")
+    assert begins(file.differs, "programs.changed-on-disk", name="part.nc")
     path.unlink()
     file.look()
-    assert file.differs.startswith("part.nc IS NOT ON THE DISK")
+    assert begins(file.differs, "programs.not-on-disk", name="part.nc")
 
 
 def test_a_subprogram_that_is_called_counts_as_well(tmp_path: Path) -> None:
@@ -124,7 +125,7 @@ def test_a_subprogram_that_is_called_counts_as_well(tmp_path: Path) -> None:
     assert file.differs == ""
     touched(called, "G1 X50\nM17\n")
     file.look()
-    assert file.differs.startswith("cut.spf HAS CHANGED")
+    assert begins(file.differs, "programs.changed-on-disk", name="cut.spf")
 
 
 def test_without_a_program_there_is_nothing_to_compare() -> None:

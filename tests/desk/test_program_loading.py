@@ -19,6 +19,7 @@ from core.interpreter.dialects import ReadProgram
 from core.interpreter.job_setup import Setup
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Source
+from tests.texts import text as wording
 
 LIMIT = 60.0  # seconds after which a test that waits for the worker has failed
 BAD = Diagnostic(7, 1, Severity.ERROR, "arc-radius", "The arc's radius is too small.")
@@ -109,7 +110,7 @@ def test_errors_refuse_the_run_and_name_the_line(bench: Bench) -> None:
     bench.session.load(Path("part.nc"))
     loaded = bench.settled()
     assert loaded.phase is Phase.REFUSED
-    assert refusal(loaded) == "WILL NOT RUN: LINE 7: The arc's radius is too small. (1 MORE)"
+    assert refusal(loaded) == wording("screen.will-not-run-at-line", line=7, why=f"{BAD.message} (1 MORE)")
 
 
 def test_tools_that_nobody_has_set_are_named_before_the_start() -> None:
@@ -117,7 +118,7 @@ def test_tools_that_nobody_has_set_are_named_before_the_start() -> None:
     job = Job(source, Setup(), "digest", ReadProgram(source), frozenset({1}))
     loaded = Loaded(Phase.READY, Path("part.nc"), job=job, proof=Proof("digest", (), tools=(3, 1, 2)))
     text = prompt(Snapshot(state=State.IDLE, program="part.nc"), loaded, "PRESS", "")
-    assert text == "WILL NOT START: NO OFFSET WAS EVER SET FOR T2, T3 (F8 SETS THEM)"
+    assert text == wording("screen.no-offset-set", tools="T2, T3")
 
 
 @pytest.mark.parametrize(
@@ -129,7 +130,7 @@ def test_what_cannot_be_loaded_says_why(bench: Bench, name: str, why: str) -> No
     assert loaded.phase is Phase.UNREADABLE
     assert bench.posted == []
     text = prompt(Snapshot(state=State.IDLE), loaded, "", "")
-    assert text == f"{name} CANNOT BE LOADED: {why}; PRESS F2 FOR ANOTHER"
+    assert text == wording("screen.cannot-be-loaded", name=name, why=why)
 
 
 def test_block_delete_is_part_of_the_job(bench: Bench) -> None:

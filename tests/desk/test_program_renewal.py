@@ -104,7 +104,7 @@ def test_errors_are_told_once_while_the_part_still_runs(shop: Shop) -> None:
     shop.found = (BAD,)
     shop.renewing.begin()
     shop.renewing.worker.settle(LIMIT)
-    assert shop.renewing.trouble() == "The arc's radius is too small."
+    assert shop.renewing.trouble() == BAD.message
     assert shop.renewing.trouble() == ""
     assert shop.renewing.taken(shop.running("renewed 1"))
     assert shop.session.now.phase is Phase.REFUSED

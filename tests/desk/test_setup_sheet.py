@@ -16,6 +16,8 @@ from core.language.source import Source
 from core.part.stock import Stock, bar
 from core.part.tool_shape import ToolKind, ToolShape
 from core.proving.part_setting import PartSetting
+from tests.texts import begins
+from tests.texts import text as wording
 
 TURNED = "G90G94F300\nM03S1500\nT1\nX.6Z.05\nX.4\nG95F.004Z-.5\nX.55\nG94F300Z1\nM30\n"
 SLIP = TURNED.replace("G95F.004Z-.5", "G00Z-.5")
@@ -41,12 +43,12 @@ def test_what_rests_on_something_assumed_is_a_warning_as_on_the_desk(
 
 
 def test_one_warning_is_told_as_one() -> None:
-    assert sheet_of(SLIP).verdict == "1 WARNING: look at it before the first part"
+    assert sheet_of(SLIP).verdict == wording("desk.one-warning")
 
 
 def test_an_error_of_what_is_said_is_one() -> None:
     sheet = sheet_of(SLIP, ROD, {1: TOOL})
-    assert sheet.verdict.endswith("ERRORS: this program will not run as it stands")
+    assert begins(sheet.verdict, "desk.many-errors")
     assert sheet_of(TURNED, ROD, {1: TOOL}).verdict == ""
 
 
@@ -85,7 +87,7 @@ def milled(preset: int = 0) -> SetupSheet:
 
 def test_a_mill_has_blank_preset_length_and_radius_and_no_bar_nor_chuck() -> None:
     sheet = milled()
-    assert sheet.stock_words == "BLK FORM  104.000 mm × 74.000 mm × 20.000 mm"
+    assert sheet.stock_words == wording("desk.stock", size="104.000 mm × 74.000 mm × 20.000 mm")
     assert sheet.held_words == (("PRESET", "0   of the machine file"),)
     (tool,) = sheet.tools
     assert sheet.shape_words(tool) == "DRILL 8.5, POINT ANGLE 118°, 2 teeth"

@@ -11,6 +11,7 @@ from core.alarms import CATALOGUE, Code
 from core.executor.raised_alarm import log_line, make_alarm
 from core.executor.snapshot import Event
 from core.store.store_rows import EventRow
+from tests.texts import text as wording
 
 
 def event(code: Code, detail: str = "", line: int = 0) -> Event:
@@ -32,7 +33,7 @@ def test_the_newest_stands_on_top_with_its_time(log: AlarmLog) -> None:
     log.hear(event("following", "X is 2.345 off its setpoint", 4))
     log.hear(event("estop"))
     assert [(entry.at, entry.alarm.number) for entry in log.entries] == [("09:41:07", 701), ("09:41:07", 102)]
-    assert log.entries[1].alarm.cause == "X is 2.345 off its setpoint"
+    assert log.entries[1].alarm.cause == wording("screen.off-setpoint", axis="X", distance="2.345")
 
 
 def test_an_entry_leads_to_the_record_of_the_seconds_before_it(log: AlarmLog) -> None:
@@ -64,7 +65,7 @@ def test_the_days_before_come_behind_what_was_heard_since(log: AlarmLog) -> None
     assert before.at.startswith("2020-02-0")  # a day that is not today
     alarm = before.alarm
     assert (alarm.number, alarm.code, alarm.line) == (102, "following", 7)
-    assert alarm.cause == "Z is 1.2 off its setpoint"
+    assert alarm.cause == wording("screen.off-setpoint", axis="Z", distance="1.2")
     assert alarm.remedy == CATALOGUE["following"].remedy
 
 

@@ -11,14 +11,17 @@ from app.desk.prompt_line import PromptAnswers, Sort
 from app.desk.readouts import Readout
 from app.desk.waiting import GIVES_UP, how_it_ends, waits_for
 from core.executor.snapshot import Snapshot, State
+from tests.texts import text
 
 WAITS = replace(Snapshot(), state=State.WAIT, homed=(True, True, True))
 
 
 def test_a_wait_for_an_input_names_the_state_it_waits_for() -> None:
     waits = replace(WAITS, waiting_for="TB2-5")
-    assert waits_for(waits) == "INPUT TB2-5 TO COME ON"
-    assert waits_for(replace(waits, inputs=frozenset({"TB2-5"}))) == "INPUT TB2-5 TO COME OFF"
+    assert waits_for(waits) == text("desk.input-to-come", name="TB2-5", state="ON")
+    assert waits_for(replace(waits, inputs=frozenset({"TB2-5"}))) == text(
+        "desk.input-to-come", name="TB2-5", state="OFF"
+    )
     told = how_it_ends(waits)
     assert told.endswith(GIVES_UP)
     assert "F10, 3" not in told

@@ -12,6 +12,7 @@ from app.jog.jog_speeds import CONTINUOUS, JogSpeeds
 from core.executor.commands import Command, Jog, JogStep, JogStop
 from core.executor.snapshot import Snapshot, State
 from core.interpreter.modal_state import Modal
+from tests.texts import shows
 
 INCH = 25.4
 FRAME = 0.016
@@ -99,7 +100,7 @@ def test_a_release_that_never_arrives_is_noticed_by_the_silence_of_the_key(scene
     assert scene.hold.held is not None
     scene.frames(0.05)
     assert scene.stopped
-    assert "SILENT" in scene.said[-1]
+    assert shows(scene.said[-1], "jog.key-silent")
     assert scene.nothing_more()
 
 
@@ -128,7 +129,7 @@ def test_two_keys_at_once_move_nothing_until_both_are_up(scene: Scene) -> None:
     scene.hold.release("Left")
     scene.hold.press("Left", "Z", -1, rapid=False)  # Up is still down
     assert scene.nothing_more()
-    assert "TWO AT ONCE" in scene.said[-1]
+    assert shows(scene.said[-1], "jog.two-at-once")
     scene.hold.release("Up")
     scene.hold.release("Left")
     held(scene)
@@ -240,7 +241,7 @@ def test_shift_in_a_step_is_refused(scene: Scene) -> None:
     scene.hold.speeds.step = 1
     scene.hold.press("Left", "Z", -1, rapid=True)
     assert scene.posted == []
-    assert "RAPID IS FOR A HELD JOG" in scene.said[-1]
+    assert shows(scene.said[-1], "jog.continuous-for-rapid")
 
 
 def test_steps_and_speeds_go_round(scene: Scene) -> None:

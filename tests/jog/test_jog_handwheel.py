@@ -16,6 +16,7 @@ from core.executor.snapshot import Snapshot, State
 from core.interpreter.modal_state import Modal
 from core.machine.hardware_model import AnalogModel
 from core.machine.machine_model import InputModel
+from tests.texts import shows
 
 INCH = 25.4
 THOU = 0.001 * INCH
@@ -216,7 +217,7 @@ def test_switches_between_their_places_choose_nothing(on: tuple[str, ...]) -> No
     scene = switched(*on)
     assert scene.wheels == []
     scene.wheel.choose("X")
-    assert "THE SWITCH AT THE STATION" in scene.said[0]
+    assert shows(scene.said[0], "jog.station-chooses-axis")
     assert scene.nothing_more()
 
 

@@ -18,6 +18,7 @@ from core.geometry.rotation_frames import IDENTITY, X_AXIS, turned
 from core.interpreter.working_plane import PlaneSystem, Swivel
 from tests.executor.rig import Rig
 from tests.machine.mill import MILL
+from tests.texts import begins, shows, text
 
 ALONG = (0.0, -sin(radians(30.0)), cos(radians(30.0)))  # Z of a plane that is tilted by 30 degrees about X
 LEASE = 0.06
@@ -83,10 +84,10 @@ def test_no_axis_goes_beyond_its_travel(rig: Rig) -> None:
     assert z == pytest.approx(499.99, abs=0.02)
     rig.post(Jog("Z", 25.0, LEASE, along=ALONG))
     rig.run(0.1)
-    assert "Z is at the end of its travel in +" in rig.said("refused")[-1]
+    assert text("jog.end-of-travel", axis="Z", side="+") in rig.said("refused")[-1]
     rig.post(JogStep("Z", 1.0, 8.0, ALONG))
     rig.run(0.05)
-    assert "at the end" in rig.said("refused")[-1]
+    assert shows(rig.said("refused")[-1], "jog.end-of-travel")
 
 
 @pytest.mark.parametrize(
@@ -104,7 +105,7 @@ def test_a_jog_does_not_go_on_along_another_line(rig: Rig) -> None:
     rig.run(0.03)
     rig.post(Jog("Z", 25.0, LEASE))
     rig.until(State.IDLE)
-    assert "Z is still being jogged" in rig.said("refused")[-1]
+    assert text("jog.still-jogged", axis="Z") in rig.said("refused")[-1]
     at = np.array(rig.shot.demand[:3])
     assert np.abs(at - (at @ np.array(ALONG)) * np.array(ALONG)).max() < 1e-9
 
@@ -114,7 +115,7 @@ def test_a_lathe_has_no_plane_to_jog_in() -> None:
     rig.ready()
     rig.post(Jog("Z", 5.0, LEASE, along=ALONG))
     rig.run(0.1)
-    assert "needs X, Y and Z" in rig.said("refused")[-1]
+    assert shows(rig.said("refused")[-1], "jog.plane-needs-three")
 
 
 # --- which way ------------------------------------------------------------------------------------------
@@ -143,7 +144,7 @@ def test_once_the_table_has_turned_z_of_the_plane_is_z_of_the_machine() -> None:
     assert isinstance(frame, JogFrame)
     assert frame.direction("Z") == pytest.approx((0.0, 0.0, 1.0))
     assert frame.direction("A") is None
-    assert frame.words == "TILTED PLANE OF LINE 7"
+    assert frame.words == text("screen.tilted-plane", line=7)
 
 
 def test_a_head_that_stands_in_its_plane_leans_the_keys() -> None:
@@ -160,7 +161,7 @@ def test_a_table_that_stands_elsewhere_than_the_plane_asks_is_told() -> None:
     machine = kinematics_of(shipped_machine("ac-table-mill"))
     told = jog_frame(machine, shot("ac-table-mill", 0.0, 0.0, 0.0, 29.9, 0.02, tilted=True))
     assert isinstance(told, str)
-    assert told.startswith("A AND C NOT WHERE THE PLANE ASKS")
+    assert begins(told, "jog.plane-asks-turn", axes="A AND C")
 
 
 def test_without_a_plane_a_leaning_head_moves_along_its_tool() -> None:
@@ -183,7 +184,7 @@ def test_it_ends_with_the_plane_and_is_refused_where_nothing_is_tilted() -> None
     tilt.look(flat)
     tilt.key()
     assert not tilt.on
-    assert "NOTHING IS TILTED" in told[-1]
+    assert shows(told[-1], "screen.nothing-tilted")
     there = shot("ac-table-mill", 0.0, 0.0, 0.0, 30.0, 0.0, tilted=True)
     tilt.look(there)
     tilt.key("A PROGRAM IS UNDER WAY")
@@ -192,7 +193,7 @@ def test_it_ends_with_the_plane_and_is_refused_where_nothing_is_tilted() -> None
     assert tilt.along("Z") == pytest.approx((0.0, 0.0, 1.0))
     tilt.look(flat)  # PLANE RESET
     assert (tilt.on, tilt.along("Z")) == (False, None)
-    assert "3D-ROT IS OFF" in ended[-1]
+    assert shows(ended[-1], "jog.plane-off")
 
 
 def test_a_frame_is_that_of_the_keys() -> None:

@@ -17,6 +17,7 @@ from core.interpreter.dialects import line_alone
 from core.interpreter.job_setup import ToolOffset
 from core.interpreter.modal_state import Modal
 from core.language.source import Dialect, Source
+from tests.texts import text as wording
 
 MILL, LATHE = "ac-table-mill", "sinumerik-modulo"
 
@@ -195,5 +196,5 @@ def test_the_words_of_another_control_are_no_block_here(mill: Mdi, lathe: Mdi) -
 
 def test_a_cut_without_a_feed_is_refused_as_in_a_program(mill: Mdi, lathe: Mdi) -> None:
     mill.runs("TOOL CALL 5 Z S2000")
-    assert mill.enters("L X+10") == "Feed rate is missing"
+    assert mill.enters("L X+10") == wording("desk.feed-missing")
     assert lathe.enters("G1 X10") != ""

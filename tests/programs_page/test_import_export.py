@@ -15,6 +15,7 @@ from app.programs.import_export import Carried, export_programs, import_programs
 from app.programs.removable_media import Stick
 from app.programs.whole_file import FileError
 from tests.programs_page.test_run_history import Kept
+from tests.texts import pattern
 
 
 class Keeping(Kept):
@@ -56,7 +57,7 @@ def test_where_versions_are_not_kept_nothing_is_replaced(tmp_path: Path) -> None
     sources = made(tmp_path / "stick", a="M30\n")
     own = tmp_path / "own"
     made(own, a="M00\n")
-    with pytest.raises(FileError, match="CANNOT BE KEPT"):
+    with pytest.raises(FileError, match=pattern("programs.not-replaced")):
         import_programs(sources, own, Persistence(), lambda _path: "", replace=True)
     assert (own / "a.nc").read_text() == "M00\n"
 
@@ -65,7 +66,7 @@ def test_one_bad_file_keeps_all_of_them_out(tmp_path: Path) -> None:
     sources = made(tmp_path / "stick", a="M30\n")
     bad = tmp_path / "stick" / "b.nc"
     bad.write_bytes(b"\x00\x01" * 40)
-    with pytest.raises(FileError, match=r"b\.nc IS NO PROGRAM"):
+    with pytest.raises(FileError, match=pattern("programs.no-program", name="b.nc")):
         import_programs([*sources, bad], tmp_path / "own", Keeping(), lambda _path: "", replace=False)
     assert not (tmp_path / "own").exists()
 
@@ -73,7 +74,7 @@ def test_one_bad_file_keeps_all_of_them_out(tmp_path: Path) -> None:
 def test_a_file_that_is_too_large_is_not_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(import_export, "LARGEST", 3)
     sources = made(tmp_path / "stick", a="M30\n")
-    with pytest.raises(FileError, match="LARGER THAN ANY PROGRAM"):
+    with pytest.raises(FileError, match=pattern("programs.too-large")):
         export_programs(sources, tmp_path, replace=False)
 
 
@@ -83,7 +84,7 @@ def test_a_copy_that_does_not_read_back_is_no_copy(tmp_path: Path, monkeypatch: 
     stick.mkdir()
     real = Path.read_bytes
     monkeypatch.setattr(Path, "read_bytes", lambda path: b"" if ".unfinished" in str(path) else real(path))
-    with pytest.raises(FileError, match="DOES NOT READ BACK"):
+    with pytest.raises(FileError, match=pattern("programs.bad-stick")):
         export_programs(sources, stick, replace=False)
     assert list(stick.iterdir()) == []
 
@@ -97,7 +98,10 @@ def test_a_full_stick_leaves_no_half_file(tmp_path: Path, monkeypatch: pytest.Mo
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr(os, "fsync", full)
-    with pytest.raises(FileError, match="0 OF 1 COPIED: stick IS FULL"):
+    with pytest.raises(
+        FileError,
+        match=pattern("programs.some-copied", done=0, of=1) + ": " + pattern("programs.full", place="stick"),
+    ):
         export_programs(sources, stick, replace=False)
     assert list(stick.iterdir()) == []
 
@@ -119,13 +123,13 @@ def test_a_name_that_will_not_do(typed: str) -> None:
 def test_another_case_of_letters_is_another_name_of_the_same_file(tmp_path: Path) -> None:
     (path,) = made(tmp_path / "own", a="M30\n")
     assert rename_program(path, "A", Persistence()) == "A.nc"
-    with pytest.raises(FileError, match="IS ITS NAME ALREADY"):
+    with pytest.raises(FileError, match=pattern("programs.same-name")):
         rename_program(path.with_name("A.nc"), "A.nc", Persistence())
 
 
 def test_what_cannot_be_kept_is_not_deleted(tmp_path: Path) -> None:
     (path,) = made(tmp_path / "own", a="M30\n")
-    with pytest.raises(FileError, match="NOT DELETED"):
+    with pytest.raises(FileError, match=pattern("programs.not-deleted")):
         delete_program(path, Persistence())
     assert path.exists()
 

@@ -12,6 +12,7 @@ from app.programs.folder_chooser import FolderChooser
 from app.programs.import_export import export_programs
 from app.programs.removable_media import Medium, Stick, sticks, why_not
 from app.programs.whole_file import FileError
+from tests.texts import pattern
 
 LINE = "{n} 28 {device} / {path} {options} shared:1 - vfat /dev/x {super}\n"
 
@@ -86,7 +87,7 @@ def test_a_folder_that_is_left_of_a_pulled_stick_takes_nothing(tmp_path: Path) -
     sources, place = made(tmp_path / "own", "a.nc"), tmp_path / "STICK"
     place.mkdir()
     there = Medium.of(place)
-    with pytest.raises(FileError, match="PULLED OUT"):
+    with pytest.raises(FileError, match=pattern("programs.pulled-out")):
         export_programs(sources, place, replace=False, medium=replace(there, device=there.device + 1))
     assert list(place.iterdir()) == []
 
@@ -99,7 +100,12 @@ def test_pulled_out_between_two_programs(tmp_path: Path) -> None:
         if done == 1:
             place.rename(tmp_path / "elsewhere")
 
-    with pytest.raises(FileError, match="1 OF 2 COPIED: STICK IS NOT THERE ANY MORE"):
+    with pytest.raises(
+        FileError,
+        match=pattern("programs.some-copied", done=1, of=2)
+        + ": "
+        + pattern("programs.pulled-out", place="STICK"),
+    ):
         export_programs(sources, place, replace=False, told=told)
     assert [path.name for path in (tmp_path / "elsewhere").iterdir()] == ["a.nc"]
     assert all(path.exists() for path in sources)
@@ -111,7 +117,7 @@ def test_what_does_not_fit_is_told_before_anything_is_written(
     sources, place = made(tmp_path / "own", "a.nc", "b.nc"), tmp_path / "STICK"
     place.mkdir()
     monkeypatch.setattr("app.programs.removable_media._free", lambda _path: 7)
-    with pytest.raises(FileError, match="NOT ENOUGH ROOM ON STICK: 8 B ARE NEEDED, 7 B FREE"):
+    with pytest.raises(FileError, match=pattern("programs.no-room", place="STICK", size="8 B", free="7 B")):
         export_programs(sources, place, replace=False)
     assert list(place.iterdir()) == []
 
@@ -125,5 +131,5 @@ def test_the_chooser_says_when_the_stick_has_gone(tmp_path: Path) -> None:
     chooser.go(chooser.lines[0])
     chooser.look()
     place.rmdir()
-    with pytest.raises(FileError, match="PULLED OUT"):
+    with pytest.raises(FileError, match=pattern("programs.pulled-out")):
         chooser.look()

@@ -18,6 +18,7 @@ from core.interpreter.restart.state_rebuild import StateRebuild
 from core.language.source import Source
 from tests.interpreter.programs import INCH, setup
 from tests.interrupted import broken_off
+from tests.texts import begins
 
 
 @pytest.mark.parametrize(
@@ -65,7 +66,7 @@ def test_a_cross_hole_is_left_only_while_c_stands_as_it_stood() -> None:
     ].known  # a whole turn, as C counts
     found, tool = retract_from_work(cut, MachineNow((*at[:2], 35.0), Modal(), broken))
     assert not found.known
-    assert jog_words(found, tool).startswith("C HAS TURNED SINCE T1 WENT IN")
+    assert begins(jog_words(found, tool), "search.c-has-turned", tool=1)
 
 
 def interrupted(block: int, **changes: object) -> tuple[Snapshot, InterruptedJob]:

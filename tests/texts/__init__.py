@@ -1,8 +1,8 @@
 """Texts of the product by id: a test names a message and its values, never its wording.
 
-Each file ``NAME.toml`` of this folder holds ``id = "ENGLISH TEXT WITH {value}"``; a text in ``screen.toml`` has the id
-``screen.id``. A text that is reworded changes in the product and on one line here. ``test_texts.py`` holds
-every line against the texts that the product has.
+Each file ``NAME.toml`` of this folder holds ``id = "ENGLISH TEXT WITH {value}"``; a text in ``screen.toml``
+has the id ``screen.id``. A text that is reworded changes in the product and on one line here.
+``test_texts.py`` holds every line against the texts that the product has.
 """
 
 from __future__ import annotations
@@ -11,8 +11,15 @@ import re
 import tomllib
 from functools import cache
 from pathlib import Path
+from xml.etree import ElementTree
 
 FOLDER = Path(__file__).parent
+SPANISH = FOLDER.parents[1] / "resources" / "translations" / "turndesk_es.ts"
+HOLE = re.compile(r"%\d|\{[^{}]*\}")
+
+
+class Pattern(str):
+    """A regular expression; as a value of another pattern it is used as it is."""
 
 
 @cache
@@ -25,19 +32,67 @@ def all_texts() -> dict[str, str]:
     }
 
 
-def text(name: str, **values: object) -> str:
+def text(name: str, /, **values: object) -> str:
     """Return a text with its values put in; raises KeyError for an unknown id or a missing value."""
     template = all_texts()[name]
     return template.format(**values) if values else template
 
 
-def pattern(name: str, **values: object) -> str:
+def pattern(name: str, /, **values: object) -> Pattern:
     """Return a regular expression for the text; a value that is not given stands for anything."""
     template = all_texts()[name]
+    unknown = values.keys() - {part[1:-1] for part in HOLE.findall(template)}
+    if unknown:
+        raise KeyError(f"{name} has no {', '.join(sorted(unknown))}")
     parts = re.split(r"(\{\w+\})", template)
-    return "".join(
-        (re.escape(str(values[part[1:-1]])) if part[1:-1] in values else ".*")
-        if re.fullmatch(r"\{\w+\}", part)
-        else re.escape(part)
-        for part in parts
+    return Pattern(
+        "".join(
+            _as_pattern(values.get(part[1:-1], Pattern(".*")))
+            if re.fullmatch(r"\{\w+\}", part)
+            else re.escape(part)
+            for part in parts
+        )
     )
+
+
+def _as_pattern(value: object) -> str:
+    """Return a value as a regular expression; only a pattern is one already."""
+    return value if isinstance(value, Pattern) else re.escape(str(value))
+
+
+def begins(shown: str, name: str, /, **values: object) -> bool:
+    """Return whether the screen shows the text first; a value that is not given stands for anything."""
+    return re.match(pattern(name, **values), shown) is not None
+
+
+def shows(shown: str, name: str, /, **values: object) -> bool:
+    """Return whether the text is part of what is shown; a value that is not given stands for anything."""
+    return re.search(pattern(name, **values), shown) is not None
+
+
+def fragment(name: str, /, **values: object) -> str:
+    """Return the longest run of the text without an unknown value, for a search by plain text."""
+    template = all_texts()[name]
+    for key, value in values.items():
+        template = template.replace(f"{{{key}}}", str(value))
+    return max(HOLE.split(template), key=len).strip()
+
+
+@cache
+def spanish_texts() -> dict[str, tuple[str, str]]:
+    """Return source and translation by the English text with its holes as ``{}``."""
+    messages = ElementTree.parse(SPANISH).iter("message")
+    return {
+        HOLE.sub("{}", source): (source, each.findtext("translation") or "")
+        for each in messages
+        if (source := each.findtext("source"))
+    }
+
+
+def text_in_spanish(name: str, /, **values: object) -> str:
+    """Return the translation of a text with its values put in; raises KeyError if there is none."""
+    template = all_texts()[name]
+    source, translation = spanish_texts()[HOLE.sub("{}", template)]
+    ours = (part[1:-1] for part in HOLE.findall(template))
+    names = dict(zip(HOLE.findall(source), ours, strict=True))
+    return HOLE.sub(lambda hole: str(values[names[hole[0]]]), translation)

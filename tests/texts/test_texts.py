@@ -3,29 +3,50 @@
 from __future__ import annotations
 
 import re
-from xml.etree import ElementTree
 
 import pytest
 
-from tests.texts import FOLDER, all_texts, pattern, text
-
-CATALOGUE = FOLDER.parents[1] / "resources" / "translations" / "turndesk_es.ts"
-HOLE = re.compile(r"%\d|\{[^{}]*\}")
-
-
-@pytest.fixture(scope="module")
-def known() -> set[str]:
-    """Every English text that the product translates, its holes as ``{}``."""
-    sources = ElementTree.parse(CATALOGUE).iter("source")
-    return {HOLE.sub("{}", each.text or "") for each in sources}
+from tests.texts import (
+    HOLE,
+    all_texts,
+    begins,
+    fragment,
+    pattern,
+    shows,
+    spanish_texts,
+    text,
+    text_in_spanish,
+)
 
 
 @pytest.mark.parametrize("name", sorted(all_texts()))
-def test_the_product_has_this_text(name: str, known: set[str]) -> None:
-    assert HOLE.sub("{}", all_texts()[name]) in known
+def test_the_product_has_this_text(name: str) -> None:
+    assert HOLE.sub("{}", all_texts()[name]) in spanish_texts()
 
 
 def test_an_unknown_id_and_a_missing_value_are_refused() -> None:
     with pytest.raises(KeyError):
         text("screen.no-such-text")
     assert re.fullmatch(pattern("screen.no-start"), text("screen.no-start", why="AN ALARM"))
+    with pytest.raises(KeyError):
+        pattern("screen.no-start", reason="AN ALARM")
+    with pytest.raises(KeyError):
+        text_in_spanish("screen.no-start")
+
+
+def test_a_part_of_what_is_shown_is_found_by_its_id() -> None:
+    shown = text("screen.refused", why=text("search.no-such-pass", line=8, count=5, wanted=9))
+    assert begins(shown, "screen.refused")
+    assert begins(shown, "screen.refused", why=pattern("search.no-such-pass", line=8))
+    assert not begins(shown, "screen.refused", why=pattern("search.no-such-pass", line=9))
+    assert not begins(shown, "search.no-such-pass")
+    assert shows(shown, "search.no-such-pass", count=5)
+    assert not shows(shown, "screen.no-start")
+    assert fragment("search.no-such-pass", count=5) in shown
+    assert fragment("search.no-such-pass", count=55) not in shown
+
+
+def test_a_translation_takes_the_values_by_their_names() -> None:
+    rest = text_in_spanish("search.pass", number=3, count=5)
+    assert rest != text("search.pass", number=3, count=5)
+    assert {"3", "5"} <= set(re.findall(r"\d", rest))
