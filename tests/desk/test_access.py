@@ -287,9 +287,9 @@ def test_a_lower_spindle_limit_is_everybodys_and_a_higher_one_is_not(room: Room)
     room.run()
     assert room.desk.snapshot().spindle_limit == 0.0
     assert room.log("change") == [
-        ("spindle limit: none → 1500 rpm", "operator"),
-        ("spindle limit: 1500 rpm → 1200 rpm", "operator"),
-        ("spindle limit: 1200 rpm → none", "BEN"),
+        (wording("log.spindle-limit", change="none → 1500 rpm"), "operator"),
+        (wording("log.spindle-limit", change="1500 rpm → 1200 rpm"), "operator"),
+        (wording("log.spindle-limit", change="1200 rpm → none"), "BEN"),
     ]
 
 
@@ -308,7 +308,7 @@ def test_outputs_by_hand_are_of_setup_and_the_lamp_test_is_not(room: Room) -> No
     page._force("coolant", True)
     room.run()
     assert "coolant" in room.desk.snapshot().outputs
-    assert room.log("change") == [("output coolant by hand: on", "BEN")]
+    assert room.log("change") == [(wording("log.output-by-hand", name="coolant", state="on"), "BEN")]
 
 
 def test_what_has_come_by_the_line_is_not_stored_when_the_level_fell_back(room: Room) -> None:
@@ -345,7 +345,7 @@ def test_a_shared_program_asks_again_when_it_is_taken_and_has_the_name_of_who_to
     room.access.sign_out()
     page.worker.settle(LIMIT)
     assert peg.read_text() == "M30\n"
-    assert room.log("change") == [("program peg.nc taken as LATHE 2 has it", "BEN")]
+    assert room.log("change") == [(wording("log.taken-as", name="peg.nc", desk="LATHE 2"), "BEN")]
     page.close()
 
 
@@ -398,7 +398,7 @@ def test_taking_a_shared_program_is_no_operators_work(room: Room, tmp_path: Path
     model.take()
     model.worker.settle(LIMIT)
     assert peg.read_text() == "M30\n"
-    assert room.log("change")[-1] == ("program peg.nc taken as LATHE 2 has it", "BEN")
+    assert room.log("change")[-1] == (wording("log.taken-as", name="peg.nc", desk="LATHE 2"), "BEN")
     model.close()
 
 
@@ -451,7 +451,10 @@ def test_every_history_has_the_name(room: Room) -> None:
         assert [row.who for row in insert_changes(connection, 9)] == ["BEN"]
     room.desk.counter.program = "pin.nc"
     room.find(PartsCounterFunction).correct(1)
-    assert room.log("change")[-1] == ("parts of pin.nc: 0 → 1", "BEN")
+    assert room.log("change")[-1] == (
+        wording("log.parts-changed", program="pin.nc", before=0, after=1),
+        "BEN",
+    )
     assert "change" in FILTERS["OPERATOR"]
 
 
@@ -469,11 +472,11 @@ def test_settings_sounds_and_notes_are_lines_of_the_log(room: Room) -> None:
     sheet.next_paper()
     texts = [text for text, who in room.log("change") if who == "CARLA"]
     assert texts[:5] == [
-        "screen: theme dark → light",
-        "sound: 0 → 40 %, silent: nothing",
-        "notes of pin.nc: 'soft jaws'",
-        "notes of pin.nc: 'stop 12 mm'",
-        "notes of pin.nc: 'soft jaws' taken away",
+        wording("log.screen-setting", what="theme", before="dark", after="light"),
+        wording("log.sound-setting", before=0, after=40, silent="nothing"),
+        wording("log.notes", program="pin.nc", note="'soft jaws'"),
+        wording("log.notes", program="pin.nc", note="'stop 12 mm'"),
+        wording("log.notes", program="pin.nc", note=wording("log.note-gone", note="'soft jaws'")),
     ]
     assert [text.partition(":")[0] for text in texts[5:]] == ["paper"]
 
@@ -482,7 +485,7 @@ def test_an_accepted_machine_file_has_the_name(room: Room) -> None:
     room.enter_people()
     room.sign_in("ANNA")
     room.desk.changes.accept()
-    assert room.log("machine")[-1][0].endswith("own.toml accepted by ANNA")
+    assert shows(room.log("machine")[-1][0], "desk.machine-file-accepted-by", name="ANNA")
 
 
 # --- signing in ------------------------------------------------------------------------------------------
@@ -495,7 +498,10 @@ def test_the_header_says_who_is_in_force(room: Room) -> None:
     assert room.access.words.replace("\u2068", "").replace("\u2069", "") == "BEN · SETUP"
     room.access.sign_out()
     assert room.access.words == "OPERATOR"
-    assert room.log("access") == [("BEN has signed in: SETUP", "BEN"), ("BEN has signed out", "BEN")]
+    assert room.log("access") == [
+        (wording("log.signed-in", name="BEN", level="SETUP"), "BEN"),
+        (wording("log.signed-out", name="BEN", why=""), "BEN"),
+    ]
 
 
 def test_wrong_pins_wait_longer_and_longer_and_are_logged(room: Room) -> None:
@@ -509,7 +515,7 @@ def test_wrong_pins_wait_longer_and_longer_and_are_logged(room: Room) -> None:
     room.at += 5.0
     room.sign_in("BEN")
     assert room.access.name == "BEN"
-    assert room.log("access")[2] == ("wrong PIN for BEN, 3 in a row", "operator")
+    assert room.log("access")[2] == (wording("log.wrong-pin", name="BEN", count=3), "operator")
 
 
 def test_a_new_start_does_not_forget_how_many_were_wrong(room: Room) -> None:
@@ -574,7 +580,10 @@ def test_a_level_falls_back_and_says_so_before(room: Room) -> None:
     room.run(1)
     assert (room.access.name, room.access.level) == ("", Level.OPERATOR)
     assert shows(room.desk.notice, "desk.was-away")
-    assert room.log("access")[-1] == ("ANNA has signed out, after 10 min without a key", "ANNA")
+    assert room.log("access")[-1] == (
+        wording("log.signed-out", name="ANNA", why=", after 10 min without a key"),
+        "ANNA",
+    )
 
 
 def test_who_is_taken_away_is_not_in_force_any_more(room: Room) -> None:
@@ -625,7 +634,7 @@ def test_the_first_one_is_of_service_and_switches_levels_on(room: Room) -> None:
     typed(levels, "Ben", "2", "2580", "2580")
     room.settle()
     assert [(row.name, row.level) for row in room.access.people.rows] == [("ANNA", 3), ("BEN", 2)]
-    assert room.log("access")[-1] == ("BEN entered: SETUP, a new PIN", "ANNA")
+    assert room.log("access")[-1] == (wording("log.entered", name="BEN", level="SETUP"), "ANNA")
 
 
 def test_two_different_pins_keep_nothing(room: Room) -> None:

@@ -36,22 +36,22 @@ def test_entries(entry: str, value: float) -> None:
 @pytest.mark.parametrize(
     ("entry", "told"),
     [
-        ("", "nothing is entered"),
-        ("   ", "nothing is entered"),
-        ("1,5", "the decimal sign is a point"),
-        ("1e5", "only numbers"),
-        ("٣", "only numbers"),  # a digit, but none of ours
-        ("1\n+", "^1 [+] stops short"),  # one line, whatever was pasted
-        ("nan", "only numbers"),
-        ("2**3", r"\* at character 3"),
-        ("1 2", "2 at character 3"),
-        (" 1  2", "2 at character 3 of 1 2"),
-        ("1+", "stops short"),
-        ("(1", "closing bracket"),
-        ("1)", r"\) at character 2"),
-        (".", "only numbers"),
-        ("1/(2-2)", "divides by zero"),
-        ("1" * 81, "longer than 80"),
+        ("", pattern("screen.nothing-entered")),
+        ("   ", pattern("screen.nothing-entered")),
+        ("1,5", pattern("screen.decimal-point")),
+        ("1e5", pattern("desk.only-numbers")),
+        ("٣", pattern("desk.only-numbers")),  # a digit, but none of ours
+        ("1\n+", "^" + pattern("desk.stops-short", entry="1 +")),  # one line, whatever was pasted
+        ("nan", pattern("desk.only-numbers")),
+        ("2**3", pattern("desk.unexpected", what="*", place=3)),
+        ("1 2", pattern("desk.unexpected", what=2, place=3)),
+        (" 1  2", pattern("desk.unexpected", what=2, place=3, entry="1 2")),
+        ("1+", pattern("desk.stops-short", entry="1+")),
+        ("(1", pattern("desk.closing-bracket")),
+        ("1)", pattern("desk.unexpected", what=")", place=2)),
+        (".", pattern("desk.only-numbers")),
+        ("1/(2-2)", pattern("desk.divides-by-zero")),
+        ("1" * 81, pattern("desk.entry-too-long", most=80)),
     ],
 )
 def test_refusals(entry: str, told: str) -> None:

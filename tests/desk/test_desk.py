@@ -17,7 +17,7 @@ from core.executor.commands import CycleStart, EnableDrives, FeedHold, FeedOverr
 from core.executor.snapshot import Alarm, Event, State
 from tests.screen.desks import desk_on
 from tests.screen.fake import FakeMachine
-from tests.texts import shows, text
+from tests.texts import fragment, shows, text
 
 
 @pytest.fixture
@@ -133,10 +133,10 @@ def test_an_alarm_is_acknowledged_at_once(desk: Desk, machine: FakeMachine) -> N
 @pytest.mark.parametrize(
     ("state", "answer"),
     [
-        (State.ESTOP, "STILL PRESSED"),
-        (State.FAULT, "ACKNOWLEDGE IT FIRST"),
-        (State.IDLE, "THE DRIVES ARE ON"),
-        (State.RUN, "THE DRIVES ARE ON"),
+        (State.ESTOP, fragment("screen.e-stop-pressed")),
+        (State.FAULT, text("desk.acknowledge-first")),
+        (State.IDLE, text("desk.drives-are-on")),
+        (State.RUN, text("desk.drives-are-on")),
     ],
 )
 def test_drives_on_is_refused_unless_they_are_off(

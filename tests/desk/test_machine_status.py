@@ -145,7 +145,7 @@ def test_a_spindle_that_is_held_at_an_angle_is_told_and_does_not_coast_on_its_wa
     held = status_of(replace(AT, oriented=90.0), Readout.POSITION, True)
     assert (turning.lamps[0].word, turning.lamps[0].warn) == ("SPINDLE ORIENTS", True)
     assert (held.lamps[0].word, held.lamps[0].lit, held.lamps[0].warn) == ("SPINDLE HELD", True, False)
-    assert held.spindle.direction.startswith("HELD 90")
+    assert held.spindle.direction.startswith(text("desk.held-angle", angle=90))
     assert status_of(AT, Readout.POSITION, True).spindle.direction == "M05 OFF"
 
 

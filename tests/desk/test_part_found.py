@@ -252,8 +252,9 @@ def test_what_was_warned_of_is_told_where_cycles_are_started() -> None:
     shot = Snapshot(announced=("WARNING: LINE 11: RAPID-INTO-STOCK", "THE SPINDLE STARTS AT 900 RPM FORWARD"))
     here = "WARNING: LINE 11: RAPID-INTO-STOCK · THE SPINDLE STARTS AT 900 RPM FORWARD · "
     assert announced(shot) == here
-    assert announced(shot, starts_here=False) == wording(
-        "screen.spindle-starts", rpm=900, direction="FORWARD · "
+    assert (
+        announced(shot, starts_here=False)
+        == f"{wording('screen.spindle-starts', rpm=900, direction='FORWARD')} · "
     )
 
 

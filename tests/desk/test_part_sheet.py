@@ -142,7 +142,7 @@ def test_a_bar_is_said_kept_and_the_program_proved_on_it(bench: Bench) -> None:
     assert bench.cells["STOCK"] == ("–", "BAR")  # what is assumed stands beside it
     bench.press("Right")
     assert bench.kept == KeptPart()  # without a diameter it is none yet
-    assert table(bench.page).notes == ("DIAMETER IS STILL TO BE SAID",)
+    assert table(bench.page).notes == (wording("desk.still-to-say", field="DIAMETER"),)
     bench.press("Down")
     bench.types("1")
     assert bench.kept.stock == "bar:1"

@@ -37,8 +37,8 @@ def test_what_rests_on_something_assumed_is_a_warning_as_on_the_desk(
 ) -> None:
     sheet = sheet_of(SLIP, stock, shapes)
     assert sheet.errors == 0
-    one = "1 WARNING: look at it before the first part"
-    some = f"{sheet.warnings} WARNINGS: look at them before the first part"
+    one = wording("desk.one-warning")
+    some = wording("desk.many-warnings", count=sheet.warnings)
     assert sheet.verdict == (one if sheet.warnings == 1 else some)
 
 

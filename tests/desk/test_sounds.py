@@ -21,6 +21,7 @@ from app.desk.sounds import Sounds, play_aloud, tune
 from app.special.lamps_and_sound import DeskSounds
 from core.executor.snapshot import Snapshot, State
 from core.machine.signal_table import SIGNALS
+from tests.texts import text as wording
 
 REST = Snapshot(state=State.IDLE)
 
@@ -109,7 +110,7 @@ def test_why_nothing_is_heard_is_said_once() -> None:
     made, said = desk_sounds()
     made.sounds.trouble = "no such device"
     day(made, RUNS, REST, RUNS)
-    assert said == ["NO SOUND: no such device"]
+    assert said == [wording("desk.no-sound", why="no such device")]
 
 
 def test_a_sound_is_played_by_a_thread_and_a_failure_is_kept() -> None:

@@ -31,11 +31,11 @@ def test_a_wait_for_an_input_names_the_state_it_waits_for() -> None:
 @pytest.mark.parametrize(
     ("what", "key"),
     [
-        ("SPINDLE SWITCH OFF", "A TURNS IT"),
-        ("FEED OVERRIDE AT 0", "IT UP (+)"),
-        ("SPINDLE OVERRIDE AT 0", "IT UP (.)"),
-        ("GUARD OPEN", "CLOSE IT"),
-        ("DWELL", "BY ITSELF"),
+        ("SPINDLE SWITCH OFF", text("desk.spindle-switch-off")),
+        ("FEED OVERRIDE AT 0", text("desk.feed-pot-at-0")),
+        ("SPINDLE OVERRIDE AT 0", text("desk.spindle-pot-at-0")),
+        ("GUARD OPEN", text("desk.guard-open")),
+        ("DWELL", text("desk.dwell")),
     ],
 )
 def test_every_other_wait_says_how_it_ends(what: str, key: str) -> None:

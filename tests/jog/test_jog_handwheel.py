@@ -16,7 +16,7 @@ from core.executor.snapshot import Snapshot, State
 from core.interpreter.modal_state import Modal
 from core.machine.hardware_model import AnalogModel
 from core.machine.machine_model import InputModel
-from tests.texts import shows
+from tests.texts import shows, text
 
 INCH = 25.4
 THOU = 0.001 * INCH
@@ -177,14 +177,14 @@ def test_a_screen_that_was_away_lets_it_go() -> None:
     scene.t += 0.3
     scene.frames(0.05)
     assert scene.posted[-1] == WheelOff()
-    assert set(scene.said) == {"THE SCREEN WAS AWAY: THE HANDWHEEL IS OFF"}
+    assert set(scene.said) == {text("jog.screen-away")}
     assert scene.nothing_more()
 
 
 def test_without_a_wheel_the_key_says_so() -> None:
     scene = Scene(there=False)
     scene.wheel.next_axis()
-    assert scene.said == ["THIS MACHINE HAS NO HANDWHEEL"]
+    assert scene.said == [text("jog.no-wheel")]
     assert scene.nothing_more()
 
 

@@ -13,6 +13,7 @@ from app.programs.import_export import export_programs
 from app.programs.removable_media import Medium, Stick, sticks, why_not
 from app.programs.whole_file import FileError
 from tests.texts import pattern
+from tests.texts import text as wording
 
 LINE = "{n} 28 {device} / {path} {options} shared:1 - vfat /dev/x {super}\n"
 
@@ -65,10 +66,10 @@ def test_lines_that_are_none_are_left_out(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("number", "words"),
     [
-        (errno.ENOSPC, "STICK IS FULL"),
-        (errno.EROFS, "STICK IS READ-ONLY"),
-        (errno.EIO, "STICK IS NOT THERE ANY MORE: WAS IT PULLED OUT?"),
-        (errno.ENOENT, "STICK IS NOT THERE ANY MORE"),
+        (errno.ENOSPC, wording("programs.full", place="STICK")),
+        (errno.EROFS, wording("programs.read-only", place="STICK")),
+        (errno.EIO, wording("programs.pulled-out", place="STICK")),
+        (errno.ENOENT, wording("programs.gone", place="STICK")),
         (errno.EACCES, "STICK: Permission denied"),
     ],
 )

@@ -18,7 +18,7 @@ from core.interpreter.restart.state_rebuild import StateRebuild
 from core.language.source import Source
 from tests.interpreter.programs import INCH, setup
 from tests.interrupted import broken_off
-from tests.texts import begins
+from tests.texts import begins, text
 
 
 @pytest.mark.parametrize(
@@ -26,25 +26,25 @@ from tests.texts import begins
     [
         (Retract(ToolPlace.CLEAR), ""),
         (Retract(ToolPlace.WORK, (RetractLeg(1.0, 0.0),), (1, 0)), ""),
-        (Retract(ToolPlace.UNKNOWN, away=(1, 0)), "T3 STANDS IN THE PART: JOG X+ OUT OF IT FIRST, NOT Z"),
-        (Retract(ToolPlace.UNKNOWN, away=(-1, 0)), "T3 STANDS IN THE PART: JOG X- OUT OF IT FIRST, NOT Z"),
-        (Retract(ToolPlace.UNKNOWN, away=(0, 1)), "T3 STANDS IN THE PART: JOG Z+ OUT OF IT FIRST, NOT X"),
+        (Retract(ToolPlace.UNKNOWN, away=(1, 0)), text("search.jog-out-first", tool=3, x="X+")),
+        (Retract(ToolPlace.UNKNOWN, away=(-1, 0)), text("search.jog-out-first", tool=3, x="X-")),
+        (Retract(ToolPlace.UNKNOWN, away=(0, 1)), text("search.jog-z-out-first", tool=3)),
         (
             Retract(ToolPlace.UNKNOWN, away=(1, 1)),
-            "T3 STANDS IN THE PART: JOG IT OUT BY THE WAY IT CAME, X+ AND Z+ TOGETHER",
+            text("search.jog-out-together", tool=3, x="X+"),
         ),
         (
             Retract(ToolPlace.UNKNOWN),
-            "HOW T3 CAME TO STAND HERE IS NOT KNOWN: JOG IT CLEAR OF THE PART BY THE WAY IT CAME",
+            text("search.way-in-unknown", tool=3),
         ),
-        (Retract(ToolPlace.THREAD), "T3 STANDS IN A THREAD: JOG X OFF THE THREAD FIRST, NOT Z"),
+        (Retract(ToolPlace.THREAD), text("search.in-thread", tool=3)),
         (
             Retract(ToolPlace.TAP),
-            "T3 IS A TAP IN ITS THREAD: TURN IT OUT BY HAND WITH THE SPINDLE, Z FOLLOWING",
+            text("search.tap-in-thread", tool=3),
         ),
         (
             Retract(ToolPlace.TURNED, away=(1, 0)),
-            "C HAS TURNED SINCE T3 WENT IN: TURN THE SPINDLE FREE BY HAND AND JOG T3 OUT",
+            text("search.c-has-turned", tool=3),
         ),
     ],
 )

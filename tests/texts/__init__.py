@@ -72,10 +72,20 @@ def shows(shown: str, name: str, /, **values: object) -> bool:
 
 def fragment(name: str, /, **values: object) -> str:
     """Return the longest run of the text without an unknown value, for a search by plain text."""
+    return max(_runs(name, values), key=len).strip()
+
+
+def opening(name: str, /, **values: object) -> str:
+    """Return the text up to its first unknown value, for a search by plain text."""
+    return _runs(name, values)[0].strip()
+
+
+def _runs(name: str, values: dict[str, object]) -> list[str]:
+    """Return the runs of the text between its unknown values."""
     template = all_texts()[name]
     for key, value in values.items():
         template = template.replace(f"{{{key}}}", str(value))
-    return max(HOLE.split(template), key=len).strip()
+    return HOLE.split(template)
 
 
 @cache
