@@ -5,6 +5,8 @@ from __future__ import annotations
 from core.alarms import CATALOGUE, Code
 from tests.stories.conftest import Story
 from tests.stories.operator import Operator, Told
+from tests.texts import fragment
+from tests.texts import text as wording
 
 LONG = "G90G94F300G72\nT3\nX1.2Z.2\nM03S900\nX.8\nG94F100Z-.2\nF4Z-.9\nX1.2\nG94F300Z.2\nM05\nX2Z2\nM30\n"
 STOPS = "G90G94F300G72\nT3\nX1.2Z.2\nM00(CHECK THE BORE)\nX1.3\nM01\nX2Z2\nM30\n"
@@ -62,7 +64,10 @@ def is_in_f7(operator: Operator, *codes: Code) -> None:
         entry = CATALOGUE[code]
         operator.sees(f"{entry.number}  ·  {entry.text.upper()}")
     operator.key("Escape")
-    operator.until(lambda: not operator.shows("ALARMS AND STOPS"), "the list closed")
+    operator.until(
+        lambda: not operator.shows(wording("stories.alarms-and-stops").partition("  ·  ")[0]),
+        "the list closed",
+    )
 
 
 def test_a_jammed_slide_is_named_with_cause_and_remedy_on_every_page(story: Story) -> None:
@@ -103,7 +108,7 @@ def is_told_on_every_page_as_estop(operator: Operator) -> None:
     for keys, page in PAGES:
         operator.keys(*keys)
         operator.opens(page)
-        operator.sees("E-STOP: MAKE THE MACHINE SAFE")
+        operator.sees(fragment("screen.e-stop-make-safe"))
         operator.sees(CATALOGUE["estop"].causes[0])
 
 
@@ -120,7 +125,7 @@ def test_every_stop_is_in_f7_with_who_or_what_stopped(story: Story) -> None:
     operator.during(0.4)
     operator.cycle_start()
     operator.reaches("PROGRAM STOP")
-    operator.answers("r", "PRESS Y TO GIVE THE PROGRAM UP", lambda: operator.state == "READY")
+    operator.answers("r", fragment("screen.give-up-program"), lambda: operator.state == "READY")
     operator.key("F7")
     for text in ("703  ·  RESET", "part.nc was given up", "705  ·  OPTIONAL STOP", "706  ·  SINGLE BLOCK"):
         operator.sees(text)
@@ -137,11 +142,11 @@ def test_of_two_alarms_the_first_is_named_first_and_the_other_is_there(story: St
     operator.breaks("spindle_fault", "undervoltage")
     operator.until(lambda: len(operator.machine["alarms"]) == 2, "two alarms")
     operator.sees("X: over current")
-    operator.sees("ALARM 101: AXIS DRIVE FAULT")
-    operator.sees("201 SPINDLE DRIVE FAULT")
+    operator.sees(wording("screen.alarm", number=101, what=wording("stories.axis-drive-fault").upper()))
+    operator.sees(f"201 {wording('stories.spindle-drive-fault').upper()}")
     operator.keys("F1", "F8")
-    operator.sees("ALARM 101: AXIS DRIVE FAULT")
-    operator.sees("AND 1 MORE")
+    operator.sees(wording("screen.alarm", number=101, what=wording("stories.axis-drive-fault").upper()))
+    operator.sees(wording("stories.more", count=1))
     is_in_f7(operator, "axis", "spindle")
 
 
@@ -192,5 +197,5 @@ def test_h_and_esc_are_told_apart_in_f7(story: Story) -> None:
     operator.key("Escape")
     operator.reaches("FEED HOLD")
     operator.key("F7")
-    operator.sees("by key or finger at the screen")
-    operator.sees("by Esc at the screen")
+    operator.sees(f"by {wording('stories.key-or-finger')}")
+    operator.sees(f"by {wording('stories.esc-at-screen')}")

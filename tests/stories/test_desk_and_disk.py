@@ -5,6 +5,7 @@ from __future__ import annotations
 import subprocess
 
 from tests.stories.conftest import Story
+from tests.texts import fragment
 
 PART = "G90G94T1\nM03S600\nG01X.5Z.5F10\nX0Z0\nM30\n"
 TOOLS = {1: (0.0, 0.0)}
@@ -14,13 +15,13 @@ def test_a_program_that_somebody_else_changes_is_told_before_the_start(story: St
     operator = story.begins(PART, tools=TOOLS)
     operator.drives_on()
     (story.folder / "part.nc").write_text(PART.replace("X.5", "X1.5"))
-    operator.sees("HAS CHANGED ON THE DISK")
+    operator.sees(fragment("programs.changed-on-disk"))
     operator.starts()
     operator.until(lambda: operator.slides[0] > 1.0, "a cut")
     (story.folder / "part.nc").unlink()  # what runs is the text that was proved
     operator.until(lambda: operator.machine["parts"] == 1, "a part")
     assert max(seen["slides"][0] for seen in operator.seen) < 0.51 * 25.4
-    operator.sees("NOT ON THE DISK ANY MORE")
+    operator.sees(fragment("programs.not-on-disk"))
 
 
 def test_the_close_button_of_the_window_does_not_end_a_cut(story: Story) -> None:
@@ -30,6 +31,6 @@ def test_the_close_button_of_the_window_does_not_end_a_cut(story: Story) -> None
     operator.until(lambda: operator.slides[0] > 1.0, "a cut")
     close = ["xdotool", "key", "alt+F4"]
     subprocess.run(close, env=story.server.environment, check=True, capture_output=True)
-    operator.sees("A PROGRAM IS UNDER WAY")
+    operator.sees(fragment("screen.program-runs-no-leaving"))
     assert operator.state == "RUNNING"
     operator.until(lambda: operator.machine["parts"] == 1, "a part")

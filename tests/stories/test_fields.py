@@ -6,6 +6,7 @@ import pytest
 
 from tests.stories.conftest import Story
 from tests.stories.operator import Operator
+from tests.texts import text
 
 PART = "G90G94T1\nM03S600\nG01X.5Z.5F5\nX0Z0\nM30\n"
 TOOLS = {1: (0.0, 0.0)}
@@ -69,7 +70,7 @@ PLACES = {
 def test_no_field_lets_a_character_through(story: Story, place: str) -> None:
     operator = story.begins(PART, tools=TOOLS)
     operator.drives_on()
-    operator.until(lambda: "TO START" in operator.prompt, "ready to start")
+    operator.until(lambda: text("screen.to-start") in operator.prompt, "ready to start")
     for key in PLACES[place]:
         operator.key(key)
         operator.during(0.3)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from tests.stories.conftest import Story
+from tests.texts import text
 
 PART = "G90G94T1\nM03S600\nG01X.5Z.5F10\nX0Z0\nM30\n"
 SHORT = PART.replace("X.5Z.5F10", "X.1Z.1F30")
@@ -15,7 +16,7 @@ def test_a_part_is_made_by_keyboard(story: Story) -> None:
     operator.starts()
     operator.until(lambda: operator.machine["parts"] == 1, "a part")
     operator.reaches("READY")
-    operator.sees("TO START")
+    operator.sees(text("screen.to-start"))
     assert operator.is_at((0.0, 0.0))
     operator.until(lambda: operator.status["execution"] == "PROGRAM_COMPLETED", "status.json")
     operator.until(lambda: len(operator.events("part")) == 1, "the part in the store")

@@ -10,6 +10,8 @@ import pytest
 from tests.stories.conftest import Story
 from tests.stories.operator import Operator
 from tests.stories.x11 import another_client
+from tests.texts import fragment, opening, shows
+from tests.texts import text as wording
 
 PART = "G90G94F300G72\nT3\nX1.2Z.2\nM03S900\nX.8\nG95F.05Z-.2\nF.005Z-1\nX1.2\nG94F300Z.2\nM05\nX2Z2\nM30\n"
 TOOLS = {3: (-0.5, -2.0)}
@@ -23,7 +25,7 @@ def in_the_cut(operator: Operator) -> None:
 
 
 def twists_the_estop_out(operator: Operator) -> None:
-    operator.answers("u", "PRESS Y TO TWIST THE E-STOP OUT", lambda: operator.state != "E-STOP")
+    operator.answers("u", fragment("screen.twist-e-stop-out"), lambda: operator.state != "E-STOP")
 
 
 def shows_the_job_on_every_page(operator: Operator) -> None:
@@ -38,14 +40,14 @@ def shows_the_job_on_every_page(operator: Operator) -> None:
     ):
         operator.keys(*keys)
         operator.opens(page)
-        operator.sees("INTERRUPTED: part.nc LINE 7, T3, PART 1")
-        operator.sees("FROM HOME")
+        operator.sees(opening("desk.interrupted", program="part.nc", line=7, passed="", tool=3, part=1))
+        operator.sees(wording("stories.from-home"))
 
 
 def is_not_begun_by_the_palms(operator: Operator) -> None:
     stands = operator.rests()
     operator.cycle_start()
-    operator.until(lambda: "was interrupted" in operator.machine["refused"], "a sentence")
+    operator.until(lambda: shows(operator.machine["refused"], "stories.line-was-interrupted"), "a sentence")
     operator.keeps(lambda: operator.is_at(stands) and operator.state == "READY", 1.0, "nothing begins")
 
 
@@ -74,21 +76,21 @@ def test_a_program_given_up_leaves_the_same_job_and_y_then_the_palms_begin_it_an
     in_the_cut(operator)
     operator.key("h")
     operator.reaches("FEED HOLD")
-    operator.answers("r", "PRESS Y TO GIVE THE PROGRAM UP", lambda: operator.state == "READY")
+    operator.answers("r", fragment("screen.give-up-program"), lambda: operator.state == "READY")
     is_not_begun_by_the_palms(operator)
     operator.key("y")
-    operator.sees("BEGINS AT LINE 1")
+    operator.sees(opening("desk.begins-at-line-1"))
     operator.key("Escape")
-    operator.sees("WAS INTERRUPTED: F6")
+    operator.sees(fragment("desk.was-interrupted"))
     is_not_begun_by_the_palms(operator)
     operator.key("y")
-    operator.sees("BEGINS AT LINE 1")
+    operator.sees(opening("desk.begins-at-line-1"))
     operator.cycle_start()
     operator.reaches("RUNNING", "WAITING")
     operator.until(lambda: operator.machine["parts"] == 1, "the part")
     operator.reaches("READY")
     operator.until(lambda: operator.status["interrupted"] is None, "status.json")
-    assert [text for text in operator.events("cleared") if text.endswith("the program begins anew")]
+    assert [text for text in operator.events("cleared") if shows(text, "stories.begins-anew")]
 
 
 def test_a_killed_control_comes_up_with_the_job_that_it_was_killed_in(story: Story) -> None:
@@ -99,8 +101,8 @@ def test_a_killed_control_comes_up_with_the_job_that_it_was_killed_in(story: Sto
     os.kill(operator.popen.pid, signal.SIGKILL)
     operator.popen.wait()
     again = story.begins(PART)
-    again.sees("INTERRUPTED: part.nc LINE 7, T3, PART 1")
-    again.sees("THE CONTROL LOST ITS POWER OR WAS KILLED")
+    again.sees(opening("desk.interrupted", program="part.nc", line=7, passed="", tool=3, part=1))
+    again.sees(wording("stories.power-lost"))
     with again.store() as store:
         kept = store.setting("under_way")
     assert isinstance(kept, dict)
@@ -109,7 +111,7 @@ def test_a_killed_control_comes_up_with_the_job_that_it_was_killed_in(story: Sto
     is_not_begun_by_the_palms(again)
     again.key("F6")
     again.opens("SEARCHTO")
-    again.sees("LINE 7 WAS RUNNING WHEN THE PROGRAM BROKE OFF")
+    again.sees(fragment("search.broke-off", line=7))
     assert again.status["interrupted"]["line"] == 7
 
 
@@ -122,16 +124,16 @@ def test_the_part_is_finished_by_searchto_and_the_row_goes(story: Story) -> None
     operator.drives_on()
     operator.key("F6")
     operator.opens("SEARCHTO")
-    operator.sees("LINE 7 WAS RUNNING WHEN THE PROGRAM BROKE OFF")
+    operator.sees(fragment("search.broke-off", line=7))
     operator.key("Return")
-    operator.sees("F10 CONFIRMS")
+    operator.sees(fragment("search.compare"))
     operator.key("F10")
-    operator.sees("TO START THE RESTART")
+    operator.sees(fragment("search.start-restart"))
     operator.during(1.0)  # what starts was read
     operator.cycle_start()
     operator.until(lambda: operator.machine["parts"] == 1, "the part")
     operator.reaches("READY")
-    operator.until(lambda: not operator.shows("INTERRUPTED:"), "nothing is interrupted")
+    operator.until(lambda: not operator.shows(opening("desk.interrupted")), "nothing is interrupted")
     operator.until(lambda: operator.status["interrupted"] is None, "status.json")
     with operator.store() as store:
         assert store.setting("under_way") is None
@@ -146,7 +148,7 @@ def test_an_answer_and_the_palms_in_one_slap_begin_nothing(story: Story, keys: t
     operator.reaches("E-STOP")
     twists_the_estop_out(operator)
     operator.drives_on()
-    operator.sees("INTERRUPTED: part.nc LINE 7")
+    operator.sees(opening("desk.interrupted", program="part.nc", line=7))
     operator.during(1.0)
     stood = operator.rests()
     operator.once = True
@@ -163,21 +165,26 @@ def test_under_an_estop_the_prompt_of_a_field_names_keys_that_work_there(story: 
     operator.opens("MDI")
     operator.key("Scroll_Lock")
     operator.reaches("E-STOP")
-    operator.sees("U WRITES HERE; F1 LEAVES THE PAGE")
+    operator.sees(fragment("stories.release-by-hand-or-u"))
     operator.key("F1")
-    operator.sees("RELEASE THE BUTTON (U), THEN PRESS D")
+    operator.sees(wording("screen.e-stop-make-safe", how=wording("stories.release-by-u")))
     twists_the_estop_out(operator)
     operator.reaches("DRIVES OFF")
+
+
+def promises_a_key(operator: Operator) -> bool:
+    """Return whether the prompt names the key that holds the feed."""
+    return shows(operator.prompt, "stories.keys-that-stop") or shows(operator.prompt, "stories.h-holds-feed")
 
 
 def test_while_another_window_has_the_keyboard_the_prompt_promises_no_key(story: Story) -> None:
     operator = story.begins(PART, tools=TOOLS)
     in_the_cut(operator)
-    operator.sees("HOLDS THE FEED")
+    operator.until(lambda: promises_a_key(operator), "how to hold")
     with another_client(operator.server, "window"):
-        operator.until(lambda: "ANOTHER WINDOW HAS THE KEYBOARD" in operator.prompt, "the truth")
+        operator.until(lambda: shows(operator.prompt, "stories.keyboard-elsewhere"), "the truth")
     operator.comes_back()
-    operator.until(lambda: "HOLDS THE FEED" in operator.prompt or operator.state != "RUNNING", "back")
+    operator.until(lambda: promises_a_key(operator) or operator.state != "RUNNING", "back")
 
 
 def test_another_program_takes_its_place_only_when_that_is_meant(story: Story) -> None:
@@ -189,18 +196,21 @@ def test_another_program_takes_its_place_only_when_that_is_meant(story: Story) -
     operator.reaches("E-STOP")
     operator.key("F2")
     operator.enters("other.nc")
-    operator.sees("Y GIVES THAT JOB UP FOR other.nc")
+    operator.sees(fragment("desk.gives-job-up", name="other.nc"))
     operator.key("Escape")
-    operator.keeps(lambda: operator.shows("INTERRUPTED: part.nc LINE 7"), 0.5, "the job")
+    operator.keeps(
+        lambda: operator.shows(opening("desk.interrupted", program="part.nc", line=7)), 0.5, "the job"
+    )
     operator.keys("F1", "F6")
     operator.opens("PROGRAMS")
     operator.enters("other")
-    operator.sees("Y GIVES THAT JOB UP FOR other.nc")  # from the list too
+    operator.sees(fragment("desk.gives-job-up", name="other.nc"))  # from the list too
     operator.key("Escape")
     operator.key("F2")
     operator.enters("other.nc")
-    operator.sees("Y GIVES THAT JOB UP FOR other.nc")
-    operator.until(lambda: operator.says_yes(lambda: not operator.shows("INTERRUPTED:")), "it is given up")
+    operator.sees(fragment("desk.gives-job-up", name="other.nc"))
+    job = opening("desk.interrupted")
+    operator.until(lambda: operator.says_yes(lambda: not operator.shows(job)), "it is given up")
     assert operator.events("cleared") == [
         "part.nc line 7, T3, part 1: E-STOP; other.nc was loaded in its place"
     ]
@@ -214,8 +224,8 @@ def test_a_computer_that_goes_down_in_the_cut_leaves_the_job(story: Story) -> No
     told = operator.status
     assert (told["available"], told["interrupted"]["line"]) == (False, 7)
     again = story.begins(PART)
-    again.sees("INTERRUPTED: part.nc LINE 7, T3, PART 1")
-    again.sees("THE CONTROL WAS CLOSED")
+    again.sees(opening("desk.interrupted", program="part.nc", line=7, passed="", tool=3, part=1))
+    again.sees(wording("stories.control-closed"))
     again.drives_on()
     is_not_begun_by_the_palms(again)
 
@@ -227,12 +237,12 @@ def test_a_held_palm_and_a_held_y_begin_nothing(story: Story) -> None:
     operator.key("h")
     operator.reaches("FEED HOLD")
     operator.key("r")
-    operator.sees("PRESS Y TO GIVE THE PROGRAM UP")
+    operator.sees(fragment("screen.give-up-program"))
     operator.during(0.6)
     operator.down("y")  # and stays: it gives the program up, and answers nothing more
     operator.reaches("READY")
     operator.during(2.0)
     operator.cycle_start()
-    operator.until(lambda: "was interrupted" in operator.machine["refused"], "a sentence")
+    operator.until(lambda: shows(operator.machine["refused"], "stories.line-was-interrupted"), "a sentence")
     operator.up("y")
     is_not_begun_by_the_palms(operator)

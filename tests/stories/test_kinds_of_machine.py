@@ -8,6 +8,8 @@ from functools import partial
 from core.store.store import Store
 from tests.stories.conftest import Story
 from tests.stories.operator import Operator
+from tests.texts import fragment
+from tests.texts import text as wording
 
 # Zero lies where the tip stands; line 4 and block N50 go slowly enough for any hand.
 KLARTEXT = (
@@ -46,7 +48,7 @@ def mdi(operator: Operator, line: str, done: Callable[[], bool]) -> None:
     operator.key("F4")
     operator.opens("MDI")
     operator.enters(line)
-    operator.sees("READY, CYCLE START RUNS IT")
+    operator.sees(fragment("stories.line-ready"))
     operator.cycle_start()
     operator.until(done, line)
 
@@ -57,7 +59,7 @@ def loads(operator: Operator, name: str) -> None:
     operator.key("F2")
     operator.opens("AUTOMATIC")
     operator.key("F2")
-    operator.sees("FILE TO BE PROCESSED")
+    operator.sees(wording("screen.file-to-be-processed"))
     operator.enters(name)
 
 
@@ -103,14 +105,14 @@ def breaks_and_goes_on(
     operator.during(0.3)
     operator.key("h")
     operator.reaches("FEED HOLD")
-    operator.answers("r", "PRESS Y TO GIVE THE PROGRAM UP", lambda: operator.state == "READY")
+    operator.answers("r", fragment("screen.give-up-program"), lambda: operator.state == "READY")
     touched_off(operator)
     operator.key("F6")
     operator.opens("SEARCHTO")
     operator.enters(str(again))
-    operator.sees(f"STATE AT LINE {again}")
+    operator.sees(wording("search.state-at-line", line=again))
     operator.key("F10")
-    operator.sees("CONFIRMED")
+    operator.sees(fragment("search.confirmed"))
     operator.cycle_start()
     operator.until(lambda: operator.state != "READY", "the start")
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from tests.stories.conftest import Story
+from tests.texts import text
 
 PART = "G90G94F300\nT1\nX2Z2\nM30\n"
 TOOLS = {1: (-0.5, -2.0)}
@@ -13,7 +14,7 @@ def test_who_looks_at_a_program_in_the_list_has_the_job_that_he_had(story: Story
     (story.home / "programs" / "other.nc").write_text("G90G94F300\nT1\nX1Z1\nM30\n")
     operator = story.begins(PART, tools=TOOLS)
     operator.drives_on()
-    operator.sees("TO START")
+    operator.sees(text("screen.to-start"))
     operator.keys("F1", "F6")
     operator.opens("PROGRAMS")
     operator.writes("other")
@@ -22,7 +23,7 @@ def test_who_looks_at_a_program_in_the_list_has_the_job_that_he_had(story: Story
     operator.sees("X1Z1")
     operator.key("F1")
     operator.opens("MAIN MENU")
-    operator.sees("other.nc WAS ONLY LOOKED AT: part.nc STAYS ON THE DESK")
+    operator.sees(text("editor.only-looked-at", name="other.nc", other="part.nc"))
     operator.key("F2")
     operator.starts()
     operator.reaches("READY")
@@ -38,10 +39,10 @@ def test_with_nothing_marked_a_new_file_is_asked_for_and_no_job_made(story: Stor
     operator.opens("PROGRAMS")
     operator.writes("zzzz")
     operator.key("F10")
-    operator.sees("NO PROGRAM IS MARKED")
+    operator.sees(text("screen.no-program-marked"))
     assert operator.page == "PROGRAMS"
     operator.key("F3")
     operator.opens("EDITOR")
-    operator.sees("PRESS F1 TO CREATE A NEW FILE, ESC TO ABORT")
+    operator.sees(text("screen.new-file"))
     operator.key("Escape")
     assert not list(story.home.rglob("zzzz*"))

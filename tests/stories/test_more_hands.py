@@ -6,6 +6,7 @@ import pytest
 
 from tests.stories.conftest import INCH, Story
 from tests.stories.operator import Operator
+from tests.texts import fragment, text
 
 PART = "G90G94T1\nM03S600\nG01X2.Z2.F5\nX0Z0\nM30\n"
 TOOLS = {1: (0.0, 0.0)}
@@ -25,7 +26,7 @@ def test_a_window_that_pops_up_keeps_no_stop_key(story: Story) -> None:
     operator = story.begins(PART, tools=TOOLS)
     operator.drives_on()
     operator.key("F2")
-    operator.sees("FILE TO BE PROCESSED")
+    operator.sees(text("screen.file-to-be-processed"))
     operator.writes("bush")
     operator.until(lambda: operator.screen["field"] == "bush", "typed")
     operator.points("bush")
@@ -41,7 +42,7 @@ def test_a_window_that_pops_up_keeps_no_stop_key(story: Story) -> None:
 def test_the_number_pad_without_num_lock_moves_nothing(story: Story) -> None:
     operator = at_jog(story)
     operator.down("KP_Left")
-    operator.sees("NUM LOCK IS OFF")
+    operator.sees(fragment("stories.num-lock-off"))
     operator.keeps(lambda: operator.is_at((0.0, 0.0)), 0.7, "rest")
     operator.up("KP_Left")
 

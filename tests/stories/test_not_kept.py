@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from tests.store.disk import small_disk
 from tests.stories.conftest import Story
+from tests.texts import fragment, opening, text
 
 SHORT = "G90G94T1\nM03S600\nG01X.1Z.1F30\nX0Z0\nM30\n"
 TOOLS = {1: (0.0, 0.0)}
@@ -17,12 +18,12 @@ def test_parts_that_are_made_while_the_disk_is_full_are_in_the_store_when_it_has
         operator.starts()
         operator.until(lambda: operator.machine["parts"] == 1, "the first part")
         disk.fill()
-        operator.sees("NOT KEPT: the disk is full")
+        operator.sees(text("screen.not-kept", why=opening("desk.disk-full")))
         operator.until(lambda: operator.machine["parts"] >= 4, "parts")
         operator.keys("F1", "F5")
         operator.opens("JOG")
-        operator.sees("NOT KEPT: the disk is full")
-        operator.sees("HELD IN MEMORY, WRITTEN WHEN THERE IS ROOM: ")
+        operator.sees(text("screen.not-kept", why=opening("desk.disk-full")))
+        operator.sees(fragment("stories.held-in-memory"))
         operator.keys("F1", "F2")
         operator.key("c")
         operator.until(lambda: operator.state == "READY", "the end of the part")
@@ -30,7 +31,7 @@ def test_parts_that_are_made_while_the_disk_is_full_are_in_the_store_when_it_has
         with operator.store() as store:
             assert store.parts("part.nc") < made
         operator.key("F4", "alt")
-        operator.sees("NOT KEPT, AND LOST BY CLOSING: ")
+        operator.sees(fragment("stories.lost-by-closing"))
         operator.key("Escape")
         disk.make_room()
         operator.until(lambda: not operator.shows("NOT KEPT"), "all is kept")

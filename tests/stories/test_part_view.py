@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from tests.stories.conftest import Story
+from tests.texts import opening, text
 
 SHAFT = "G90G94F100\nM03S1500\nT1\nX.6Z.05\nX.4\nG95F.008Z-.5\nX.45Z-.6\nX.55\nG94F100Z.05\nM30\n"
 SLIP = SHAFT.replace("M30", "X.3\nG00Z-.3\nX.55\nM30")
@@ -13,12 +14,12 @@ def test_a_g00_left_on_is_seen_before_anything_moves(story: Story) -> None:
     operator = story.begins(SLIP, tools=TOOLS)
     operator.find("to come", on="PathView")
     operator.key("v")
-    operator.find("LINE 11: A rapid goes into metal", on="PathView")
+    operator.find(text("screen.line-what", line=11, what=opening("desk.rapid-into-stock")), on="PathView")
     operator.keys("j", "j", "j", "j", "j", "j", "j", "j", "j")  # back before its first move
     operator.find("PART  ·  ", on="PathView")
     slides = operator.slides[:2]
     operator.key("k")
-    operator.find("LINE 11: A rapid goes into metal", on="PathView")
+    operator.find(text("screen.line-what", line=11, what=opening("desk.rapid-into-stock")), on="PathView")
     assert operator.slides[:2] == slides
     assert operator.state == "DRIVES OFF"
 

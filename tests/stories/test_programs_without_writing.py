@@ -7,6 +7,8 @@ import pytest
 from tests.stories.conftest import Story
 from tests.stories.operator import Operator
 from tests.stories.ways_of_input import PANEL, WAYS, Hand
+from tests.texts import fragment
+from tests.texts import text as wording
 
 LIST = "SHAPES  ·  THOSE OF THIS PROGRAM BY LINE"
 NECK, PIN = "M60 0 V10 H40 V15 H20 V0", "M120 0 V12 H100 V0"  # 30 mm across; 24 across
@@ -32,16 +34,16 @@ def test_a_program_is_made_of_shapes(story: Story, way: str) -> None:
     operator = story.begins()
     hand = Hand(operator, way)
     hand.function("F2", "FILE")
-    operator.sees("FILE TO BE PROCESSED")
+    operator.sees(wording("screen.file-to-be-processed"))
     hand.function("F2", "FILE")
     operator.opens("PROGRAMS")
     if way != "keys":
         hand.press("FIND OR NEW NAME", "SheetPanel")
     hand.types("zq", "LetterPad")
-    operator.sees("F3 BEGINS A NEW ONE")
+    operator.sees(fragment("programs.none-of-that-name"))
     hand.function("F3", "EDIT")
     hand.function("F1", "CREATE")
-    operator.sees("F3 SAVES AND PUTS")
+    operator.sees(fragment("editor.saves-and-loads"))
     hand.shapes()
     operator.sees(LIST)
     hand.row("N   HEAD", "how the program begins", "n")
@@ -54,7 +56,7 @@ def test_a_program_is_made_of_shapes(story: Story, way: str) -> None:
     hand.function("F2", "WRITE")
     operator.sees(LIST)
     hand.function("F10", "BACK")
-    operator.sees("F3 SAVES AND PUTS")
+    operator.sees(fragment("editor.saves-and-loads"))
     hand.shapes()
     operator.until(lambda: operator.shows("FROM DIAMETER") and operator.shows(".55"), "the form again")
     hand.function("F10", "BACK")
@@ -92,13 +94,13 @@ def test_a_program_is_made_of_a_drawing(story: Story, way: str) -> None:
         hand.press("axle.svg", "SheetPanel")
     hand.function("F3", "EDIT")
     hand.function("F1", "CREATE")
-    operator.sees("LEFT AND RIGHT CHOOSE")
+    operator.sees(fragment("stories.left-and-right"))
     if way == "keys":
         operator.keys("Down", "Down", "Right")
     else:
         hand.press("2", "SketchPanel")
     operator.sees("◂ 2 ▸")
-    operator.sees("LEFT AND RIGHT CHOOSE")
+    operator.sees(fragment("stories.left-and-right"))
     hand.function("F2", "WRITE")
     operator.sees(LIST)
     hand.function("F10", "BACK")

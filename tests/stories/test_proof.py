@@ -6,6 +6,7 @@ import pytest
 
 from tests.stories.conftest import Story
 from tests.stories.operator import Operator
+from tests.texts import text
 
 TOOLS = {1: (0.0, 0.0)}
 HEAD = "G90G94F300\nT1\nM03S600\nX.5Z.5\n"
@@ -18,7 +19,7 @@ def is_refused(operator: Operator, line: int, why: str, remedy: str) -> None:
 
     def told() -> bool:
         prompt = operator.prompt
-        return prompt.startswith(f"WILL NOT RUN: LINE {line}: ") and why in prompt
+        return prompt.startswith(text("screen.will-not-run", why=f"LINE {line}: ")) and why in prompt
 
     operator.until(told, f"the refusal of line {line} with {why!r}")
     operator.sees(remedy)
@@ -57,8 +58,8 @@ def test_a_mistake_that_breaks_metal_is_told_with_its_line_and_remedy(
 def test_a_program_that_names_no_tool_may_start_and_says_what_to_look_at(story: Story) -> None:
     operator = story.begins("G90G94F300\nM03S600\nX.5Z.5\nF20Z.3\nM30\n", tools=TOOLS)
     operator.drives_on()
-    operator.sees("LINE 4: This move cuts with no tool")
-    assert "TO START" in operator.prompt
+    operator.sees(text("screen.line-what", line=4, what=text("desk.cuts-without-tool").partition(":")[0]))
+    assert text("screen.to-start") in operator.prompt
 
 
 def test_a_bar_program_whose_branches_are_good_runs_either_way(story: Story) -> None:

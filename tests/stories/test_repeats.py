@@ -7,6 +7,7 @@ import pytest
 from core.store.store import Store
 from tests.stories.conftest import INCH, Story
 from tests.stories.operator import Operator
+from tests.texts import fragment, opening, text
 
 PART = "G90G94T1\nM03S600\nG01X.5Z.5F5\nX0Z0\nM30\n"
 TOOLS = {1: (0.0, 0.0)}
@@ -19,7 +20,7 @@ def ready(story: Story) -> Operator:
     story.server.repeats(200, 15)
     operator = story.begins(PART, tools=TOOLS)
     operator.drives_on()
-    operator.until(lambda: "TO START" in operator.prompt, "ready to start")
+    operator.until(lambda: text("screen.to-start") in operator.prompt, "ready to start")
     return operator
 
 
@@ -30,7 +31,7 @@ def test_a_taped_palm_starts_nothing(story: Story, held: str, other: str) -> Non
     operator.during(HELD)
     operator.down(other)
     operator.keeps(lambda: operator.state == "READY", 1.0, "no start")
-    operator.sees("LET BOTH GO")
+    operator.sees(fragment("stories.palm-held-too-long"))
     operator.up(other)
     operator.down(other)
     operator.keeps(lambda: operator.state == "READY", 0.7, "no start by the other palm alone")
@@ -67,14 +68,14 @@ def test_reset_held_never_gives_a_program_up(story: Story) -> None:
     operator.reaches("FEED HOLD")
     operator.holds("r", HELD)
     assert operator.state == "FEED HOLD"
-    operator.sees("PRESS Y TO GIVE THE PROGRAM UP")
+    operator.sees(fragment("screen.give-up-program"))
     for _ in range(3):
         operator.key("r")
     operator.down("r")
     operator.key("y")  # while the key that asked is down it is no answer
     operator.up("r")
     operator.keeps(lambda: operator.state == "FEED HOLD", 0.5, "the program")
-    operator.answers("r", "PRESS Y TO GIVE THE PROGRAM UP", lambda: operator.state == "READY")
+    operator.answers("r", fragment("screen.give-up-program"), lambda: operator.state == "READY")
 
 
 def test_an_answer_typed_with_the_question_is_none(story: Story) -> None:
@@ -127,7 +128,7 @@ def test_return_held_switches_no_output(story: Story) -> None:
     before = operator.machine["outputs"]
     operator.holds("Return", HELD)
     operator.keys("Return", "Return")
-    asked = "PRESS Y TO SWITCH coolant ON"
+    asked = text("screen.switch-on", name="coolant")
     operator.sees(asked)
     assert operator.machine["outputs"] == before
     operator.answers("Return", asked, lambda: "coolant" in operator.machine["outputs"])
@@ -144,9 +145,11 @@ def test_delete_held_deletes_nothing(story: Story) -> None:
     operator.sees("mine.nc")
     operator.holds("F6", HELD)
     operator.keys("F6", "F6")
-    operator.sees("PRESS Y TO DELETE mine.nc")
+    operator.sees(opening("programs.delete", name="mine.nc"))
     assert (programs / "mine.nc").exists()
-    operator.answers("F6", "PRESS Y TO DELETE mine.nc", lambda: not (programs / "mine.nc").exists())
+    operator.answers(
+        "F6", opening("programs.delete", name="mine.nc"), lambda: not (programs / "mine.nc").exists()
+    )
 
 
 def test_f10_held_leaves_no_text_unsaved(story: Story) -> None:
@@ -173,7 +176,7 @@ def test_offsets_are_not_cleared_by_a_held_key(story: Story) -> None:
     operator.opens("SECONDARY OFFSETS")
     operator.holds("c", HELD)
     operator.keys("c", "c")
-    operator.sees("PRESS Y TO CLEAR ALL 32")
+    operator.sees(fragment("screen.clear-secondary"))
     with operator.store() as store:
         assert 5 in store.secondary()
 
@@ -181,7 +184,7 @@ def test_offsets_are_not_cleared_by_a_held_key(story: Story) -> None:
         with operator.store() as store:
             return not store.secondary()
 
-    operator.answers("c", "PRESS Y TO CLEAR ALL 32", cleared)
+    operator.answers("c", fragment("screen.clear-secondary"), cleared)
 
 
 def test_a_switch_held_turns_once(story: Story) -> None:
@@ -193,13 +196,13 @@ def test_a_switch_held_turns_once(story: Story) -> None:
 def test_text_repeats_in_a_field(story: Story) -> None:
     operator = ready(story)
     operator.key("F2")
-    operator.sees("FILE TO BE PROCESSED")
+    operator.sees(text("screen.file-to-be-processed"))
     operator.holds("x", 1.0)
     operator.until(lambda: operator.screen["field"].count("x") > 5, "a row of letters")
     operator.holds("BackSpace", 1.5)
     operator.until(lambda: operator.screen["field"].count("x") == 0, "gone again")
     operator.holds("Escape", 0.6)  # closes the prompt, and goes no further
-    assert not operator.shows("FILE TO BE PROCESSED")
+    assert not operator.shows(text("screen.file-to-be-processed"))
 
 
 def test_home_held_homes_nothing(story: Story) -> None:
@@ -213,7 +216,7 @@ def test_home_held_homes_nothing(story: Story) -> None:
     operator.opens("JOG")
     operator.holds("Home", HELD)
     operator.keys("Home", "Home")
-    operator.sees("PRESS RETURN FOR ALL")
+    operator.sees(fragment("jog.home"))
     assert operator.state == "READY"
-    operator.answers("Home", "PRESS RETURN FOR ALL", lambda: operator.state != "READY", yes="Return")
+    operator.answers("Home", fragment("jog.home"), lambda: operator.state != "READY", yes="Return")
     operator.reaches("HOMING")

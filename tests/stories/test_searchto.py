@@ -10,6 +10,7 @@ import pytest
 
 from tests.stories.conftest import Story
 from tests.stories.operator import INCH, Operator
+from tests.texts import fragment, opening, text
 
 TOOLS = {1: (-0.5, -2.0), 2: (-0.5, -2.0)}
 GROOVES = (
@@ -26,6 +27,11 @@ def tip(operator: Operator) -> tuple[float, float]:
     """X (a diameter) and Z of the tip in the part's frame, inches."""
     x, z = operator.slides[:2]
     return 2 * (x / INCH + 0.5), z / INCH + 2.0
+
+
+def state_at(line: int, number: int, count: int) -> str:
+    """Return the title of the state at a line in one of its passes."""
+    return f"{text('search.state-at-line', line=line)}, {text('search.pass', number=number, count=count)}"
 
 
 def wakes(operator: Operator) -> None:
@@ -55,13 +61,13 @@ def stopped_there(operator: Operator) -> None:
     in_the_second_groove(operator)
     operator.key("e")
     operator.reaches("E-STOP")
-    operator.answers("u", "PRESS Y TO TWIST THE E-STOP OUT", lambda: operator.state != "E-STOP")
+    operator.answers("u", fragment("screen.twist-e-stop-out"), lambda: operator.state != "E-STOP")
     wakes(operator)
     assert 0.7 < tip(operator)[0] < 1.0
 
 
 def confirms(operator: Operator) -> None:
-    operator.presses("F10", lambda: operator.shows("CONFIRMED"))
+    operator.presses("F10", lambda: operator.shows(fragment("search.confirmed")))
     operator.during(1.0)  # what starts was read before it starts
     operator.cycle_start()
     operator.until(lambda: operator.state != "READY", "the start")
@@ -80,11 +86,11 @@ def test_a_boring_line_is_chosen_with_the_tool_in_a_groove_and_x_goes_out_first(
     stopped_there(operator)
     since = len(operator.seen)
     to_searchto(operator)
-    operator.sees("LINE 8 WAS RUNNING")
+    operator.sees(fragment("search.broke-off", line=8))
     operator.enters("16")  # inside the bore, which is not bored yet
     operator.sees("begins in metal")
     operator.enters("14")
-    operator.sees("STATE AT LINE 14")
+    operator.sees(text("search.state-at-line", line=14))
     operator.sees("1 X")
     confirms(operator)
     operator.until(lambda: tip(operator)[1] > 0.9, "Z clear")
@@ -96,9 +102,9 @@ def test_only_the_way_out_is_asked_for_held_and_asked_for_again(story: Story) ->
     stopped_there(operator)
     since, stood = len(operator.seen), operator.rests()
     to_searchto(operator)
-    operator.presses("F4", lambda: operator.shows("LOOK AT THE WAY OUT"))
-    operator.sees("LOOK AT THE WAY OUT OF THE PART")
-    operator.sees("THE TOOL LEAVES THE PART AT 20.00 in/min")
+    operator.presses("F4", lambda: operator.shows(fragment("search.look-at-way-out")))
+    operator.sees(fragment("search.look-at-way-out"))
+    operator.sees(text("search.leaves-part", feed="20.00 in/min"))
     operator.cycle_start()  # not before it was confirmed
     operator.keeps(lambda: operator.is_at(stood), 0.5, "nothing moves")
     confirms(operator)
@@ -118,7 +124,7 @@ def test_only_the_way_out_is_asked_for_held_and_asked_for_again(story: Story) ->
     assert isinstance(kept, dict)
     assert kept["line"] == 8
     operator.key("F4")
-    operator.sees("T1 STANDS CLEAR OF THE PART ALREADY")
+    operator.sees(text("search.tool-is-clear", tool=1))
 
 
 def test_the_loop_goes_on_in_the_pass_that_broke_off_and_makes_the_part(story: Story) -> None:
@@ -127,7 +133,7 @@ def test_the_loop_goes_on_in_the_pass_that_broke_off_and_makes_the_part(story: S
     since = len(operator.seen)
     to_searchto(operator)
     operator.key("Return")
-    operator.sees("STATE AT LINE 8, PASS 2 OF 3")
+    operator.sees(state_at(8, 2, 3))
     confirms(operator)
     operator.until(lambda: operator.machine["parts"] == 1, "the part")
     cut = {
@@ -142,20 +148,20 @@ def test_the_loop_goes_on_in_the_pass_that_broke_off_and_makes_the_part(story: S
 def test_bar_work_is_entered_at_part_three_by_keys_and_by_the_mouse(story: Story) -> None:
     operator = story.begins(THREE, tools=TOOLS)
     wakes(operator)
-    operator.until(lambda: "TO START" in operator.prompt, "the proof")
+    operator.until(lambda: text("screen.to-start") in operator.prompt, "the proof")
     to_searchto(operator)
     operator.enters("7")
-    operator.sees("STATE AT LINE 7, PASS 1 OF 3")
+    operator.sees(state_at(7, 1, 3))
     operator.key("Right")
-    operator.sees("STATE AT LINE 7, PASS 2 OF 3")
+    operator.sees(state_at(7, 2, 3))
     operator.clicks("▶")
-    operator.sees("STATE AT LINE 7, PASS 3 OF 3")
+    operator.sees(state_at(7, 3, 3))
     operator.sees("R0.00000 Z\u22120.20000")  # G10 of two parts
     operator.clicks("◀")
-    operator.sees("PASS 2 OF 3")
+    operator.sees(text("search.pass", number=2, count=3))
     operator.key("Escape")
     operator.enters("7p3")
-    operator.sees("STATE AT LINE 7, PASS 3 OF 3")
+    operator.sees(state_at(7, 3, 3))
     since = len(operator.seen)
     confirms(operator)
     operator.until(lambda: operator.state == "READY" and operator.machine["line"] == 0, "the end")
@@ -175,8 +181,9 @@ def test_a_control_that_was_killed_in_a_groove_still_knows_the_way_out_of_it(sto
     assert isinstance(kept, dict), json.dumps(kept)
     again = story.begins(GROOVES)
     wakes(again)
-    again.until(lambda: "INTERRUPTED" in again.prompt or again.shows("INTERRUPTED"), "the job")
+    job = opening("desk.interrupted")
+    again.until(lambda: job in again.prompt or again.shows(job), "the job")
     to_searchto(again)
     again.key("F4")
     # The simulated slides stand at home again: clear of the part. A real one would stand in its groove.
-    again.sees("STANDS CLEAR OF THE PART ALREADY")
+    again.sees(fragment("search.tool-is-clear"))

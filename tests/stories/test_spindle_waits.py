@@ -6,10 +6,11 @@ from functools import partial
 
 from tests.stories.conftest import Story
 from tests.stories.operator import Operator
+from tests.texts import text as wording
 
 CUT = "G90G94T1\nM03S600\nG01X1.Z1.F60\nX0Z0\nM30\n"
 TOOLS = {1: (0.0, 0.0)}
-SAID = "THE SPINDLE STARTS AT 600 RPM FORWARD"
+SAID = wording("screen.spindle-starts", rpm=600, direction="FORWARD")
 
 
 def turns(operator: Operator) -> bool:
@@ -58,7 +59,7 @@ def test_single_block_gets_past_every_block(story: Story) -> None:
     operator = story.begins("G90G94T1\nG00X.3Z.3\nX.3\nX.3\nG01X.4F20\nX0Z0\nM30\n", tools=TOOLS)
     operator.drives_on()
     operator.key("s")
-    operator.until(lambda: "TO START" in operator.prompt, "ready to start")
+    operator.until(lambda: wording("screen.to-start") in operator.prompt, "ready to start")
     operator.cycle_start()
     for line in range(1, 7):  # T1 is a step of its own
         operator.until(partial(ended_at, operator, line), f"line {line}")

@@ -9,6 +9,7 @@ import pytest
 
 from tests.stories.conftest import INCH, Story
 from tests.stories.operator import Operator
+from tests.texts import fragment, text
 
 PART = "G90G94T1\nM03S600\nG01X2.Z2.F5\nX0Z0\nM30\n"
 TOOLS = {1: (0.0, 0.0)}
@@ -18,7 +19,7 @@ Stall = Callable[[Operator], "Iterator[None]"]
 def ready(story: Story) -> Operator:
     operator = story.begins(PART, tools=TOOLS)
     operator.drives_on()
-    operator.until(lambda: "TO START" in operator.prompt, "ready to start")
+    operator.until(lambda: text("screen.to-start") in operator.prompt, "ready to start")
     return operator
 
 
@@ -67,7 +68,7 @@ def test_two_palms_together_behind_a_stall_start_nothing(story: Story, stall: St
     operator = ready(story)
     with stall(operator):  # type: ignore[attr-defined]
         operator.cycle_start()
-    operator.sees("WAS FORGOTTEN")
+    operator.sees(fragment("screen.screen-stood-still"))
     operator.keeps(lambda: operator.state == "READY", 1.0, "no start")
 
 
@@ -133,7 +134,7 @@ def test_a_line_of_mdi_is_not_started_behind_a_stall(story: Story) -> None:
     operator.keys("F1", "F4")
     operator.opens("MDI")
     operator.enters("G90G94F5X.1")
-    operator.sees("READY, CYCLE START RUNS IT")
+    operator.sees(fragment("stories.line-ready"))
     with frozen(operator):
         operator.cycle_start()
     operator.keeps(lambda: operator.is_at((0.0, 0.0)), 1.0, "rest")
@@ -165,10 +166,10 @@ def test_the_mouse_stops_however_late(story: Story) -> None:
 def test_text_behind_a_stall_is_text(story: Story) -> None:
     operator = ready(story)
     operator.key("F2")
-    operator.sees("FILE TO BE PROCESSED")
+    operator.sees(text("screen.file-to-be-processed"))
     with frozen(operator):
         operator.writes("bush")
         operator.key("Return")
     operator.until(lambda: operator.screen["field"] == "bush", "what was typed")
-    operator.sees("FILE TO BE PROCESSED")
+    operator.sees(text("screen.file-to-be-processed"))
     assert operator.screen["texts"]

@@ -6,6 +6,7 @@ import pytest
 
 from tests.stories.conftest import Story
 from tests.stories.operator import Operator
+from tests.texts import fragment, text
 
 LONG = "G90G94T1\nM03S600\nG01X3.Z3.F5\nX0Z0\nM30\n"  # minutes
 TOOLS = {1: (0.0, 0.0)}
@@ -49,7 +50,7 @@ def test_the_letters_that_stop_do_so_with_any_modifier(story: Story) -> None:
 
 def released(operator: Operator) -> None:
     """The E-stop is twisted out by its own two keys, and the drives are on again."""
-    operator.answers("u", "PRESS Y TO TWIST", lambda: operator.state == "DRIVES OFF")
+    operator.answers("u", fragment("screen.twist-e-stop-out"), lambda: operator.state == "DRIVES OFF")
     operator.key("d")
     operator.reaches("READY")
 
@@ -72,7 +73,7 @@ def back_to_automatic(operator: Operator) -> None:
 
     def there() -> bool:
         if operator.page == "EDITOR":
-            operator.key("F6" if operator.shows("F6 LEAVES") else "F10")
+            operator.key("F6" if operator.shows(fragment("editor.leaves-unsaved")) else "F10")
         elif operator.page != "AUTOMATIC":
             operator.key("Escape")
         operator.during(0.2)
@@ -119,7 +120,7 @@ def test_a_stop_key_that_is_held_and_repeats(story: Story) -> None:
     operator.during(1.0)
     operator.cycle_start()  # a hold key that is held lets nothing go on
     operator.keeps(lambda: operator.state == "FEED HOLD", 0.6, "the hold")
-    operator.sees("IS HELD DOWN")
+    operator.sees(fragment("screen.stopping-key-held"))
     operator.up("Pause")
     operator.during(0.4)
     operator.cycle_start()
@@ -158,7 +159,7 @@ def test_the_file_prompt_is_no_hiding_place(story: Story) -> None:
     operator = story.begins(LONG, tools=TOOLS)
     operator.drives_on()
     operator.key("F2")
-    operator.sees("FILE TO BE PROCESSED")
+    operator.sees(text("screen.file-to-be-processed"))
     operator.writes("he e")
     operator.until(lambda: operator.screen["field"] == "he e", "the letters are text")
     assert operator.state == "READY"
@@ -214,7 +215,7 @@ def test_a_dead_key_before_it_takes_nothing_from_the_stop_key(story: Story) -> N
     operator.key("Scroll_Lock")
     operator.reaches("E-STOP")
     operator.key("F2")
-    operator.sees("FILE TO BE PROCESSED")
+    operator.sees(text("screen.file-to-be-processed"))
     released_in_a_field(operator)
 
 
@@ -223,5 +224,5 @@ def released_in_a_field(operator: Operator) -> None:
     operator.key("dead_circumflex")
     operator.key("Escape")
     operator.key("Escape")
-    operator.until(lambda: not operator.shows("FILE TO BE PROCESSED"), "the prompt is gone")
+    operator.until(lambda: not operator.shows(text("screen.file-to-be-processed")), "the prompt is gone")
     released(operator)

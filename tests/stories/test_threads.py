@@ -8,6 +8,8 @@ import pytest
 
 from tests.stories.conftest import INCH, Story
 from tests.stories.operator import Operator
+from tests.texts import shows
+from tests.texts import text as wording
 
 TOOLS = {4: (0.0, 0.0)}
 # Two passes of 20 turns, .025 in a side: X.262 is where they pull out to.
@@ -51,13 +53,15 @@ def test_the_spindle_stops_in_a_pass_and_the_tool_is_drawn_out(story: Story, how
     else:
         operator.breaks("spindle_bog", 0.0)
     operator.reaches("ALARM")
-    operator.sees("SPINDLE LOST IN A THREAD")
+    operator.sees(wording("stories.spindle-lost-in-thread").upper())
     operator.sees("the tool left the thread at Z")
     x, z, *_ = operator.rests()
     assert x == pytest.approx(OUT, abs=0.01)
     assert z < 0.0
     assert operator.machine["turning"] == 0 or operator.machine["rpm"] < 300
-    operator.until(lambda: any("left the thread" in text for text in operator.events("alarm")), "the log")
+    operator.until(
+        lambda: any(shows(text, "stories.left-thread") for text in operator.events("alarm")), "the log"
+    )
     operator.until(lambda: "205" in str(operator.status), "status.json")
 
 

@@ -6,6 +6,7 @@ import pytest
 
 from tests.stories.conftest import INCH, Story
 from tests.stories.operator import Operator
+from tests.texts import text
 
 PART = "(THREE OF THESE)\nG90G94T1\nM03S600\nM08\nG01X.2Z-.2F30\nX0Z0\nM09\nM05\nM30\n"
 
@@ -36,7 +37,7 @@ def at_the_end(operator: Operator) -> None:
     with operator.store() as store:
         assert store.parts("again.nc") == 3
         assert store.tools()[1].offset == (pytest.approx(0.0), pytest.approx(-1.0 * INCH))
-    operator.sees("TO START")
+    operator.sees(text("screen.to-start"))
 
 
 def test_by_keyboard(story: Story) -> None:
@@ -53,7 +54,7 @@ def test_by_keyboard(story: Story) -> None:
     operator.key("Escape")
     operator.opens("AUTOMATIC")
     operator.key("F2")
-    operator.sees("FILE TO BE PROCESSED")
+    operator.sees(text("screen.file-to-be-processed"))
     operator.writes("again")
     operator.key("Return")
     for part in (1, 2, 3):

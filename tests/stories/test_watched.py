@@ -6,6 +6,8 @@ import pytest
 
 from tests.stories.conftest import INCH, Story
 from tests.stories.operator import Operator
+from tests.texts import fragment
+from tests.texts import text as wording
 
 DWELL = "G90G94T1\nM03S600\nM08\nG01X.05Z0F20\nG04F5\nX.1\nM30\n"
 STOP = "G90G94T1\nM03S600\nM08\nG01X.05Z0F20\nM00\nX.1\nM30\n"
@@ -40,8 +42,8 @@ def test_half_a_second_of_stall_at_a_standstill_is_told_and_nothing_starts_unrea
     stalls(operator, 0.7)
     operator.until(lambda: operator.machine["outputs"] == ["collet"], "coolant off")
     operator.reaches("FEED HOLD" if text is DWELL else "PROGRAM STOP")
-    operator.sees("THE SPINDLE STARTS AT 600 RPM FORWARD")
-    operator.sees("COOLANT COMES ON")
+    operator.sees(wording("screen.spindle-starts", rpm=600, direction="FORWARD"))
+    operator.sees(wording("screen.output-comes-on", name="COOLANT"))
     operator.until(lambda: operator.machine["rpm"] == 0, "a spindle that stands")
     operator.keeps(lambda: operator.is_at((0.05 * INCH, 0.0)), 1.0, "rest")
     operator.cycle_start()
@@ -49,7 +51,7 @@ def test_half_a_second_of_stall_at_a_standstill_is_told_and_nothing_starts_unrea
     operator.until(lambda: not operator.is_at((0.05 * INCH, 0.0)), "feeding")
     assert operator.machine["rpm"] > 500
     operator.reaches("READY")
-    operator.sees("NOT COUNTED AS A PART")
+    operator.sees(fragment("screen.not-counted"))
     assert operator.machine["parts"] == 0
     operator.until(lambda: len(operator.events("uncounted")) == 1, "told in the store")
     (said,) = operator.events("disturbed")
@@ -64,7 +66,7 @@ def test_a_slide_jammed_beside_its_place_does_not_stand_in_ready(story: Story) -
     operator.breaks("jam", "Z")
     operator.breaks("push", "Z", 1.9)
     operator.reaches("ALARM")
-    operator.sees("AN AXIS IS NOT WHERE IT OUGHT TO STAND")
+    operator.sees(wording("stories.axis-out-of-place").upper())
     operator.breaks("jam", "Z", False)
     operator.keeps(lambda: operator.is_at((0.0, 1.9)), 1.0, "no leap when it comes free")
     operator.until(lambda: operator.status["alarms"] != [], "status.json")
@@ -93,7 +95,7 @@ def test_a_slide_pushed_by_hand_with_the_drives_off_is_told(story: Story) -> Non
     operator.reaches("DRIVES OFF")
     operator.during(1.0)
     operator.breaks("push", "X", 0.5)
-    operator.sees("AN AXIS HAS MOVED UNASKED")
+    operator.sees(wording("stories.axis-moved-unasked").upper())
 
 
 @pytest.mark.parametrize(("port", "call"), [("io", "safe"), ("axes", "stop"), ("spindle", "coast")])
@@ -108,16 +110,16 @@ def test_estop_with_a_driver_that_breaks_leaves_nothing_on_that_obeys(
     operator.until(lambda: operator.machine["turning"] == 0, "a spindle that stands")
     operator.rests()
     assert operator.machine["lit"] == ["collet"]
-    operator.sees("THE MACHINE COULD NOT BE MADE SAFE")
-    operator.sees("PRESS E-STOP")
+    operator.sees(wording("stories.not-made-safe").upper())
+    operator.sees(wording("stories.press-e-stop"))
 
 
 def test_a_control_whose_thread_dies_in_a_cut_stops_and_the_screen_says_so(story: Story) -> None:
     operator = story.begins(CUT, tools=TOOLS)
     cutting(operator)
     operator.ask("kill")
-    operator.sees("CONTROL SILENT")
-    operator.sees("THE CONTROL DOES NOT ANSWER")
+    operator.sees(wording("stories.control-silent"))
+    operator.sees(fragment("stories.control-does-not-answer"))
     operator.until(lambda: operator.machine["turning"] == 0, "a spindle that stands")
     operator.rests()
     assert operator.machine["lit"] == ["collet"]
