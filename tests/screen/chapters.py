@@ -9,6 +9,7 @@ from app.editor.editor_view import EditorPage
 from app.screen import page_table
 from core.executor.snapshot import State
 from tests.screen.day import NEAR, Day, Key
+from tests.texts import text
 
 NAME = "pin9"
 PROGRAM = """\
@@ -80,7 +81,7 @@ def write_program(day: Day) -> None:
     day.key(Key.Key_F2)
     day.type(NAME)
     day.key(Key.Key_Return, Key.Key_X, Key.Key_F3)
-    assert day.prompt == "PRESS F1 TO CREATE A NEW FILE, ESC TO ABORT"
+    assert day.prompt == text("screen.new-file")
     day.key(Key.Key_F1)
     day.sees(lambda: day.page == page_table.EDITOR)
     for number, line in enumerate(PROGRAM.replace("\nX1.1\n", "\nX1.1.5\n").splitlines()):

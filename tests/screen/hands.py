@@ -19,6 +19,7 @@ from app.screen.theme import DARK
 from app.screen.window_frame import Frame
 from core.executor.snapshot import State
 from tests.screen.fake import FakeMachine
+from tests.texts import text as wording
 
 Key = Qt.Key
 LIMIT = 60_000  # ms after which what should have happened has not
@@ -100,4 +101,4 @@ class Hands:
         self.key(Key.Key_F2)
         self.type(name)
         self.key(Key.Key_Return)
-        self.sees(lambda: self.prompt().startswith("TO START"))
+        self.sees(lambda: self.prompt().startswith(wording("screen.to-start")))

@@ -16,6 +16,7 @@ from core.interpreter.job_setup import SecondaryOffset
 from core.language.source import Source
 from core.store.store import Store
 from core.store.store_rows import Kind
+from tests.texts import shows
 
 
 @pytest.fixture(autouse=True)
@@ -83,9 +84,9 @@ def test_offsets_of_a_file_are_shown_and_not_changed(home: Path) -> None:
     file = str(SHIPPED.parents[1] / "programs" / "offsets.toml")
     book = book_of(chosen_offsets(file), journal)
     assert sorted(book.tools) == [1, 2, 3, 4, 6, 7, 8, 20]
-    assert "READ ONLY" in book.change(Kind.TOOL, 1, {"x": 1.0}, "try")
-    assert "READ ONLY" in book.clear(Kind.SECONDARY, "C")
-    assert "READ ONLY" in book.undo(Kind.TOOL)
+    assert shows(book.change(Kind.TOOL, 1, {"x": 1.0}, "try"), "screen.offsets-read-only")
+    assert shows(book.clear(Kind.SECONDARY, "C"), "screen.offsets-read-only")
+    assert shows(book.undo(Kind.TOOL), "screen.offsets-read-only")
     assert book.history(Kind.TOOL) == ()
     journal.close()
     assert stored_offsets() == NONE

@@ -22,6 +22,7 @@ from drivers.lookalikes.grblhal_far_end import TcpEnd, serve
 from drivers.lookalikes.grblhal_firmware import Firmware
 from tests.screen.hands import Key
 from tests.screen.yes import yes
+from tests.texts import text as wording
 
 LIMIT = 60_000  # ms of a loaded computer
 PROGRAM = "G90G94\nM03S600\nM08\nG01X.4Z-.4F30\nX0.Z0.\nM30\n"
@@ -96,7 +97,7 @@ def test_a_part_a_hold_a_reset_and_the_cable_out(
         qtbot.waitUntil(so, timeout=LIMIT)
 
     def start() -> None:
-        qtbot.waitUntil(lambda: frame.prompt.text.startswith("TO START"), timeout=LIMIT)
+        qtbot.waitUntil(lambda: frame.prompt.text.startswith(wording("screen.to-start")), timeout=LIMIT)
         QTest.keyClick(window, Key.Key_F12)
 
     sees(State.DISABLED)

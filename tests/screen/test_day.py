@@ -21,6 +21,7 @@ from tests.screen.chapters import (
     write_program,
 )
 from tests.screen.day import Day, Key, begun
+from tests.texts import shows, text
 
 
 @pytest.fixture
@@ -37,7 +38,7 @@ def shift_in_the_program(day: Day) -> None:
     day.type("G10Z1.")
     assert not [d for d in chapters.editor(day).findings.findings.diagnostics if d.severity.value == "error"]
     day.key(Key.Key_F3)
-    day.sees(lambda: day.prompt.startswith("TO START"))
+    day.sees(lambda: day.prompt.startswith(text("screen.to-start")))
 
 
 def shift_out_of_it(day: Day) -> None:
@@ -54,7 +55,7 @@ def shift_out_of_it(day: Day) -> None:
         day.sees(page.field.isVisible)
     assert page.field.toPlainText() == chapters.PROGRAM + "\n"
     day.key(Key.Key_F3)
-    day.sees(lambda: day.prompt.startswith("TO START"))
+    day.sees(lambda: day.prompt.startswith(text("screen.to-start")))
 
 
 def dry_run(day: Day) -> None:
@@ -97,12 +98,12 @@ def single_block_through(day: Day) -> None:
 def test_from_an_empty_folder_to_the_first_good_part(day: Day) -> None:
     drives_on(day)
     write_program(day)
-    day.sees(lambda: "NO OFFSET WAS EVER SET FOR T1, T2" in day.prompt)
+    day.sees(lambda: shows(day.prompt, "screen.no-offset-set", tools="T1, T2"))
     day.palms()
     assert day.shot.state is State.IDLE  # a tool that nobody has set is not run
     set_tools(day)
     correct(day, ".5-.502", "2/2000")
-    day.sees(lambda: day.prompt.startswith("TO START"))
+    day.sees(lambda: day.prompt.startswith(text("screen.to-start")))
     row = day.store.secondary()[1]
     assert (row.x / 25.4, row.z / 25.4) == pytest.approx(D1, abs=1e-9)
     dry_run(day)

@@ -27,6 +27,8 @@ from tests.screen.chapters import (
 )
 from tests.screen.day import NEAR, Day, Key, begun
 from tests.screen.yes import twist_out, yes
+from tests.texts import begins, pattern, shows
+from tests.texts import text as wording
 
 TURNING = 6  # the line that turns the .9 diameter
 PARTS = "pin9.nc"
@@ -41,7 +43,7 @@ def day(qtbot: QtBot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterat
         write_program(day)
         set_tools(day)
         correct(day, "-.002", ".001")
-        day.sees(lambda: day.prompt.startswith("TO START"))
+        day.sees(lambda: day.prompt.startswith(wording("screen.to-start")))
         yield day
 
 
@@ -91,7 +93,7 @@ def test_five_parts_with_a_wear_correction_between(day: Day) -> None:
     day.reaches(State.IDLE)
     assert made(day) == "5/5"
     assert not day.shot.cycle_repeat
-    assert day.prompt == "TARGET REACHED: 5 OF 5 PARTS"
+    assert day.prompt == wording("screen.target-reached", count=5, target=5)
     assert day.count("part") == 5
     assert day.journal.parts(PARTS) == 5
     assert [change.why for change in day.store.history()][:2] == ["X -.001", "X -.002 Z .001"]
@@ -123,9 +125,9 @@ def test_a_correction_that_cannot_be_run_stops_at_the_end_of_the_part(day: Day) 
     day.palms()
     day.until(lambda: made(day) == "1")
     correct(day, "-9")
-    day.sees(lambda: day.prompt.startswith("NO NEXT PART WITH THE CHANGED OFFSETS: "))
+    day.sees(lambda: begins(day.prompt, "screen.no-next-part"))
     day.reaches(State.IDLE)
-    day.sees(lambda: "WILL NOT RUN" in day.prompt or "NO REPEAT" in day.prompt.upper())
+    day.sees(lambda: shows(day.prompt, "screen.will-not-run") or "NO REPEAT" in day.prompt.upper())
     assert day.count("part") == 2
     day.palms()
     assert day.shot.state is State.IDLE
@@ -141,7 +143,7 @@ def test_a_stop_in_the_middle_and_the_second_tool_by_searchto(day: Day) -> None:
     day.run(1.0)
     assert day.slides == pytest.approx(stood, abs=NEAR / 5)
     day.key(Key.Key_R)
-    assert "GIVE THE PROGRAM UP" in day.prompt
+    assert shows(day.prompt, "screen.give-up-program")
     yes(day.window)
     day.reaches(State.IDLE)
     day.key(Key.Key_S)  # nobody lets the first restart of the day run through
@@ -159,7 +161,7 @@ def test_a_stop_in_the_middle_and_the_second_tool_by_searchto(day: Day) -> None:
     assert day.slides == pytest.approx(ENDS[15], abs=NEAR)
     # The rest of the turning was left out: no part, and that is said.
     assert (day.count("part"), day.count("uncounted")) == (0, 1)
-    assert day.prompt.startswith("NOT COUNTED AS A PART: a restart left something of it out")
+    assert day.prompt.startswith(wording("screen.not-counted", why=wording("screen.restart-left-out")))
 
 
 def search(day: Day, text: str, line: str) -> None:
@@ -182,7 +184,7 @@ def search(day: Day, text: str, line: str) -> None:
 
 def restarts(day: Day) -> None:
     """What was found is proved and waits for the palms."""
-    assert day.prompt.startswith("TO START THE RESTART PRESS BOTH PALM BUTTONS")
+    assert begins(day.prompt, "search.start-restart", start=pattern("screen.both-palms"))
     day.palms()
 
 
@@ -198,7 +200,7 @@ def test_an_estop_and_the_part_is_finished_from_the_line_that_was_running(day: D
     day.key(Key.Key_D)
     day.reaches(State.IDLE)
     day.key(Key.Key_F6)
-    assert day.prompt.startswith(f"LINE {TURNING} WAS RUNNING WHEN THE PROGRAM BROKE OFF")
+    assert begins(day.prompt, "search.broke-off", line=TURNING)
     day.key(Key.Key_F1, Key.Key_F2)
     search(day, "", str(TURNING))
     restarts(day)
@@ -220,7 +222,7 @@ def test_mdi_between_two_parts_keeps_the_spindle(day: Day) -> None:
     assert day.shot.rpm_command == 500
     day.key(Key.Key_F3)
     assert day.page == page_table.AUTOMATIC
-    assert day.prompt.startswith("THE SPINDLE IS ON")
+    assert begins(day.prompt, "screen.spindle-on-no-edit")
     day.palms()
     assert turning(day) == pytest.approx(0.45 - 0.001 + T1[0], abs=NEAR)
     day.reaches(State.IDLE)

@@ -19,6 +19,7 @@ from tests.attached import attached
 from tests.screen.chapters import drives_on
 from tests.screen.day import Day, Key, begun
 from tests.screen.yes import twist_out, yes
+from tests.texts import text
 
 CTRL = Qt.KeyboardModifier.ControlModifier
 TEXT = "G90G94F10\nX1Z1\nM30\n"
@@ -128,7 +129,7 @@ def test_jog_first_takes_an_entry_back_and_stops_what_is_held(day: Day) -> None:
     assert day.page == page_table.JOG
     day.reaches(State.IDLE)
     QTest.keyRelease(day.window, Key.Key_Right)
-    assert day.desk.notice == "ANOTHER KEY HAS ENDED THE JOG"
+    assert day.desk.notice == text("screen.jog-ended-by-key")
     day.key(Key.Key_Escape)
     assert (day.page, day.desk.notice) == (page_table.JOG, "")
     day.key(Key.Key_Escape)
@@ -148,7 +149,7 @@ def edited(day: Day) -> EditorPage:
     day.key(Key.Key_F2)
     day.type("slow")
     day.key(Key.Key_Return)
-    day.sees(lambda: day.prompt.startswith("TO START"))
+    day.sees(lambda: day.prompt.startswith(text("screen.to-start")))
     day.key(Key.Key_F3)
     day.sees(lambda: day.page == page_table.EDITOR)
     page = day.frame.page
@@ -165,7 +166,7 @@ def test_the_editor_is_left_where_there_is_nothing_to_save(day: Day, tmp_path: P
     assert day.page == page_table.EDITOR
     day.key(Key.Key_Escape)
     day.sees(lambda: day.page == page_table.AUTOMATIC)
-    assert day.prompt.startswith("TO START")
+    assert day.prompt.startswith(text("screen.to-start"))
     assert (tmp_path / "programs" / "slow.nc").read_text(encoding="utf-8") == TEXT
 
 
@@ -188,7 +189,7 @@ def test_a_running_cycle_is_held_from_jog_and_from_automatic(day: Day) -> None:
     day.key(Key.Key_F2)
     day.type("slow")
     day.key(Key.Key_Return)
-    day.sees(lambda: day.prompt.startswith("TO START"))
+    day.sees(lambda: day.prompt.startswith(text("screen.to-start")))
     day.palms()
     day.reaches(State.RUN)
     day.key(Key.Key_Escape)

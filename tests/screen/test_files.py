@@ -27,6 +27,8 @@ from tests.screen.desks import SAMPLES, desk_on
 from tests.screen.fake import FakeMachine
 from tests.screen.hands import Hands, Key, window_on
 from tests.screen.yes import yes
+from tests.texts import begins, fragment, pattern, shows
+from tests.texts import text as wording
 
 
 @dataclass
@@ -83,7 +85,7 @@ def test_a_name_is_found_by_typing_and_loaded_by_return(shop: Shop) -> None:
     shop.sees(lambda: shop.programs.path.picture is not None)
     shop.key(Key.Key_Return)
     assert shop.frame.page is shop.page
-    shop.sees(lambda: shop.prompt().startswith("TO START"))
+    shop.sees(lambda: shop.prompt().startswith(wording("screen.to-start")))
     assert any(isinstance(command, LoadJob) for command in shop.machine.posted)
     shop.sees(lambda: shop.journal is not None and any(row.proof for row in shop.journal.runs()))
     shop.open_list()
@@ -97,7 +99,7 @@ def test_no_other_program_while_one_is_under_way_and_h_holds(shop: Shop) -> None
     shop.machine.now = replace(shop.machine.now, state=State.HOLD)
     assert not shop.programs.takes("h")
     shop.key(Key.Key_Return)
-    assert "UNDER WAY" in shop.desk.notice
+    assert shows(shop.desk.notice, "screen.program-runs-no-other")
     assert shop.programs.model.find.text == ""
 
 
@@ -150,7 +152,7 @@ def test_it_is_sorted_by_name_date_run_parts_and_size(shop: Shop) -> None:
 def test_a_copy_gets_a_name_and_the_ending(shop: Shop) -> None:
     shop.open_list()
     shop.key(Key.Key_F4)
-    shop.sees(lambda: shop.programs.table.sheet.question == "NAME OF THE COPY?")
+    shop.sees(lambda: shop.programs.table.sheet.question == wording("programs.name-of-copy"))
     shop.key(Key.Key_Delete)
     shop.type("gamma")
     shop.key(Key.Key_Return)
@@ -177,10 +179,10 @@ def test_the_name_that_is_offered_becomes_the_same_again(name: str, offered: str
 @pytest.mark.parametrize(
     ("name", "why"),
     [
-        ("BETA.NC", "beta.nc IS THERE ALREADY"),
-        ("", "NOTHING IS ENTERED"),
-        ("a/b", "cannot name a program"),
-        (".x", "WOULD BE HIDDEN"),
+        ("BETA.NC", wording("screen.name-is-there", name="beta.nc")),
+        ("", wording("programs.nothing-entered")),
+        ("a/b", fragment("programs.bad-name")),
+        (".x", fragment("programs.would-be-hidden")),
     ],
 )
 def test_a_name_that_will_not_do_is_refused(shop: Shop, name: str, why: str) -> None:
@@ -210,7 +212,7 @@ def test_deleting_asks_once_and_keeps_the_text(shop: Shop) -> None:
     text = (shop.own / "alpha.nc").read_bytes()
     shop.open_list()
     shop.key(Key.Key_F6)
-    assert shop.prompt().startswith("PRESS Y TO DELETE alpha.nc")
+    assert begins(shop.prompt(), "programs.delete", name="alpha.nc")
     shop.key(Key.Key_Escape)
     shop.key(Key.Key_F6)
     shop.key(Key.Key_F6)
@@ -226,7 +228,7 @@ def test_a_sample_stays_as_it_is(shop: Shop, key: Key) -> None:
     shop.type("knob")
     shop.sees(lambda: shop.rows() == ["knob.nc"])
     shop.key(key)
-    assert shop.prompt() == "A SAMPLE IS LEFT AS IT IS: COPY IT FIRST (F4)"
+    assert shop.prompt() == wording("programs.sample-stays")
 
 
 def test_the_program_under_way_is_not_deleted(shop: Shop) -> None:
@@ -234,7 +236,7 @@ def test_the_program_under_way_is_not_deleted(shop: Shop) -> None:
     shop.machine.now = replace(shop.machine.now, state=State.HOLD)
     shop.open_list()
     shop.key(Key.Key_F6)
-    assert shop.desk.notice == "alpha.nc IS UNDER WAY: LET IT END FIRST"
+    assert shop.desk.notice == wording("screen.program-being-cut", name="alpha.nc")
 
 
 def test_out_to_a_stick_and_what_stands_there_is_asked_for(shop: Shop) -> None:
@@ -244,19 +246,19 @@ def test_out_to_a_stick_and_what_stands_there_is_asked_for(shop: Shop) -> None:
     shop.settle()
     shop.open_stick()
     shop.key(Key.Key_F4)
-    shop.sees(lambda: "SAFE TO REMOVE" in shop.prompt())
+    shop.sees(lambda: shows(shop.prompt(), "programs.copied-safe"))
     assert (shop.stick / "alpha.nc").read_bytes() == (shop.own / "alpha.nc").read_bytes()
     assert [path.name for path in shop.stick.iterdir()] == ["alpha.nc"]
     (shop.stick / "alpha.nc").write_text("M30\n")
     shop.settle()
     shop.key(Key.Key_F4)
-    shop.sees(lambda: "THERE ALREADY WITH ANOTHER TEXT" in shop.prompt())
+    shop.sees(lambda: shows(shop.prompt(), "programs.other-text-there"))
     shop.key(Key.Key_F4)
     shop.settle()
     assert (shop.stick / "alpha.nc").read_text() == "M30\n"
-    shop.sees(lambda: "THERE ALREADY WITH ANOTHER TEXT" in shop.prompt())
+    shop.sees(lambda: shows(shop.prompt(), "programs.other-text-there"))
     yes(shop.window)
-    shop.sees(lambda: "SAFE TO REMOVE" in shop.prompt())
+    shop.sees(lambda: shows(shop.prompt(), "programs.copied-safe"))
     assert (shop.stick / "alpha.nc").read_bytes() == (shop.own / "alpha.nc").read_bytes()
 
 
@@ -266,10 +268,10 @@ def test_escape_keeps_what_stands_there(shop: Shop) -> None:
     shop.key(Key.Key_F9)
     shop.open_stick()
     shop.key(Key.Key_F4)
-    shop.sees(lambda: "THERE ALREADY" in shop.prompt())
+    shop.sees(lambda: shows(shop.prompt(), "programs.other-text-there"))
     shop.key(Key.Key_Escape)
     shop.key(Key.Key_F4)
-    shop.sees(lambda: "THERE ALREADY" in shop.prompt())
+    shop.sees(lambda: shows(shop.prompt(), "programs.other-text-there"))
     assert (shop.stick / "ALPHA.NC").read_text() == "M30\n"
 
 
@@ -280,7 +282,9 @@ def test_in_from_a_stick_is_proved_and_errors_are_told(shop: Shop) -> None:
     shop.key(Key.Key_F8)
     shop.open_stick()
     shop.key(Key.Key_F5)
-    shop.sees(lambda: shop.prompt().startswith("2 IMPORTED; NOT ALL PROVE: bad.nc"))
+    shop.sees(
+        lambda: shop.prompt().startswith(wording("programs.imported-not-proved", count=2, found="bad.nc"))
+    )
     assert {"good.nc", "bad.nc"} <= {path.name for path in shop.own.iterdir()}
 
 
@@ -293,10 +297,10 @@ def test_what_an_import_replaces_is_asked_for_and_kept(shop: Shop) -> None:
     shop.open_stick()
     shop.key(Key.Key_Down)
     shop.key(Key.Key_Return)
-    shop.sees(lambda: "THERE ALREADY" in shop.prompt())
+    shop.sees(lambda: shows(shop.prompt(), "programs.other-text-there"))
     assert (shop.own / "alpha.nc").read_bytes() == old
     yes(shop.window)
-    shop.sees(lambda: "IMPORTED AND PROVED" in shop.prompt())
+    shop.sees(lambda: shows(shop.prompt(), "programs.imported-proved"))
     assert (shop.own / "alpha.nc").read_bytes() == (SAMPLES / "grooves.nc").read_bytes()
     assert shop.journal.text_of("alpha.nc", 1) == old
 
@@ -307,7 +311,9 @@ def test_what_is_no_program_does_not_come_in(shop: Shop) -> None:
     shop.key(Key.Key_F8)
     shop.open_stick()
     shop.key(Key.Key_F5)
-    shop.sees(lambda: shop.prompt().startswith("REFUSED: photo.nc IS NO PROGRAM"))
+    shop.sees(
+        lambda: begins(shop.prompt(), "screen.refused", why=pattern("programs.no-program", name="photo.nc"))
+    )
     assert not (shop.own / "photo.nc").exists()
 
 
@@ -317,7 +323,7 @@ def test_a_stick_that_has_gone_is_told(shop: Shop) -> None:
     shop.open_stick()
     shutil.rmtree(shop.stick)
     shop.key(Key.Key_F4)
-    shop.sees(lambda: shop.prompt().startswith("REFUSED"))
+    shop.sees(lambda: begins(shop.prompt(), "screen.refused"))
 
 
 def test_nothing_is_copied_to_the_list_of_places(shop: Shop) -> None:
@@ -325,7 +331,7 @@ def test_nothing_is_copied_to_the_list_of_places(shop: Shop) -> None:
     shop.key(Key.Key_F9)
     shop.settle()
     shop.key(Key.Key_F4)
-    assert shop.prompt().startswith("OPEN A PLACE FIRST")
+    assert begins(shop.prompt(), "programs.open-place")
 
 
 def test_media_are_found_on_both_levels_and_only_while_mounted(tmp_path: Path) -> None:

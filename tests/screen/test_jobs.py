@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -21,6 +22,8 @@ from core.store.store_rows import Kind, utc_now
 from core.store.tool_lives import LifeRow
 from tests.screen.day import SHIFT, Day, Key, begun
 from tests.screen.yes import yes
+from tests.texts import begins, pattern, shows
+from tests.texts import text as wording
 
 PEG = "(PEG)\nG90G94F300G72\nT1\nM03S2000\nG00X.7Z.1\nX.5\nG01G94F60Z-.3\nX.7\nG00Z1\nM05\nM30\n"
 CAP = PEG.replace("(PEG)", "(CAP)").replace("T1", "T2")
@@ -39,7 +42,7 @@ def day(qtbot: QtBot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterat
         day.run(0.02)
         day.key(Key.Key_D)
         assert day.desk.choose("peg")
-        day.sees(lambda: day.prompt.startswith("TO START"))
+        day.sees(lambda: day.prompt.startswith(wording("screen.to-start")))
         yield day
 
 
@@ -69,7 +72,7 @@ def added(day: Day, program: str, parts: str) -> None:
     day.sees(lambda: program in "".join(row.cells[0] for row in page.model.sheet().rows))
     day.key(Key.Key_F10)
     assert day.page == page_table.JOBS
-    assert model(day).sheet(day.shot).question == f"HOW MANY PARTS OF {program}?"
+    assert model(day).sheet(day.shot).question == wording("screen.how-many-parts", program=program)
     day.enter(parts)
     day.sees(lambda: len(watch(day).jobs) == before + 1)
 
@@ -110,14 +113,17 @@ def test_a_queue_is_worked_off_and_nothing_starts_by_itself(day: Day) -> None:
     assert isinstance(watch(day).proofs.of("cap.nc", day.desk.book.changes), ProvedJob)
     assert day.shot.state in {State.RUN, State.WAIT}
     day.until(lambda: day.shot.parts == 2 and day.shot.state is State.IDLE)  # repeat ends with the last part
-    day.sees(lambda: "JOB DONE" in day.prompt)
-    assert day.prompt == "JOB DONE: 2 OF 2 PARTS OF peg.nc. NEXT: cap.nc, 5 PARTS, 1 MISSING"
+    day.sees(lambda: shows(day.prompt, "screen.job-done"))
+    following = (
+        f"{wording('screen.next-job', program='cap.nc', left=5)}, {wording('screen.missing', count=1)}"
+    )
+    assert day.prompt == f"{wording('screen.job-done', made=2, wanted=2, program='peg.nc')} {following}"
     day.run(3.0)
     assert (day.shot.state, day.shot.program, day.shot.parts) == (State.IDLE, day.shot.program, 2)
     assert day.desk.session.now.name == "peg.nc"
     row = day.desk.offered(day.shot)
     assert row is not None
-    assert row.figures == "NEXT: cap.nc, 5 PARTS, 1 MISSING"
+    assert row.figures == following
     assert [each.made for each in day.store.jobs()] == [2, 0]
     assert day.store.parts("peg.nc") == 2
     opened(day)
@@ -135,18 +141,18 @@ def test_what_is_missing_on_the_plate_is_named(day: Day) -> None:
         day.window.refresh()
         return [cells[2] for cells in (r.cells for r in model(day).setup().rows) if cells[0] == "T2"]
 
-    day.sees(lambda: lacking() == ["no offset: touch it off"])
+    day.sees(lambda: lacking() == [wording("screen.offset-missing")])
     day.desk.book.change(
         Kind.TOOL, 2, {"x": -12.7, "z": -50.8, "nose_radius": 0.4, "quadrant": 3}, "touched off"
     )
     day.store.write(lambda c: tool_lives.set_limits(c, LifeRow(2, 40, stops=True))).result(60)
     day.store.write(lambda c: tool_lives.set_use(c, 2, 28, 100.0)).result(60)
     watch(day).parts.book.refresh()
-    day.sees(lambda: lacking() == ["life for 12 of 50 parts"])
+    day.sees(lambda: lacking() == [wording("screen.life-left", left=12, parts=50)])
     day.key(Key.Key_F4)
     day.enter("12")
     day.sees(lambda: lacking() == ["in order"])
-    day.sees(lambda: "TOOLS COMPLETE" in model(day).sheet(day.shot).rows[0].cells)
+    day.sees(lambda: wording("screen.tool-complete") in model(day).sheet(day.shot).rows[0].cells)
 
 
 def test_another_tip_than_when_it_ran_last_is_told(day: Day) -> None:
@@ -158,8 +164,8 @@ def test_another_tip_than_when_it_ran_last_is_told(day: Day) -> None:
     added(day, "peg.nc", "3")
     day.sees(lambda: len(model(day).setup().rows) > 1)
     told = next(r.cells[2] for r in model(day).setup().rows if r.cells[0] == "T1").replace("\n", " ")
-    assert told.startswith("another tip: R 0.0315 in, tip 2; ")
-    assert told.endswith("it ran with R 0.0157 in, tip 3")
+    tips = {"radius": "0.0315 in", "tip": "tip 2", "was": "0.0157 in", "was_tip": "tip 3"}
+    assert re.fullmatch(pattern("screen.another-tip", **tips), told)
 
 
 def test_moved_noted_removed_and_cleared(day: Day) -> None:
@@ -171,9 +177,9 @@ def test_moved_noted_removed_and_cleared(day: Day) -> None:
     day.enter("order 12")
     day.sees(lambda: rows(day)[0][0] == "cap.nc\norder 12")
     day.key(Key.Key_F10)
-    assert day.prompt == "NO JOB IS DONE YET: THERE IS NOTHING TO CLEAR"
+    assert day.prompt == wording("screen.no-job-done")
     day.key(Key.Key_F9)
-    assert day.prompt.startswith("PRESS Y TO TAKE cap.nc OUT OF THE QUEUE, 0 OF 5 MADE")
+    assert begins(day.prompt, "screen.take-out-of-queue", program="cap.nc", made=0, wanted=5)
     day.key(Key.Key_Escape)
     assert len(rows(day)) == 2
     day.key(Key.Key_F9)
@@ -207,9 +213,9 @@ def test_while_a_program_runs_no_job_comes_on_the_desk(day: Day) -> None:
     opened(day)
     day.key(Key.Key_F2)
     assert day.page == page_table.JOBS
-    assert day.prompt.startswith("A PROGRAM IS UNDER WAY")
+    assert day.prompt == wording("screen.program-runs-no-other")
     day.key(Key.Key_F8)
-    assert day.prompt.startswith("NOTES ARE TYPED BETWEEN CYCLES")
+    assert begins(day.prompt, "screen.notes-between-cycles")
     day.key(Key.Key_F1, Key.Key_F2)  # the page closes, the part goes on
     day.until(lambda: day.shot.parts == 1)
     assert watch(day).under_way is None
@@ -231,7 +237,7 @@ def test_the_counter_leaves_the_number_to_the_job(day: Day) -> None:
     day.key(Key.Key_F10)
     day.type("2")
     day.enter("7")
-    assert day.prompt == "REFUSED: A JOB IS UNDER WAY AND HAS ITS OWN COUNT; CHANGE THAT IN JOBS (SHIFT+F6)"
+    assert day.prompt == wording("screen.job-has-own-count")
     assert day.desk.counter.aim == 3
 
 
@@ -239,7 +245,7 @@ def test_a_program_that_has_gone_is_said(day: Day, tmp_path: Path) -> None:
     added(day, "cap.nc", "5")
     (tmp_path / "home" / "programs" / "cap.nc").unlink()
     day.key(Key.Key_F2)
-    assert day.prompt == "cap.nc IS NOT AMONG THE PROGRAMS: F1, F6"
+    assert day.prompt == wording("screen.not-among-programs", name="cap.nc")
     assert watch(day).under_way is None
 
 
@@ -249,7 +255,7 @@ def test_without_a_store_nothing_is_queued_and_that_is_said(day: Day) -> None:
     opened(day)
     day.key(Key.Key_F3)
     day.enter("4")
-    assert day.prompt == "NOT KEPT: THE DISK IS GONE"
+    assert day.prompt == wording("screen.not-kept", why="THE DISK IS GONE")
     assert model(day).sheet(day.shot).notes == ("THE DISK IS GONE",)
 
 
@@ -262,7 +268,7 @@ def test_a_job_whose_program_is_not_on_the_desk_is_proved_and_loaded_like_any_ot
     assert day.desk.choose("cap")
     day.sees(lambda: not day.desk.session.now.busy)
     opened(day)
-    day.sees(lambda: model(day).sheet(day.shot).rows[0].cells[4] == "TOOLS COMPLETE")
+    day.sees(lambda: model(day).sheet(day.shot).rows[0].cells[4] == wording("screen.tool-complete"))
     loaded(day, "peg.nc")
     assert day.desk.counter.words == "0/3"
 
@@ -270,14 +276,14 @@ def test_a_job_whose_program_is_not_on_the_desk_is_proved_and_loaded_like_any_ot
 def test_an_empty_queue_says_how_a_job_is_added(day: Day) -> None:
     opened(day)
     day.key(Key.Key_F4)
-    assert day.prompt.startswith("NO JOB WAITS: F3 ADDS THE PROGRAM ON THE DESK")
+    assert begins(day.prompt, "screen.no-job-waits")
 
 
 def test_what_is_asked_of_a_job_is_answered_before_another_key_acts(day: Day) -> None:
     """F4 while the count of a new job is typed had asked for the count of the marked one."""
     added(day, "cap.nc", "5")
     day.key(Key.Key_F3)
-    assert model(day).sheet(day.shot).question == "HOW MANY PARTS OF peg.nc?"
+    assert model(day).sheet(day.shot).question == wording("screen.how-many-parts", program="peg.nc")
     assert model(day).keys() == {}
     day.key(Key.Key_F4)
     day.enter("2")

@@ -16,6 +16,7 @@ from core.executor.commands import CycleStart, FeedHold
 from core.executor.snapshot import State
 from tests.screen.hands import Hands, Key
 from tests.screen.yes import read
+from tests.texts import shows
 
 NONE = Qt.KeyboardModifier.NoModifier
 SHIFT, CTRL = Qt.KeyboardModifier.ShiftModifier, Qt.KeyboardModifier.ControlModifier
@@ -80,7 +81,7 @@ def test_nothing_starts_while_a_stop_key_is_held(watched: Hands) -> None:
     send(watched, Key.Key_Pause)
     watched.both_palms()
     assert watched.machine.now.state is State.IDLE
-    assert "IS HELD DOWN" in watched.desk.notice
+    assert shows(watched.desk.notice, "screen.stopping-key-held")
     send(watched, Key.Key_Pause, up=True)
     watched.both_palms()
     watched.sees_state(State.RUN)
@@ -263,7 +264,7 @@ def test_palms_late_by_their_stamps_start_nothing(watched: Hands) -> None:
     send(watched, Key.Key_F12, at=now - 2000)
     assert CycleStart() not in watched.machine.posted
     assert not watched.desk.hands.palms.down
-    assert "FORGOTTEN" in watched.desk.notice
+    assert shows(watched.desk.notice, "screen.screen-stood-still")
 
 
 def test_two_palms_by_the_times_of_their_events(watched: Hands) -> None:

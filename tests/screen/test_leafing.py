@@ -36,6 +36,7 @@ from app.shapes.shapes_view import RowsPanel, _Line
 from app.special.special_view import ItemList
 from core.language.diagnostics import Diagnostic, Severity
 from core.store.store_rows import FIELDS
+from tests.texts import text as wording
 
 if TYPE_CHECKING:
     from app.offsets.cell_table import CellTable
@@ -268,7 +269,7 @@ def test_a_question_lies_over_no_row(above: QWidget, high: int, rows: int, notes
     assert sum(text.startswith("row ") for text in drawn) == rows == panel.rows
     assert sum(text in {"one", "two"} for text in drawn) == notes
     for text, box in drawn.items():
-        assert text == "WHOSE NAME?" or not box.intersects(drawn["WHOSE NAME?"]), text
+        assert text == wording("screen.whose-name") or not box.intersects(drawn["WHOSE NAME?"]), text
 
 
 def test_a_finger_comes_to_every_tool_of_a_mill(above: QWidget) -> None:

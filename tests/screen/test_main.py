@@ -18,6 +18,7 @@ from app.screen.window_frame import Frame
 from core.executor.snapshot import State
 from tests.screen.desks import SAMPLES, desk_on
 from tests.screen.fake import FakeMachine
+from tests.texts import shows, text
 
 
 @pytest.mark.parametrize("theme", ["dark", "light"])
@@ -66,7 +67,7 @@ def test_a_program_that_is_not_there_is_told(machine: FakeMachine) -> None:
     desk = desk_on(machine)
     QTimer.singleShot(50, lambda: [w.close() for w in QApplication.topLevelWidgets()])
     assert run_screen(program="nowhere.nc", build=lambda: desk) == 0
-    assert desk.notice == "FILE NOT FOUND: nowhere.nc"
+    assert desk.notice == text("screen.file-not-found", name="nowhere.nc")
 
 
 def test_a_mistake_of_the_screen_is_told_and_takes_nothing_with_it(
@@ -88,5 +89,5 @@ def test_a_mistake_of_the_screen_is_told_and_takes_nothing_with_it(
     with capture_exceptions() as caught:
         assert run_screen(build=lambda: desk) == 0
     assert caught == []
-    assert "A MISTAKE OF THE SCREEN" in desk.notice
+    assert shows(desk.notice, "screen.screen-mistake")
     assert "a figure that is not there" in caplog.text

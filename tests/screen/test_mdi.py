@@ -12,6 +12,7 @@ from app.screen.letter_keys import LINES
 from core.executor.snapshot import Starts, State
 from tests.screen.lathe import Key, Operator
 from tests.screen.yes import yes
+from tests.texts import begins, shows, text
 
 INCH = 25.4
 
@@ -53,16 +54,16 @@ def test_what_is_wrong_is_marked_where_it_is_and_mended(at_mdi: Operator) -> Non
     at_mdi.line("X.5F1000")
     page = page_of(at_mdi)
     assert page.line.found[0].column == 4
-    assert "out of range" in page.line.message
-    assert at_mdi.prompt().startswith("THE LINE DOES NOT RUN")
+    assert shows(page.line.message, "screen.feed-out-of-range")
+    assert begins(at_mdi.prompt(), "screen.line-does-not-run")
     at_mdi.palms()
     assert at_mdi.shot.state is State.IDLE
-    assert at_mdi.prompt() == "NO LINE IS READY: TYPE ONE AND PRESS ENTER"
+    assert at_mdi.prompt() == text("screen.no-line-ready")
     at_mdi.key(Key.Key_Backspace)
     assert page_of(at_mdi).line.found == ()
     at_mdi.key(Key.Key_Return)
     at_mdi.mdi.line.worker.settle(60.0)
-    assert at_mdi.prompt() == "TO RUN THE LINE PRESS BOTH PALM BUTTONS (F11 + F12); ESC TAKES IT BACK"
+    assert at_mdi.prompt() == text("screen.run-the-line", start=text("screen.both-palms"))
 
 
 def test_a_ready_line_that_is_changed_starts_no_more(at_mdi: Operator) -> None:
@@ -140,7 +141,7 @@ def test_the_line_has_every_letter_also_with_the_drives_off(at_mdi: Operator) ->
     assert at_mdi.shot.feed_override == override
     assert not at_mdi.shot.single_block
     at_mdi.key(Key.Key_Return)
-    assert "F5 SWITCHES THEM ON" in at_mdi.prompt()
+    assert shows(at_mdi.prompt(), "screen.line-proved-with-drives")
 
 
 def test_the_spindle_stays_on_when_leaving_and_is_stopped_by_its_key(at_mdi: Operator) -> None:
@@ -163,7 +164,7 @@ def test_mdi_does_not_open_while_a_program_is_under_way(operator: Operator) -> N
     operator.stage.start()
     operator.key(Key.Key_F1, Key.Key_F4)
     assert operator.frame.title.page == page_table.MENU
-    assert operator.prompt().startswith("A PROGRAM IS UNDER WAY")
+    assert begins(operator.prompt(), "screen.program-runs-no-mdi")
 
 
 def test_the_palms_start_no_program_in_mdi(at_mdi: Operator) -> None:

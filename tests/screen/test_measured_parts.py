@@ -21,6 +21,8 @@ from app.screen import page_table
 from core.executor.snapshot import State
 from tests.screen.day import Day, Key, begun
 from tests.screen.yes import yes
+from tests.texts import begins, fragment, shows
+from tests.texts import text as wording
 
 PEG = "(PEG)\nG90G94F300G72\nT1\nM03S2000\nG00X.7Z.1\nX.5\nG01G94F60Z-.3\nX.7\nG00Z1\nM05\nM30\n"
 FEATURES, READINGS, CHARTS, LIFE, TRENDS = "12345"
@@ -36,7 +38,7 @@ def day(qtbot: QtBot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterat
         day.run(0.02)
         day.key(Key.Key_D)
         day.desk.put_on_desk(tmp_path / "peg.nc")
-        day.sees(lambda: day.prompt.startswith("TO START"))
+        day.sees(lambda: day.prompt.startswith(wording("screen.to-start")))
         yield day
 
 
@@ -139,9 +141,9 @@ def test_a_feature_is_entered_once(day: Day) -> None:
 @pytest.mark.parametrize(
     ("fields", "why"),
     [
-        ((".5", ".001", ".001", "1", "0", "1"), "lower deviation is not below"),
-        (("0", ".001", "-.001", "1", "0", "1"), "the nominal is more than 0"),
-        ((".5", ".001", "-.001", "33", "0", "1"), "offsets are 1 to 32"),
+        ((".5", ".001", ".001", "1", "0", "1"), fragment("measure.limits-crossed")),
+        (("0", ".001", "-.001", "1", "0", "1"), fragment("measure.nominal-range")),
+        ((".5", ".001", "-.001", "33", "0", "1"), fragment("measure.offsets-to", last=32, number=33)),
         ((".5", ".001", "-.001", "1", "0", "11"), "1 to 10 parts"),
     ],
 )
@@ -161,20 +163,20 @@ def test_half_a_number_is_refused(day: Day) -> None:
     for _ in range(5):
         day.key(Key.Key_Down)
     day.enter("1.5")
-    assert "no whole number" in day.prompt
+    assert shows(day.prompt, "measure.no-whole-number")
 
 
 def test_the_same_name_twice_is_refused(day: Day) -> None:
     spigot(day)
     feature(day, ".3", ".001", "-.001", "1", "0", "1")
-    day.sees(lambda: "another name" in day.prompt)
+    day.sees(lambda: shows(day.prompt, "measure.feature-exists"))
 
 
 def test_a_feature_is_removed_after_asking(day: Day) -> None:
     spigot(day)
     day.key(Key.Key_Escape)
     day.key(Key.Key_F4)
-    assert "PRESS Y TO MEASURE SPIGOT NO MORE" in day.prompt
+    assert shows(day.prompt, "measure.measure-no-more", name="SPIGOT")
     day.key(Key.Key_Escape)
     assert len(cells(day)) == 1
     day.key(Key.Key_F4)
@@ -197,11 +199,11 @@ def test_a_size_that_is_far_off_is_asked_about(day: Day) -> None:
     parts(day, 1)
     section(day, READINGS)
     day.enter("5.001")
-    assert "IS FAR OFF: PRESS Y" in day.prompt
+    assert shows(day.prompt, "measure.far-off")
     day.key(Key.Key_Escape)
     assert cells(day)[0][3] == ""
     day.enter("-.001")
-    assert "type the measured size, not the deviation" in day.prompt
+    assert shows(day.prompt, "measure.size-not-deviation")
 
 
 def test_a_reading_is_taken_out(day: Day) -> None:
@@ -222,12 +224,14 @@ def test_the_correction_goes_the_way_of_a_typed_one_and_back(day: Day) -> None:
     day.key(Key.Key_Escape)
     day.sees(lambda: cells(day)[0][2] == "2")
     day.key(Key.Key_F8)
-    assert day.prompt.startswith("T1 X −0.00060: SPIGOT 0.50120 → 0.50060: PRESS Y")
+    assert begins(day.prompt, "measure.correct", words="T1 X −0.00060: SPIGOT 0.50120 → 0.50060")
     assert day.store.tools()[1].wear_x == 0.0, "nothing is changed unasked"
     yes(day.window)
     day.sees(lambda: not day.desk.book.busy)
     assert day.store.tools()[1].wear_x == pytest.approx(-0.0003 * 25.4)
-    assert day.store.history(limit=1)[0].why == "measured SPIGOT: mean 0.50120 of 2, −0.00060"
+    assert day.store.history(limit=1)[0].why == wording(
+        "measure.reason-of-correction", name="SPIGOT", mean="0.50120", count=2, change="−0.00060"
+    )
     day.key(Key.Key_F9)
     day.sees(lambda: not day.desk.book.busy)
     assert day.store.tools()[1].wear_x == 0.0
@@ -245,7 +249,7 @@ def test_what_a_correction_would_do_is_shown_before_it_is_taken_over(day: Day) -
     assert (shown.chart_share, shown.drawing().plots) == (0.0, ())
     day.key(Key.Key_F8)
     asked = day.prompt
-    day.sees(lambda: sheet(day).title.startswith("WHAT IT DOES TO THE PART"))
+    day.sees(lambda: sheet(day).title.startswith(wording("screen.effect-on-part")))
     (diameter,) = [row.cells for row in sheet(day).rows if row.lit]
     assert diameter[1:] == ("0.50000", "0.49940", "−0.00060")
     (plot,) = shown.drawing().plots
@@ -268,7 +272,7 @@ def test_a_refused_proposal_shows_no_effect(day: Day) -> None:
     measured(day, ".5001")
     day.key(Key.Key_Escape)
     day.key(Key.Key_F8)
-    assert "dead band" in day.prompt
+    assert shows(day.prompt, "measure.dead-band")
     shown = model(day).current
     assert isinstance(shown, ReadingsSection)
     assert not shown.effect.stands
@@ -288,11 +292,11 @@ def test_parts_of_before_the_correction_ask_for_no_other(day: Day) -> None:
     day.sees(lambda: not day.desk.book.busy)
     day.key(Key.Key_Escape)
     day.key(Key.Key_F8)
-    assert "STILL READING" in day.prompt, "what is on its way would be proposed once more"
+    assert shows(day.prompt, "measure.still-reading"), "what is on its way would be proposed once more"
     read.set()
     day.sees(lambda: settled(day))
     day.key(Key.Key_F8)
-    assert "no part begun since the last change of T1 X is measured yet" in day.prompt
+    assert shows(day.prompt, "measure.none-since-change", what="T1 X")
     parts(day, 1)
     measured(day, ".5006")
     day.key(Key.Key_Escape)
@@ -310,7 +314,7 @@ def test_what_another_hand_changed_is_not_taken_back_here(day: Day) -> None:
     day.sees(lambda: not day.desk.book.busy)
     day.store.set_tool(1, "by hand", wear_z=0.01).result(60)
     day.key(Key.Key_F9)
-    assert "ANOTHER CHANGE CAME AFTER IT" in day.prompt
+    assert shows(day.prompt, "measure.another-change-after")
     assert day.store.tools()[1].wear_z == 0.01
 
 
@@ -318,11 +322,11 @@ def test_without_readings_there_is_no_proposal(day: Day) -> None:
     spigot(day)
     section(day, READINGS)
     day.key(Key.Key_F8)
-    assert "no part was measured" in day.prompt
+    assert shows(day.prompt, "measure.none-since-correction")
     day.key(Key.Key_F9)
-    assert "NO CORRECTION WAS TAKEN OVER HERE" in day.prompt
+    assert shows(day.prompt, "measure.no-correction-here")
     day.key(Key.Key_F5)
-    assert "NAMES NO GAUGE" in day.prompt
+    assert shows(day.prompt, "measure.no-gauge")
 
 
 def test_the_file_for_a_spreadsheet(day: Day, tmp_path: Path) -> None:
@@ -330,7 +334,7 @@ def test_the_file_for_a_spreadsheet(day: Day, tmp_path: Path) -> None:
     parts(day, 1)
     measured(day, ".5004")
     day.key(Key.Key_F6)
-    day.sees(lambda: day.prompt.startswith("WRITTEN"))
+    day.sees(lambda: begins(day.prompt, "screen.written"))
     head, line = (tmp_path / "home" / "parts" / "peg-readings.csv").read_text().splitlines()
     assert head.startswith("feature,part,value,unit,nominal,lower,upper,good")
     assert line.startswith("SPIGOT,1,0.5004,in,0.5,0.499,0.501,yes,")
@@ -342,15 +346,15 @@ def test_the_file_for_a_spreadsheet(day: Day, tmp_path: Path) -> None:
 def test_the_plan_asks_at_part_end_and_parts_go_on(day: Day) -> None:
     spigot(day, every="2")
     parts(day, 1)
-    assert "MEASURE" not in day.prompt
+    assert not shows(day.prompt, "measure.measure-part")
     parts(day, 2)
     day.key(Key.Key_Escape)
-    assert day.prompt.startswith("MEASURE PART 2: SPIGOT · ")
+    assert day.prompt.startswith(wording("measure.measure-part", part=2, names="SPIGOT · "))
     measured(day, ".5000")
     day.key(Key.Key_F1)
     day.key(Key.Key_F2)
     day.key(Key.Key_Escape)
-    day.sees(lambda: "MEASURE" not in day.prompt)
+    day.sees(lambda: not shows(day.prompt, "measure.measure-part"))
 
 
 def test_parts_wait_for_the_plan_when_asked(day: Day) -> None:
@@ -367,7 +371,7 @@ def test_parts_wait_for_the_plan_when_asked(day: Day) -> None:
     day.run(1.0)
     assert day.shot.parts == 2
     day.palms()
-    assert "part 2 is to be measured first: SPIGOT" in day.prompt
+    assert wording("measure.part-first", part=2, names="SPIGOT") in day.prompt
     assert day.shot.state is State.IDLE
     measured(day, ".5000")
     day.sees(lambda: day.shot.next_barred == "")
@@ -389,7 +393,7 @@ def test_the_chart_is_loaded_when_it_is_opened(day: Day) -> None:
     assert page.chart is not None
     assert not page.chart.isHidden()
     assert "9 of 10" not in str(cells(day))
-    assert "1 of 10 readings that a Cpk needs" in cells(day)[0][5]
+    assert shows(cells(day)[0][5], "measure.readings-for-cpk", count=1, needed=10)
     section(day, READINGS)
     assert page.chart.isHidden()
 
@@ -421,7 +425,9 @@ def test_a_spent_tool_stops_the_next_part_and_a_fresh_insert_lets_it_go(day: Day
     day.run(2.0)
     assert day.shot.parts == 2, "no other part begins"
     day.palms()
-    assert "the life of T1 is gone, 2 of 2 parts: change the insert" in day.prompt
+    assert (
+        wording("measure.life-gone", number=1, words="2 of 2 parts", what="change the insert") in day.prompt
+    )
     section(day, LIFE)
     assert cells(day)[0][4:] == ("0 parts", "2 of 2 parts")
     day.key(Key.Key_F4)
@@ -436,7 +442,7 @@ def test_without_the_stop_it_is_only_told(day: Day) -> None:
     life(day, "1", stops=False)
     parts(day, 2)
     day.key(Key.Key_Escape)
-    assert day.prompt.startswith("T1: ITS LIFE IS GONE, 2 of 1 parts · ")
+    assert day.prompt.startswith(wording("measure.life-is-gone", number=1, words="2 of 1 parts · "))
 
 
 def test_minutes_are_those_at_feed(day: Day) -> None:
@@ -468,14 +474,14 @@ def test_trends_of_what_was_made(day: Day, tmp_path: Path) -> None:
     rows = texts(day)
     last = day.shot.last_cycle
     assert rows["CYCLE TIME"].startswith(f"last {last:.1f} s")
-    assert rows["WEAR"] == "no correction yet"
+    assert rows["WEAR"] == wording("measure.no-correction-yet")
     assert "BETWEEN CYCLES" in rows["STOPS"]
     assert re.fullmatch(r"last \d+ %, highest \d+ %", rows["SPINDLE LOAD"])
     for _ in range(4):
         day.key(Key.Key_Down)
         day.run(0.05)
     day.enter("25-3")
-    assert "two hours of the day" in day.prompt
+    assert shows(day.prompt, "measure.shift-hours")
     day.key(Key.Key_Delete)
     day.enter("0-24")
     day.run(0.05)
@@ -484,7 +490,7 @@ def test_trends_of_what_was_made(day: Day, tmp_path: Path) -> None:
     # of the machine, whatever program is on the desk
     (tmp_path / "other.nc").write_text(PEG)
     day.desk.put_on_desk(tmp_path / "other.nc")
-    day.sees(lambda: texts(day)["CYCLE TIME"] == "no part was made yet" and settled(day))
+    day.sees(lambda: texts(day)["CYCLE TIME"] == wording("measure.no-part-made") and settled(day))
     assert texts(day)["AVAILABILITY"] >= ran  # the clock on the wall goes on
 
 
@@ -505,12 +511,12 @@ def test_a_reading_that_nobody_sees_is_not_kept(day: Day) -> None:
     readings = next(each for each in model(day).functions if isinstance(each, ReadingsSection))
     readings.gauge = Sent()
     day.run(0.05)
-    assert "A READING CAME WHILE THE READINGS WERE NOT SHOWN" in day.prompt
+    assert shows(day.prompt, "measure.reading-not-shown")
     section(day, READINGS)
     assert cells(day)[0][3] == ""
     readings.gauge = Sent()
     day.run(0.05)
-    day.sees(lambda: "SPIGOT OF PART 1: 0.50030 KEPT" in day.prompt)
+    day.sees(lambda: wording("measure.reading-kept", name="SPIGOT", part=1, size="0.50030") in day.prompt)
 
 
 def test_a_secondary_offset_is_corrected_as_a_radius(day: Day) -> None:
@@ -528,7 +534,7 @@ def test_a_secondary_offset_is_corrected_as_a_radius(day: Day) -> None:
     measured(day, ".5012")
     day.key(Key.Key_Escape)
     day.key(Key.Key_F8)
-    assert day.prompt.startswith("D4 X −0.00060: GROOVE 0.50120 → 0.50060: PRESS Y")
+    assert begins(day.prompt, "measure.correct", words="D4 X −0.00060: GROOVE 0.50120 → 0.50060")
     yes(day.window)
     day.sees(lambda: not day.desk.book.busy)
     assert day.store.secondary()[4].x == pytest.approx(-0.0003 * 25.4)

@@ -27,6 +27,8 @@ from core.store.store import Store
 from drivers.clocks import StepClock
 from tests.screen.hands import Key
 from tests.screen.yes import yes
+from tests.texts import shows
+from tests.texts import text as wording
 
 TICK = 0.01
 LONG = 200.0  # s of machine time
@@ -129,7 +131,7 @@ def test_a_tilted_program_from_the_list_to_its_end(mill: Mill) -> None:
     cut = line_of("L X+90 F900")
     mill.goes_on(lambda s: s.line == cut and s.modal.tool == 20)
     first = line_of("PLANE AXIAL")
-    assert page.space.words.startswith(f"TILTED PLANE OF LINE {first}:  A+30.000  C+0.000")
+    assert page.space.words.startswith(f"{wording('screen.tilted-plane', line=first)}:  A+30.000  C+0.000")
     picture = page.space.grab().toImage()
     mill.goes_on(lambda s: s.line == cut and s.actual[4] > 170.0)
     assert page.space.grab().toImage() != picture
@@ -199,7 +201,7 @@ def test_the_editor_shows_the_plane_of_the_cursors_line(mill: Mill, qtbot: QtBot
     for _ in range(plane - page.field.line):
         mill.key(Key.Key_Down)
     assert page.field.line == plane
-    wanted = f"TILTED PLANE OF LINE {plane}:  A+59.999  C+90.000"
+    wanted = f"{wording('screen.tilted-plane', line=plane)}:  A+59.999  C+90.000"
     qtbot.waitUntil(lambda: page.space.words.startswith(wanted), timeout=60_000)
 
 
@@ -220,7 +222,9 @@ def test_searchto_shows_table_and_plane_of_the_line(mill: Mill, qtbot: QtBot) ->
         return page.model.plan is not None
 
     qtbot.waitUntil(found, timeout=60_000)
-    assert page.space.words.startswith(f"TILTED PLANE OF LINE {line - 1}:  A+30.000  C+180.000")
+    assert page.space.words.startswith(
+        f"{wording('screen.tilted-plane', line=line - 1)}:  A+30.000  C+180.000"
+    )
     shown = page.space.instant
     assert shown is not None
     assert (shown.axes["A"], shown.axes["C"]) == pytest.approx((30.0, 180.0))  # turned, where the line begins
@@ -270,7 +274,7 @@ def test_the_jog_page_of_a_mill_sets_no_tool(mill: Mill) -> None:
         assert page.model.tool.asked == ""
     mill.key(Key.Key_F5)
     mill.window.refresh()
-    assert "NOTHING IS TILTED" in frame.prompt.text
+    assert shows(frame.prompt.text, "screen.nothing-tilted")
     mill.key(Key.Key_F8)
     assert frame.title.page == "TOOL TABLE"
 

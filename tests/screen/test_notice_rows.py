@@ -21,6 +21,7 @@ from core.executor.snapshot import State
 from core.ports import ALL_UNKNOWN, Unknown
 from tests.interrupted import broken_off
 from tests.screen.hands import Hands, Key
+from tests.texts import Pattern, begins, text
 
 
 @pytest.mark.parametrize(
@@ -45,7 +46,7 @@ def test_an_interrupted_job_and_a_full_disk_stand_on_every_page(hands: Hands, pa
     assert rows.isVisible()
     assert [row.text.split(" LINE")[0] for row in rows.rows] == [
         "INTERRUPTED: PIN.NC",
-        "NOT KEPT: the disk is full",
+        text("screen.not-kept", why="the disk is full"),
     ]
     assert rows.rows[1].figures.endswith("20 parts")
     assert not rows.geometry().intersects(hands.frame.page.geometry())
@@ -111,13 +112,13 @@ def test_a_machine_that_is_not_heard_says_so_on_every_page(hands: Hands, page: s
     hands.machine.now = replace(hands.machine.now, unknown=ALL_UNKNOWN)
     hands.window.refresh()
     (row,) = hands.frame.notices.rows
-    assert (row.text, row.tone) == ("SPINDLE UNKNOWN – SPINDLE MAY TURN: PRESS E-STOP", "alarm")
-    assert row.figures.startswith("NOT KNOWN: POSITIONS, SPINDLE, OUTPUTS, INPUTS")
+    assert (row.text, row.tone) == (text("screen.spindle-may-turn"), "alarm")
+    assert begins(row.figures, "screen.not-known", what=Pattern("POSITIONS, SPINDLE, OUTPUTS, INPUTS.*"))
     assert "SPINDLE UNKNOWN" in [lamp.word for lamp in hands.frame.strip.lamps]
     hands.machine.now = replace(hands.machine.now, unknown=frozenset({Unknown.OUTPUTS}))
     hands.window.refresh()
     (row,) = hands.frame.notices.rows
-    assert row.text == "OUTPUTS UNKNOWN: THE MACHINE IS NOT HEARD"
+    assert row.text == text("screen.machine-not-heard", what="OUTPUTS")
 
 
 def test_a_row_with_a_key_stays_a_fingertip_high(hands: Hands, monkeypatch: pytest.MonkeyPatch) -> None:

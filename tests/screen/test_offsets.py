@@ -23,6 +23,8 @@ from core.store.store import Store
 from core.store.store_rows import ToolRow
 from tests.screen.hands import Hands, Key
 from tests.screen.yes import yes
+from tests.texts import begins, shows
+from tests.texts import text as wording
 
 
 @pytest.fixture
@@ -61,13 +63,13 @@ def test_a_correction_is_entered_seen_and_runs_in_the_next_cycle(hands: Hands, s
     hands.key(Key.Key_F9)
     page = page_of(hands)
     assert hands.frame.title.page == page_table.SECCMP
-    hands.sees(lambda: page.asked.asked.question == "Offset Number?")
+    hands.sees(lambda: page.asked.asked.question == wording("screen.offset-number"))
     assert (page.asked.asked.which, page.asked.asked.foot) == (
         "Secondary offset number:",
         "Press Esc to exit offset adjustment screen        Press C to clear all offsets",
     )
     answer(hands, "1")
-    hands.sees(lambda: page.asked.asked.question == "X DIAMETER CORRECTION?")
+    hands.sees(lambda: page.asked.asked.question == wording("screen.x-diameter-correction"))
     answer(hands, ".5-.502", "")
     hands.sees(lambda: page.asked.asked.question == "R?")
     assert page.asked.asked.change.endswith("→  X −0.00100  Z +0.00000  R 0.00000")
@@ -77,7 +79,7 @@ def test_a_correction_is_entered_seen_and_runs_in_the_next_cycle(hands: Hands, s
     hands.sees(lambda: hands.prompt() == "D1 SAVED")
     hands.key(Key.Key_Escape)
     assert hands.frame.page is hands.page
-    hands.sees(lambda: hands.prompt().startswith("TO START"))
+    hands.sees(lambda: hands.prompt().startswith(wording("screen.to-start")))
     job = [command.job for command in hands.machine.posted if isinstance(command, LoadJob)][-1]
     assert job.setup.secondary[1].x == pytest.approx(-0.001 * 25.4)
 
@@ -86,7 +88,10 @@ def test_what_is_refused_is_said_and_stays_to_be_mended(hands: Hands, store: Sto
     hands.key(Key.Key_F9)
     page = page_of(hands)
     answer(hands, "2", "0,5")
-    assert hands.prompt() == "REFUSED: , in 0,5 is no number; the decimal sign is a point"
+    assert hands.prompt() == wording(
+        "screen.refused",
+        why=wording("screen.no-number", what=",", entry="0,5", hint=wording("screen.decimal-point")),
+    )
     assert page.asked.asked.text == "0,5"
     hands.key(Key.Key_Backspace)
     hands.key(Key.Key_Delete)
@@ -106,9 +111,9 @@ def test_signs_and_c_belong_to_the_entry_and_not_to_the_switches(hands: Hands, s
     hands.sees(lambda: {"C", "/", "S", "O", "D", "R"} <= hands.frame.strip.mute)
     hands.type("sodrt")  # no letter is a switch while figures are typed
     assert not hands.machine.now.single_block
-    assert hands.prompt() == "AN ENTRY HAS THE KEYBOARD, AND DOES NOT TAKE t HERE"
+    assert hands.prompt() == wording("screen.entry-key", key="t")
     hands.type("1")  # the next one that it takes answers nothing
-    assert "DOES NOT TAKE" not in hands.prompt()
+    assert not shows(hands.prompt(), "screen.entry-key")
 
 
 def test_clear_asks_once_and_undo_brings_everything_back(hands: Hands, store: Store) -> None:
@@ -116,9 +121,11 @@ def test_clear_asks_once_and_undo_brings_everything_back(hands: Hands, store: St
     page = page_of(hands)
     for number in ("1", "32"):
         answer(hands, number, ".1", "", "")
-        hands.sees(lambda: not page.model.book.busy and page.asked.asked.question == "Offset Number?")
+        hands.sees(
+            lambda: not page.model.book.busy and page.asked.asked.question == wording("screen.offset-number")
+        )
     hands.key(Key.Key_C)
-    assert hands.prompt().startswith("PRESS Y TO CLEAR ALL 32")
+    assert begins(hands.prompt(), "screen.clear-secondary")
     hands.key(Key.Key_Escape)
     assert hands.frame.page is page
     hands.key(Key.Key_C)
@@ -153,11 +160,16 @@ def test_a_correction_while_a_part_runs_is_proved_meanwhile(hands: Hands, store:
     hands.sees_state(State.RUN)
     loads = sum(isinstance(command, LoadJob) for command in hands.machine.posted)
     hands.key(Key.Key_F9)
-    hands.sees(lambda: hands.prompt().startswith("THE PART UNDER WAY KEEPS ITS OFFSETS"))
+    hands.sees(lambda: begins(hands.prompt(), "screen.running-part-keeps-offsets"))
     hands.key(Key.Key_Space)
     assert FeedHold() in hands.machine.posted
     answer(hands, "1", ".1", "", "")
-    hands.sees(lambda: hands.prompt() == "D1 SAVED; IT COUNTS FROM THE NEXT CYCLE START")
+    hands.sees(
+        lambda: (
+            hands.prompt()
+            == wording("programs.saved-names", names="D1") + wording("screen.counts-from-next-start")
+        )
+    )
     hands.sees(lambda: len(renewals(hands)) == 2)
     announced, ready = renewals(hands)
     assert announced == Renew()
@@ -203,7 +215,7 @@ def test_a_tool_is_set_with_f8_and_refused_while_running(hands: Hands, store: St
     assert store.tools()[9] == ToolRow(-0.5 * 25.4, -3.25 * 25.4, 0.0156 * 25.4)
     hands.machine.now = replace(hands.machine.now, state=State.HOLD)
     answer(hands, "1")
-    hands.sees(lambda: hands.prompt() == "A PROGRAM IS UNDER WAY: ONLY WEAR AND F9 CORRECTIONS MAY CHANGE")
+    hands.sees(lambda: hands.prompt() == wording("screen.program-runs-wear-only"))
     assert store.tools()[9].nose_radius == 0.0156 * 25.4
 
 
@@ -263,7 +275,7 @@ def test_a_remark_is_written_by_a_finger(hands: Hands, store: Store) -> None:
 def test_without_a_store_nothing_is_changed(hands: Hands) -> None:
     hands.key(Key.Key_F9)
     answer(hands, "1")
-    hands.sees(lambda: hands.prompt() == "NO OFFSETS ARE KEPT HERE")
+    hands.sees(lambda: hands.prompt() == wording("screen.no-offsets-kept"))
 
 
 def test_a_finger_alone_enters_an_offset(hands: Hands, store: Store) -> None:
@@ -330,17 +342,17 @@ def test_the_effect_of_what_is_typed_and_of_what_was_changed(hands: Hands, store
     hands.key(Key.Key_F9)
     page = page_of(hands)
     hands.key(Key.Key_F6)
-    hands.sees(lambda: hands.prompt().startswith("NOTHING HAS CHANGED HERE YET"))
+    hands.sees(lambda: begins(hands.prompt(), "screen.nothing-changed-yet"))
     answer(hands, "1")
     hands.type("-.002")
     hands.key(Key.Key_F6)
     hands.sees(lambda: page.effect.comparing)
     assert not page.table.isVisible()
     # half of the diameter, and what R does to it is nothing here
-    hands.sees(lambda: hands.prompt().startswith("UP TO 0.00100 in APART, AT THE CIRCLE"))
+    hands.sees(lambda: begins(hands.prompt(), "screen.apart-at-circle", far="0.00100 in"))
     whole = page.effect.view
     hands.key(Key.Key_F6)
-    hands.sees(lambda: hands.prompt().startswith("UP TO 0.00100 in APART; Z ZOOMS"))
+    hands.sees(lambda: begins(hands.prompt(), "screen.apart-table", far="0.00100 in"))
     before = page.effect.view
     assert whole is not None
     assert before is not None
@@ -353,7 +365,7 @@ def test_the_effect_of_what_is_typed_and_of_what_was_changed(hands: Hands, store
     hands.sees(lambda: 1 in page.table.offsets)
     hands.sees(lambda: hands.desk.session.now.phase is Phase.READY)
     hands.key(Key.Key_F6)
-    hands.sees(lambda: hands.prompt().startswith("UP TO 0.00100 in APART, AT THE CIRCLE"))
+    hands.sees(lambda: begins(hands.prompt(), "screen.apart-at-circle", far="0.00100 in"))
     hands.key(Key.Key_Escape)
     hands.sees(page.table.isVisible)
     assert hands.frame.page is page
@@ -362,7 +374,7 @@ def test_the_effect_of_what_is_typed_and_of_what_was_changed(hands: Hands, store
 def test_without_a_program_there_is_no_effect_to_show(hands: Hands, store: Store) -> None:
     hands.key(Key.Key_F8)
     hands.key(Key.Key_F6)
-    assert hands.prompt().startswith("LOAD A PROGRAM FIRST")
+    assert begins(hands.prompt(), "screen.load-program-for-effect")
 
 
 def test_fingers_leaf_through_the_tools_and_choose_a_cell(hands: Hands, store: Store) -> None:

@@ -12,6 +12,7 @@ from app.screen.page_table import PAGES, PageEntry, class_of
 from core.executor.commands import CycleStart, FeedHold
 from core.executor.snapshot import Alarm, Event, State
 from tests.screen.hands import Hands, Key
+from tests.texts import begins, text
 
 
 @pytest.mark.parametrize("entry", PAGES, ids=lambda entry: entry.name)
@@ -75,10 +76,10 @@ def test_a_palm_held_while_the_page_changes_is_let_go(hands: Hands) -> None:
 def test_an_alarm_goes_before_what_a_page_has_to_say(hands: Hands) -> None:
     hands.key(Key.Key_F1)
     hands.machine.fault(Alarm(102, "following", "FOLLOWING ERROR", "blocked", "free the slide", line=4))
-    hands.sees(lambda: hands.prompt().startswith("WHAT TO DO: free the slide"))
-    assert hands.frame.title.state == "ALARM 102: FOLLOWING ERROR"
+    hands.sees(lambda: begins(hands.prompt(), "screen.what-to-do", remedy="free the slide"))
+    assert hands.frame.title.state == text("screen.alarm", number=102, what=text("screen.following-error"))
     assert hands.frame.prompt.reason == "CAUSE: blocked"
-    assert hands.frame.run.stop == "ALARM 102: FOLLOWING ERROR  ·  LINE 4"
+    assert hands.frame.run.stop == f"{hands.frame.title.state}  ·  {text('screen.line', line=4)}"
     hands.key(Key.Key_F7)
     assert hands.frame.log.isVisible()
     hands.key(Key.Key_Escape)
@@ -107,7 +108,7 @@ def test_a_function_key_without_a_label_says_so(hands: Hands) -> None:
     hands.key(Key.Key_F10)
     hands.key(Key.Key_F8)
     assert hands.frame.keys.labels[7] == ""
-    assert hands.prompt() == "F8 HAS NO FUNCTION ON THIS PAGE"
+    assert hands.prompt() == text("screen.no-function", key="F8")
 
 
 def test_f7_looks_through_the_stops_and_esc_closes_it(hands: Hands) -> None:

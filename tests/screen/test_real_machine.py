@@ -15,6 +15,7 @@ from core.executor.snapshot import State
 from tests.screen.hands import Key
 from tests.screen.pictures import Stage
 from tests.screen.yes import twist_out
+from tests.texts import begins, pattern
 
 
 @pytest.fixture
@@ -101,5 +102,5 @@ def test_no_start_with_the_drives_off_and_it_is_said(stage: Stage, window: MainW
     stage.tick(lambda: desk.snapshot().start_refused != "", 2.0)
     let_go(window)
     window.refresh()
-    assert desk.notice.startswith("NO START: the drives are off")
+    assert begins(desk.notice, "screen.no-start", why=pattern("screen.drives-off-reason"))
     assert desk.snapshot().state is State.DISABLED

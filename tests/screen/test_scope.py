@@ -33,6 +33,7 @@ from tests.screen.desks import desk_on
 from tests.screen.fake import FakeMachine
 from tests.screen.hands import Hands, Key
 from tests.screen.yes import yes
+from tests.texts import begins, shows, text
 
 SHIFT, CTRL = Qt.KeyboardModifier.ShiftModifier, Qt.KeyboardModifier.ControlModifier
 
@@ -190,7 +191,7 @@ def test_two_cursors_tell_the_difference(hands: Hands) -> None:
     page = frozen(hands)
     hands.key(Key.Key_F5)
     scope = page.scope
-    hands.sees(lambda: "X following error" in scope.sight.at)
+    hands.sees(lambda: text("scope.following-error", axis="X") in scope.sight.at)
     first, second = scope.cursors.times
     hands.key(Key.Key_Right)
     assert scope.cursors.times[0] == pytest.approx(first + 10.0 / scope.pixels)
@@ -205,7 +206,7 @@ def test_two_cursors_tell_the_difference(hands: Hands) -> None:
 def test_cursors_stand_on_frozen_curves_only(hands: Hands) -> None:
     opened(hands)
     hands.key(Key.Key_F5)
-    hands.sees(lambda: "PRESS F2 TO FREEZE" in hands.prompt())
+    hands.sees(lambda: shows(hands.prompt(), "scope.freeze-first"))
 
 
 def test_a_finger_takes_a_cursor_along(hands: Hands) -> None:
@@ -309,7 +310,7 @@ def test_a_ninth_curve_is_refused(hands: Hands) -> None:
     hands.key(Key.Key_F4)
     for key in (Key.Key_Return, Key.Key_Down, Key.Key_Return, Key.Key_Down, Key.Key_Down, Key.Key_Return):
         hands.key(key)
-    hands.sees(lambda: "8 CURVES ARE SHOWN" in hands.prompt())
+    hands.sees(lambda: shows(hands.prompt(), "scope.too-many-curves", most=8))
     assert len(page.scope.shown) == 8
 
 
@@ -377,7 +378,7 @@ def test_a_level_that_is_none_is_refused(hands: Hands) -> None:
     hands.key(Key.Key_Down)
     hands.type("1/0")
     hands.key(Key.Key_Return)
-    hands.sees(lambda: hands.prompt().startswith("REFUSED"))
+    hands.sees(lambda: begins(hands.prompt(), "screen.refused"))
     assert page.scope.trigger.level == 0.0
     assert page.scope.frozen is None
 
@@ -413,7 +414,7 @@ def test_a_table_and_a_picture_are_written(hands: Hands, tmp_path: Path) -> None
     frozen(hands)
     hands.key(Key.Key_F9)
     hands.key(Key.Key_F5)
-    hands.sees(lambda: hands.prompt().startswith("WRITTEN") and ".csv" in hands.prompt())
+    hands.sees(lambda: begins(hands.prompt(), "screen.written") and ".csv" in hands.prompt())
     hands.key(Key.Key_F6)
     hands.sees(lambda: ".png" in hands.prompt())
     table = next((tmp_path / "records").glob("*.csv")).read_text().splitlines()
@@ -426,7 +427,7 @@ def test_live_curves_are_no_record_yet(hands: Hands, tmp_path: Path) -> None:
     opened(hands)
     hands.key(Key.Key_F9)
     hands.key(Key.Key_F2)
-    hands.sees(lambda: "PRESS F2 TO FREEZE" in hands.prompt())
+    hands.sees(lambda: shows(hands.prompt(), "scope.freeze-first"))
     assert not list((tmp_path / "records").glob("*"))
 
 
@@ -450,7 +451,7 @@ def test_what_is_no_record_is_told(hands: Hands, tmp_path: Path) -> None:
     hands.key(Key.Key_F9)
     hands.sees(lambda: len(page.scope.shelf.files) == 1)
     hands.key(Key.Key_Return)
-    hands.sees(lambda: hands.prompt().startswith("REFUSED") and "bad.scope" in hands.prompt())
+    hands.sees(lambda: begins(hands.prompt(), "screen.refused") and "bad.scope" in hands.prompt())
     assert page.scope.is_live
 
 
@@ -495,7 +496,7 @@ def test_nothing_is_recorded_on_a_machine_without(hands: Hands) -> None:
     scope.signals = ()
     hands.key(Key.Key_F10, SHIFT)
     hands.key(Key.Key_F2)
-    hands.sees(lambda: "NOTHING IS RECORDED" in hands.prompt())
+    hands.sees(lambda: shows(hands.prompt(), "scope.nothing-recorded"))
 
 
 def test_a_full_disk_is_told(tmp_path: Path) -> None:
@@ -530,7 +531,7 @@ def test_the_analyses_stand_behind_f8(hands: Hands) -> None:
     hands.key(Key.Key_Z)
     assert page.analyses.magnified > before
     hands.key(Key.Key_F3)
-    hands.sees(lambda: "by the spindle's angle" in page.above.words)
+    hands.sees(lambda: shows(page.above.words, "scope.passes-by-angle"))
     hands.sees(lambda: page.drawing.chart is not None and len(page.drawing.chart.plots) == 2)
     hands.key(Key.Key_F4)
     hands.sees(lambda: "no arc" in page.above.words)
@@ -550,7 +551,7 @@ def test_f7_opens_what_was_recorded_before_an_alarm(hands: Hands, tmp_path: Path
     hands.key(Key.Key_F7)
     hands.sees(lambda: len(hands.frame.log.entries) == 2)
     hands.key(Key.Key_F10, SHIFT)  # the newest has none
-    hands.sees(lambda: "NOTHING WAS RECORDED BEFORE" in hands.prompt())
+    hands.sees(lambda: shows(hands.prompt(), "scope.nothing-before"))
     hands.key(Key.Key_Down, CTRL)
     hands.key(Key.Key_F10, SHIFT)
     scope = hands.desk.attached(Scope)
@@ -569,4 +570,4 @@ def test_a_record_that_is_gone_is_told(hands: Hands) -> None:
     hands.key(Key.Key_F7)
     hands.sees(lambda: len(hands.frame.log.entries) == 1)
     hands.key(Key.Key_F10, SHIFT)
-    hands.sees(lambda: hands.prompt().startswith("REFUSED") and "gone-alarm301" in hands.prompt())
+    hands.sees(lambda: begins(hands.prompt(), "screen.refused") and "gone-alarm301" in hands.prompt())

@@ -16,6 +16,7 @@ from core.executor.snapshot import Starts, State
 from tests.attached import attached
 from tests.screen.lathe import Key, Operator
 from tests.screen.yes import twist_out
+from tests.texts import begins, pattern, text
 
 
 def model_of(operator: Operator) -> SearchtoModel:
@@ -68,16 +69,16 @@ def test_after_an_estop_the_part_is_finished_from_the_line_that_was_running(oper
     estop_and_recover(operator)
     operator.key(Key.Key_F6)
     assert operator.frame.title.page == page_table.SEARCHTO
-    assert operator.prompt().startswith("LINE 18 WAS RUNNING WHEN THE PROGRAM BROKE OFF")
+    assert begins(operator.prompt(), "search.broke-off", line=18)
     page = found(operator)
-    assert page.state.shown.title == "STATE AT LINE 18"
+    assert page.state.shown.title == text("search.state-at-line", line=18)
     assert page.starts.starts == ("SPINDLE FORWARD G97 1800 RPM", "COOLANT")
     assert [leg.label for leg in page.path.legs] == ["", "1 X", "2 Z", "3 Z", "4 X", "5 Z"]
     assert [leg.rapid for leg in page.path.legs[1:]] == [False, False, True, True, True]
     assert operator.shot.rpm_command == 0.0
     assert "coolant" not in operator.shot.outputs  # nothing starts before it is confirmed and started
     confirmed(operator)
-    assert operator.prompt().startswith("TO START THE RESTART PRESS BOTH PALM BUTTONS")
+    assert begins(operator.prompt(), "search.start-restart", start=pattern("screen.both-palms"))
     operator.palms()
     operator.window.refresh()
     assert operator.frame.page is operator.frame.automatic
@@ -119,7 +120,7 @@ def test_a_line_is_found_by_its_text_and_the_list_follows(operator: Operator) ->
     operator.key(Key.Key_Escape)
     operator.type("QQ")
     operator.key(Key.Key_Return)
-    assert operator.prompt() == "QQ IS IN NO LINE"
+    assert operator.prompt() == text("search.in-no-line", what="QQ")
 
 
 def press(panel: Panel, box: QRectF) -> None:
@@ -168,21 +169,21 @@ def test_a_line_that_is_not_good_offers_its_neighbours(operator: Operator) -> No
     operator.key(Key.Key_F6)
     operator.type("8P9")
     page = found(operator)
-    assert page.state.shown.why == "Line 8 is run 5 times; there is no pass 9."
+    assert page.state.shown.why == text("search.no-such-pass", line=8, count=5, wanted=9)
     before, after = page.state.shown.near
     assert (before.key, after.key) == ("F8", "F9")
     operator.key(Key.Key_F10)
-    assert operator.prompt() == "CHOOSE A GOOD LINE FIRST"
+    assert operator.prompt() == text("search.good-line-first")
     operator.key(Key.Key_F9)
     model_of(operator).finder.worker.settle(60.0)
-    assert page_of(operator).state.shown.title == f"STATE AT LINE {after.line}"
+    assert page_of(operator).state.shown.title == text("search.state-at-line", line=after.line)
 
 
 def test_the_palms_start_nothing_before_it_is_confirmed(operator: Operator) -> None:
     loaded(operator)
     operator.key(Key.Key_F6)
     operator.palms()
-    assert operator.prompt().startswith("NO START: SEARCH A LINE AND CONFIRM IT FIRST")
+    assert begins(operator.prompt(), "screen.search-first")
     operator.type("7")
     found(operator)
     operator.palms()
@@ -230,19 +231,19 @@ def test_the_collet_must_be_as_the_line_has_it(operator: Operator) -> None:
     operator.key(Key.Key_F2, Key.Key_F6)
     operator.type("7")
     page = found(operator)
-    assert page.starts.trouble.startswith("THE COLLET IS OPEN AND MUST BE CLOSED")
+    assert begins(page.starts.trouble, "search.collet-open")
     operator.key(Key.Key_F10)
-    assert operator.prompt().startswith("THE COLLET IS OPEN")
+    assert begins(operator.prompt(), "search.collet-open")
     assert model_of(operator).stage is SearchtoStage.SHOWN
 
 
 def test_searchto_does_not_open_without_a_program_nor_while_one_runs(operator: Operator) -> None:
     operator.key(Key.Key_F6)
     assert operator.frame.page is operator.frame.automatic
-    assert operator.prompt() == "CHOOSE A PROGRAM FIRST (F2)"
+    assert operator.prompt() == text("screen.choose-program")
     operator.stage.start()
     operator.key(Key.Key_F6)
-    assert operator.prompt().startswith("A PROGRAM IS UNDER WAY")
+    assert begins(operator.prompt(), "screen.program-runs-no-search")
 
 
 def test_with_the_drives_off_nothing_is_confirmed(operator: Operator) -> None:
@@ -254,7 +255,7 @@ def test_with_the_drives_off_nothing_is_confirmed(operator: Operator) -> None:
     operator.type("7")
     found(operator)
     operator.key(Key.Key_F10)
-    assert operator.prompt() == "SWITCH THE DRIVES ON FIRST (D)"
+    assert operator.prompt() == text("screen.drives-off-for-search")
 
 
 def test_a_program_that_is_read_anew_is_searched_anew(operator: Operator) -> None:
@@ -304,7 +305,7 @@ def test_another_tool_at_the_part_leaves_it_by_its_own_way_and_what_is_left_out_
     operator.key(Key.Key_F6)
     operator.type("41")
     page = found(operator)
-    assert page.starts.trouble.startswith("LOOK: LINES 19 TO 39 ARE LEFT OUT AND THEIR METAL IS STILL")
+    assert begins(page.starts.trouble, "search.left-out", first=19, last=39)
     assert page.path.legs[1].label == "1 X"  # T1 stands on the outside
     assert model_of(operator).plan is not None
 
@@ -316,26 +317,29 @@ def test_the_pass_of_a_loop_is_chosen_by_keys_and_by_fingers(operator: Operator)
     operator.drives_on()
     operator.key(Key.Key_F6)
     operator.key(Key.Key_Right)
-    assert operator.prompt().startswith("ENTER FIRST; ONLY A LINE IN A LOOP")
+    assert begins(operator.prompt(), "search.enter-first")
     operator.type("8P3")
     page = found(operator)
-    assert page.state.shown.title == "STATE AT LINE 8, PASS 3 OF 5"
+    assert (
+        page.state.shown.title
+        == f"{text('search.state-at-line', line=8)}, {text('search.pass', number=3, count=5)}"
+    )
     loop = page.state.shown.rows[0]
     assert (loop.label, loop.wanted, loop.now) == ("PASS OF LINES 6-12", "3 OF 5", "—")
     rows = {row.label: row.wanted for row in page.state.shown.rows}
     assert rows["X Ø"] == "0.37500"  # .54 and .055 in, .02 out and .02 in again, in each pass
     operator.key(Key.Key_Right)
     model_of(operator).finder.worker.settle(60.0)
-    assert page_of(operator).state.shown.passes == "PASS 4 OF 5"
+    assert page_of(operator).state.shown.passes == text("search.pass", number=4, count=5)
     page.state.grab()  # draws, so that a finger finds its place
     assert page.state.touch(QPointF(page.state.width() * 0.1, page.state.height() - 25))
     model_of(operator).finder.worker.settle(60.0)
-    assert page_of(operator).state.shown.passes == "PASS 3 OF 5"
+    assert page_of(operator).state.shown.passes == text("search.pass", number=3, count=5)
     operator.key(Key.Key_Left, Key.Key_Left)
     model_of(operator).finder.worker.settle(60.0)
     operator.key(Key.Key_Left, Key.Key_Left)
     model_of(operator).finder.worker.settle(60.0)
-    assert page_of(operator).state.shown.passes == "PASS 1 OF 5"
+    assert page_of(operator).state.shown.passes == text("search.pass", number=1, count=5)
 
 
 def test_only_the_way_out_is_taken_and_the_page_stays(operator: Operator) -> None:
@@ -346,21 +350,21 @@ def test_only_the_way_out_is_taken_and_the_page_stays(operator: Operator) -> Non
     operator.key(Key.Key_F6, Key.Key_F4)
     model_of(operator).finder.worker.settle(60.0)
     page = page_of(operator)
-    assert operator.prompt() == "LOOK AT THE WAY OUT OF THE PART; F10 CONFIRMS IT"
+    assert operator.prompt() == text("search.look-at-way-out")
     assert [leg.label for leg in page.path.legs] == ["", "1 X", "2 Z", "3 Z"]
     assert page.starts.starts == ("NOTHING BUT THE SLIDES",)
-    assert page.starts.choices[0] == "THE TOOL LEAVES THE PART AT 20.00 in/min"
+    assert page.starts.choices[0] == text("search.leaves-part", feed="20.00 in/min")
     operator.palms()
     assert operator.shot.state is State.IDLE  # not before it is confirmed
     confirmed(operator)
-    assert operator.prompt().startswith("TO TAKE THE TOOL OUT OF THE PART PRESS BOTH PALM BUTTONS")
+    assert begins(operator.prompt(), "search.start-way-out", start=pattern("screen.both-palms"))
     operator.palms()
     assert operator.shot.state is State.RUN
     assert operator.frame.title.page == page_table.SEARCHTO
     operator.key(Key.Key_H)
     operator.reaches(State.HOLD)
     operator.pause(0.4)
-    assert operator.prompt().startswith("TO GO ON PRESS BOTH PALM BUTTONS")
+    assert begins(operator.prompt(), "screen.to-go-on", start=pattern("screen.both-palms"))
     operator.palms()
     operator.until(lambda: operator.shot.state is State.IDLE, 60.0)
     operator.pause(0.1)
@@ -369,7 +373,7 @@ def test_only_the_way_out_is_taken_and_the_page_stays(operator: Operator) -> Non
     assert operator.shot.interrupted_line == 18
     operator.key(Key.Key_F4)
     model_of(operator).finder.worker.settle(60.0)
-    assert operator.prompt() == "T1 STANDS CLEAR OF THE PART ALREADY"
+    assert operator.prompt() == text("search.tool-is-clear", tool=1)
 
 
 def test_a_bore_that_broke_off_is_finished_along_z(operator: Operator) -> None:
@@ -379,7 +383,7 @@ def test_a_bore_that_broke_off_is_finished_along_z(operator: Operator) -> None:
     estop_and_recover(operator)
     operator.key(Key.Key_F6)
     page = found(operator)
-    assert page.state.shown.title == "STATE AT LINE 38"
+    assert page.state.shown.title == text("search.state-at-line", line=38)
     # The bar stands on X.5 already: out along Z, and in again; within the bore at a feed.
     assert [leg.label for leg in page.path.legs] == ["", "1 Z", "2 Z", "3 Z"]
     assert [leg.rapid for leg in page.path.legs[1:]] == [False, True, True]

@@ -21,6 +21,8 @@ from tests.screen.desks import desk_on
 from tests.screen.fake import FakeMachine
 from tests.screen.hands import Hands, Key
 from tests.screen.yes import yes
+from tests.texts import begins, shows
+from tests.texts import text as wording
 
 SETUP = "SETUP SHEET"
 
@@ -101,7 +103,7 @@ def test_a_note_goes_only_after_asking(hands: Hands) -> None:
     yes(hands.window)
     hands.sees(lambda: function.notes == [])
     hands.key(Key.Key_F3)
-    assert hands.prompt() == "MARK A NOTE FIRST"
+    assert hands.prompt() == wording("screen.mark-note")
 
 
 def test_escape_leaves_a_note_as_it_was(hands: Hands) -> None:
@@ -128,7 +130,7 @@ def test_it_is_written_as_pdf_and_html(hands: Hands, tmp_path: Path) -> None:
     hands.key(Key.Key_F6)
     hands.sees(lambda: [place.label for place in function.places] == ["BLUE", "THIS CONTROL"])
     hands.key(Key.Key_Return)
-    hands.sees(lambda: "IS WHOLE AND ON THE DISK" in hands.prompt())
+    hands.sees(lambda: shows(hands.prompt(), "screen.file-is-whole"))
     page = (stick / "bushing.nc-setup.html").read_text()
     pdf = Pdf(stick / "bushing.nc-setup.pdf")
     made = "".join(pdf.pages)
@@ -156,7 +158,7 @@ def test_without_a_program_there_is_no_sheet(hands: Hands) -> None:
     assert page.table.sheet.rows == ()
     for key in (Key.Key_F2, Key.Key_F6):
         hands.key(key)
-        assert hands.prompt().startswith("CHOOSE A PROGRAM FIRST")
+        assert begins(hands.prompt(), "screen.choose-program-for-sheet")
     assert function.entry is None
     assert function.places == ()
 
@@ -180,7 +182,7 @@ def test_there_are_no_more_notes_than_can_be_read(hands: Hands) -> None:
     _, function = opened(hands)
     function._keep([f"NOTE {n}" for n in range(MOST_NOTES)])
     hands.key(Key.Key_F2)
-    assert "NOTES ALREADY" in hands.prompt()
+    assert shows(hands.prompt(), "screen.too-many-notes")
     assert function.entry is None
 
 
@@ -191,7 +193,7 @@ def test_a_place_that_cannot_be_written_is_told(hands: Hands, tmp_path: Path) ->
     hands.key(Key.Key_F6)
     hands.sees(lambda: bool(function.places))
     hands.key(Key.Key_Return)
-    hands.sees(lambda: "CANNOT BE WRITTEN" in hands.prompt())
+    hands.sees(lambda: shows(hands.prompt(), "screen.cannot-be-written"))
     assert function.busy == ""
 
 

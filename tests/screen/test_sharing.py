@@ -16,6 +16,8 @@ from core.executor.snapshot import State
 from core.sharing.shared_folder import SharedFolder
 from core.store.store import Store
 from tests.screen.day import Day, Key, begun
+from tests.texts import begins, shows
+from tests.texts import text as wording
 
 PEG = "(PEG)\nG90G94F300G72\nT1\nM03S2000\nG00X.7Z.1\nX.5\nG01G94F60Z-.3\nX.7\nG00Z1\nM05\nM30\n"
 BETTER = PEG.replace("F60", "F40")
@@ -83,13 +85,13 @@ def test_what_is_newer_is_compared_and_taken_when_asked(day: Day, sharing: Shari
     signs = [(row.sign, row.text) for row in model(day).elsewhere.changes if row.sign in "+-"]
     assert signs == [("-", "G01G94F60Z-.3"), ("+", "G01G94F40Z-.3")]
     day.key(Key.Key_F2)
-    assert day.prompt.startswith("PRESS Y TO TAKE peg.nc AS LATHE 2 HAS IT")
+    assert begins(day.prompt, "screen.take-shared", name="peg.nc", desk="LATHE 2")
     day.key(Key.Key_Escape)
     assert peg.read_text() == PEG
     day.key(Key.Key_F2)
     day.run(0.7)  # long enough to have been read
     day.key(Key.Key_Y)
-    day.sees(lambda: day.prompt == "peg.nc IS AS LATHE 2 HAS IT NOW")
+    day.sees(lambda: day.prompt == wording("screen.taken-shared", name="peg.nc", desk="LATHE 2"))
     assert peg.read_text() == BETTER
     day.sees(lambda: model(day).sheet().rows[0].cells[1] == "THE NEWEST")
     with sharing._store().read() as connection:
@@ -100,13 +102,13 @@ def test_what_is_newer_is_compared_and_taken_when_asked(day: Day, sharing: Shari
 def test_a_program_that_runs_is_not_replaced(day: Day, sharing: Sharing, tmp_path: Path) -> None:
     day.key(Key.Key_D)
     assert day.desk.choose("peg")
-    day.sees(lambda: day.prompt.startswith("TO START"))
+    day.sees(lambda: day.prompt.startswith(wording("screen.to-start")))
     day.palms()
     day.reaches(State.RUN)
     opened(day)
     day.sees(lambda: model(day).version is not None)
     day.key(Key.Key_F2)
-    assert day.prompt == "peg.nc IS UNDER WAY: LET IT END FIRST"
+    assert day.prompt == wording("screen.program-being-cut", name="peg.nc")
     day.key(Key.Key_Return)
     assert (tmp_path / "home" / "programs" / "peg.nc").read_text() == PEG
 
@@ -118,15 +120,15 @@ def test_what_both_have_changed_is_kept_by_f3(
     (tmp_path / "home" / "programs" / "peg.nc").write_text(mine)
     opened(day)
     day.key(Key.Key_F3)
-    assert day.prompt.startswith("THERE IS NOTHING TO SETTLE")
+    assert begins(day.prompt, "screen.nothing-to-settle")
     sharing.look()
-    day.sees(lambda: model(day).sheet().rows[0].cells[1] == "CHANGED HERE AND ELSEWHERE")
+    day.sees(lambda: model(day).sheet().rows[0].cells[1] == wording("screen.changed-on-both"))
     day.key(Key.Key_F3)
-    assert day.prompt.startswith("PRESS Y TO KEEP peg.nc AS IT IS HERE")
+    assert begins(day.prompt, "screen.keep-own", name="peg.nc")
     day.sees(lambda: not model(day).worker.busy)  # the versions of the others are read
     day.run(0.7)
     day.key(Key.Key_Y)
-    day.sees(lambda: day.prompt == "peg.nc STANDS AS IT IS HERE")
+    day.sees(lambda: day.prompt == wording("screen.kept-own", name="peg.nc"))
     sharing.look()
     assert other.look().states == {"peg.nc": "newer"}
 
@@ -142,12 +144,12 @@ def test_a_place_that_is_away_is_told_on_the_page_and_once_in_the_log(
     told = [each.text for each in day.journal.events("is not there", (), 10)]
     assert len(told) == 1
     opened(day)
-    assert "is not there" in " ".join(model(day).sheet().notes)
+    assert shows(" ".join(model(day).sheet().notes), "screen.share-not-there")
     day.sees(lambda: model(day).version is not None)
     day.key(Key.Key_F2)
     day.run(0.7)
     day.key(Key.Key_Y)
-    day.sees(lambda: day.prompt.startswith("REFUSED: the folder"))
+    day.sees(lambda: day.prompt.startswith(wording("screen.refused", why="the folder")))
 
 
 def test_a_change_to_the_program_on_the_desk_is_said_once(day: Day, sharing: Sharing) -> None:
@@ -158,7 +160,10 @@ def test_a_change_to_the_program_on_the_desk_is_said_once(day: Day, sharing: Sha
     heard.hear(sharing.now)  # on the sharing thread: a question is not spoilt in the middle of being asked
     assert day.desk.notice == "PRESS Y TO DELETE IT"
     day.desk.look()
-    assert (day.desk.notice, day.desk.asked) == ("peg.nc WAS CHANGED ON LATHE 2: F1, X SHOWS WHAT", "")
+    assert (day.desk.notice, day.desk.asked) == (
+        wording("screen.changed-elsewhere", name="peg.nc", desk="LATHE 2"),
+        "",
+    )
     day.desk.clear()
     heard.hear(sharing.now)
     day.desk.look()
@@ -169,7 +174,7 @@ def test_without_a_place_the_page_says_what_names_one(day: Day) -> None:
     opened(day)
     assert model(day).sheet().notes == (NO_PLACE,)
     day.key(Key.Key_F2)
-    assert day.prompt == "MARK A PROGRAM FIRST"
+    assert day.prompt == wording("screen.mark-program")
     day.key(Key.Key_F5)
     assert day.prompt == NO_PLACE
 
@@ -177,12 +182,12 @@ def test_without_a_place_the_page_says_what_names_one(day: Day) -> None:
 def test_a_place_that_never_answers_is_told_and_takes_nothing(day: Day, sharing: Sharing) -> None:
     """A dead network drive: the look waits for ever. The page says so behind 30 s, and queues nothing."""
     model(day).silent_for = lambda: 29.0
-    assert not any("HAS NOT ANSWERED" in note for note in model(day).sheet().notes)
+    assert not any(shows(note, "screen.share-silent") for note in model(day).sheet().notes)
     opened(day)
     day.sees(lambda: model(day).version is not None and not model(day).worker.busy)
     model(day).silent_for = lambda: 95.0
-    said = f"{sharing.place.name} HAS NOT ANSWERED FOR 95 S"
-    assert "HAS NOT ANSWERED FOR 95 S" in " ".join(model(day).sheet().notes)
+    said = wording("screen.share-silent", name=sharing.place.name, seconds=95)
+    assert shows(" ".join(model(day).sheet().notes), "screen.share-silent", seconds=95)
     for key in (Key.Key_F5, Key.Key_F2):
         day.desk.clear()
         day.key(key)

@@ -21,6 +21,8 @@ from tests.screen.desks import desk_on
 from tests.screen.fake import FakeMachine
 from tests.screen.hands import Hands, Key
 from tests.screen.yes import yes
+from tests.texts import begins, opening, shows
+from tests.texts import text as wording
 
 
 @pytest.fixture
@@ -63,7 +65,7 @@ def test_the_spindle_is_limited_by_a_sum_until_restart(hands: Hands) -> None:
     assert SpindleLimit(1250.0) in hands.machine.posted
     hands.sees(lambda: cells(page, 1)[1] == "1250")
     hands.key(Key.Key_F4)
-    assert hands.prompt().startswith("PRESS Y TO LIFT")
+    assert begins(hands.prompt(), "screen.lift-limit")
     yes(hands.window)
     hands.sees(lambda: cells(page, 1)[1] == "NONE")
 
@@ -71,10 +73,19 @@ def test_the_spindle_is_limited_by_a_sum_until_restart(hands: Hands) -> None:
 @pytest.mark.parametrize(
     ("typed", "why"),
     [
-        ("9000", "REFUSED: 9000 rpm is not between 50 and 3500 rpm"),
-        ("0", "REFUSED: 0 rpm is not between"),
-        ("", "REFUSED: nothing is entered"),
-        ("12,5", "REFUSED: , in 12,5 is no number"),
+        (
+            "9000",
+            wording("screen.refused", why=wording("screen.rpm-not-between", rpm=9000, low=50, high=3500)),
+        ),
+        ("0", wording("screen.refused", why=opening("screen.rpm-not-between", rpm=0))),
+        ("", wording("screen.refused", why=wording("screen.nothing-entered"))),
+        (
+            "12,5",
+            wording(
+                "screen.refused",
+                why=wording("screen.no-number", what=",", entry="12,5", hint=wording("screen.decimal-point")),
+            ),
+        ),
     ],
 )
 def test_a_limit_that_the_spindle_cannot_turn_is_refused(hands: Hands, typed: str, why: str) -> None:
@@ -88,7 +99,7 @@ def test_a_limit_that_the_spindle_cannot_turn_is_refused(hands: Hands, typed: st
 def test_lifting_no_limit_says_so(hands: Hands) -> None:
     open_function(hands, 1)
     hands.key(Key.Key_F4)
-    assert hands.prompt() == "NO LIMIT IS IN FORCE"
+    assert hands.prompt() == wording("screen.no-limit")
 
 
 def test_a_target_stops_the_repeating_and_is_told(hands: Hands, journal: Journal) -> None:
@@ -99,9 +110,9 @@ def test_a_target_stops_the_repeating_and_is_told(hands: Hands, journal: Journal
     hands.sees(lambda: cells(page, 1) == ("STOP AT", "2"))
     hands.machine.now = replace(hands.machine.now, parts=1, cycle_repeat=True, counts=True, state=State.WAIT)
     hands.sees(lambda: SetSwitch("cycle_repeat", False) in hands.machine.posted)
-    assert hands.prompt().startswith("THE LAST PART OF THE TARGET")
+    assert begins(hands.prompt(), "screen.last-part-of-target")
     hands.machine.now = replace(hands.machine.now, parts=2, state=State.IDLE)
-    hands.sees(lambda: hands.prompt() == "TARGET REACHED: 2 OF 2 PARTS")
+    hands.sees(lambda: hands.prompt() == wording("screen.target-reached", count=2, target=2))
     assert hands.desk.counter.words == "2/2"
     hands.key(Key.Key_F4)
     yes(hands.window)
@@ -112,9 +123,9 @@ def test_the_counter_without_a_program_refuses(hands: Hands) -> None:
     open_function(hands, 2)
     hands.type("5")
     hands.key(Key.Key_Return)
-    assert hands.prompt().startswith("CHOOSE A PROGRAM FIRST")
+    assert begins(hands.prompt(), "screen.choose-program-for-count")
     hands.key(Key.Key_F4)
-    assert hands.prompt().startswith("CHOOSE A PROGRAM FIRST")
+    assert begins(hands.prompt(), "screen.choose-program-for-count")
 
 
 @pytest.mark.parametrize("typed", ["1.5", "-3", "99999999"])
@@ -123,7 +134,7 @@ def test_no_number_of_parts(hands: Hands, typed: str) -> None:
     open_function(hands, 2)
     hands.type(typed)
     hands.key(Key.Key_Return)
-    assert "is no number of parts" in hands.prompt()
+    assert shows(hands.prompt(), "screen.no-number-of-parts")
 
 
 def test_a_target_below_what_is_made_is_refused(hands: Hands, journal: Journal) -> None:
@@ -135,14 +146,14 @@ def test_a_target_below_what_is_made_is_refused(hands: Hands, journal: Journal) 
     hands.sees(lambda: hands.desk.counter.count == 3)
     hands.type("2")
     hands.key(Key.Key_Return)
-    assert hands.prompt() == "REFUSED: 3 PARTS ARE MADE ALREADY; F4 PUTS THE COUNT TO NOUGHT"
+    assert hands.prompt() == wording("screen.parts-made-already", made=3)
 
 
 def test_an_output_is_switched_after_asking(hands: Hands) -> None:
     page = open_function(hands, 3)
     assert cells(page, 0) == ("coolant", "OUT-1", "OFF", "M08 M09")
     hands.key(Key.Key_Return)
-    assert hands.prompt() == "PRESS Y TO SWITCH coolant ON, ESC TO LEAVE IT OFF"
+    assert hands.prompt() == wording("screen.switch-on", name="coolant")
     hands.key(Key.Key_Escape)
     hands.key(Key.Key_Return)
     hands.key(Key.Key_Return)
@@ -177,7 +188,7 @@ def test_inputs_and_lamps_are_seen_and_not_switched(hands: Hands) -> None:
     hands.key(Key.Key_F4)
     hands.sees(lambda: ("TB2-5", "TB2-5", "ON", "M91 M92") in [row.cells for row in page.table.sheet.rows])
     hands.key(Key.Key_Return)
-    assert hands.prompt() == "ONLY OUTPUTS CAN BE SWITCHED; F4 SHOWS THEM"
+    assert hands.prompt() == wording("screen.only-outputs-switched")
     hands.key(Key.Key_F4)
     hands.sees(lambda: page.table.sheet.title == "MACHINE LAMPS")
 
@@ -219,14 +230,16 @@ def test_a_backup_is_made_and_restored(hands: Hands, journal: Journal) -> None:
     page = open_function(hands, 6)
     hands.sees(lambda: len(page.table.sheet.rows) >= 1)
     hands.key(Key.Key_Return)
-    hands.sees(lambda: "IS WHOLE AND ON THE DISK" in hands.prompt())
-    hands.sees(lambda: len(page.table.sheet.rows) >= 2 and cells(page, 1)[1] == "RESTORE: IT IS WHOLE")
+    hands.sees(lambda: shows(hands.prompt(), "screen.file-is-whole"))
+    hands.sees(
+        lambda: len(page.table.sheet.rows) >= 2 and cells(page, 1)[1] == wording("screen.restore-is-whole")
+    )
     store.set_setting("mark", "after").result(60)
     hands.key(Key.Key_Down)
     hands.key(Key.Key_Return)
-    assert hands.prompt().startswith("PRESS Y TO RESTORE")
+    assert begins(hands.prompt(), "screen.restore")
     yes(hands.window)
-    hands.sees(lambda: hands.prompt().startswith("RESTORED"))
+    hands.sees(lambda: begins(hands.prompt(), "screen.restored"))
     assert journal.setting("mark") == "before"
     assert hands.desk.book.store is not store
     journal.hear(Event(0.0, "start", "after the restore"))
@@ -251,14 +264,14 @@ def test_the_list_tells_what_a_backup_is_worth(hands: Hands, journal: Journal) -
     said = ["RESTORE: IT IS WHOLE", "NOTHING: IT IS DAMAGED"]
     hands.sees(lambda: [row.cells[1] for row in page.table.sheet.rows[1:3]] == said)
     hands.key(Key.Key_Down)
-    hands.sees(lambda: page.table.sheet.notes[0] == "Other than now: tool offsets 1.")
+    hands.sees(lambda: page.table.sheet.notes[0] == wording("screen.other-than-now", what="tool offsets 1"))
     hands.key(Key.Key_Return)
-    assert "(tool offsets 1)" in hands.prompt()
+    assert shows(hands.prompt(), "screen.restore", what="tool offsets 1")
     hands.key(Key.Key_Escape)
     hands.key(Key.Key_Down)
     hands.key(Key.Key_Return)
-    assert "REFUSED" in hands.desk.notice
-    assert "is not a database" in hands.desk.notice
+    assert shows(hands.desk.notice, "screen.refused")
+    assert shows(hands.desk.notice, "screen.not-a-database")
     assert store.tools()[3].x == 2.0
 
 
@@ -275,18 +288,20 @@ def test_a_restore_that_switches_levels_off_says_so_and_by_whom(hands: Hands, jo
     access = hands.desk.access
     access.reload()
     hands.key(Key.Key_F4)
-    hands.sees(lambda: [row.cells[1] for row in page.table.sheet.rows[1:2]] == ["RESTORE: IT IS WHOLE"])
+    hands.sees(
+        lambda: [row.cells[1] for row in page.table.sheet.rows[1:2]] == [wording("screen.restore-is-whole")]
+    )
     hands.key(Key.Key_Down)
     hands.key(Key.Key_Return)
-    assert "SERVICE LEVEL IS NEEDED" in hands.desk.notice
+    assert shows(hands.desk.notice, "screen.level-needed", level="SERVICE")
     access.sign_in(access.people.rows[0], "4711")
     hands.sees(lambda: access.name == "ANNA")
     hands.key(Key.Key_Return)
     yes(hands.window)
-    hands.sees(lambda: "LEVELS ARE OFF" in hands.desk.notice)
+    hands.sees(lambda: shows(hands.desk.notice, "screen.nobody-entered"))
     hands.sees(lambda: len(journal.opened().events(kinds={"access"})) > 0)
     told = {(row.text, row.who) for row in journal.opened().events(kinds={"access", "change"})}
-    assert ("levels are off: nobody is entered in what was restored", "ANNA") in told
+    assert (wording("log.restored-levels-off"), "ANNA") in told
     assert any(text.startswith("restored; ") and who == "ANNA" for text, who in told)
 
 
@@ -330,7 +345,7 @@ def test_the_station_is_not_hidden_with_its_estop_pressed(hands: Hands) -> None:
     for _ in range(4):
         hands.key(Key.Key_Down)
     hands.key(Key.Key_Return)
-    assert hands.desk.notice.startswith("RELEASE THE E-STOP OF THE STATION")
+    assert begins(hands.desk.notice, "screen.release-station-e-stop")
     assert hands.desk.settings.now.dock
 
 
@@ -366,7 +381,7 @@ def test_the_count_is_corrected_by_hand(hands: Hands, journal: Journal) -> None:
     hands.load("pin")
     page = open_function(hands, 2)
     hands.key(Key.Key_F3)
-    assert hands.prompt() == "THE COUNT IS AT NOUGHT"
+    assert hands.prompt() == wording("screen.count-is-nought")
     hands.key(Key.Key_F2)
     hands.key(Key.Key_F2)
     hands.key(Key.Key_F3)
@@ -377,7 +392,7 @@ def test_the_count_is_corrected_by_hand(hands: Hands, journal: Journal) -> None:
 def test_the_count_of_no_program_is_not_corrected(hands: Hands) -> None:
     open_function(hands, 2)
     hands.key(Key.Key_F2)
-    assert hands.prompt().startswith("CHOOSE A PROGRAM FIRST")
+    assert begins(hands.prompt(), "screen.choose-program-for-count")
 
 
 def test_the_list_has_rows_of_a_fingertip_and_leafs(hands: Hands) -> None:
@@ -415,7 +430,7 @@ def test_a_simulated_input_is_switched_and_one_of_the_station_is_not(hands: Hand
     page.model.current.marked = names.index("estop")
     hands.key(Key.Key_Return)
     assert len(switched) == 1
-    assert "BUTTON OF THE STATION" in hands.prompt()
+    assert shows(hands.prompt(), "screen.output-follows-machine")
 
 
 def test_lamps_and_sound_are_one_table_and_off_by_default(hands: Hands) -> None:
@@ -423,16 +438,16 @@ def test_lamps_and_sound_are_one_table_and_off_by_default(hands: Hands) -> None:
     page = hands.frame.page
     assert isinstance(page, SpecialPage)
     page._enter([each.name for each in page.model.functions].index("LAMPS AND SOUND"))
-    assert "VOLUME: OFF" in page.model.current.sheet(hands.desk.snapshot()).notes
+    assert wording("screen.volume", volume="OFF") in page.model.current.sheet(hands.desk.snapshot()).notes
     hands.sees(lambda: cells(page, 3)[1:] == ("AMBER BLINKING + BUZZER 1 s", "ON"))
     hands.key(Key.Key_F4)
-    assert hands.prompt() == "THE VOLUME IS NOUGHT: F3 MAKES IT LOUDER"
+    assert hands.prompt() == wording("screen.volume-nought")
     hands.key(Key.Key_F3)
-    assert "VOLUME: 20 %" in page.model.current.sheet(hands.desk.snapshot()).notes
+    assert wording("screen.volume", volume="20 %") in page.model.current.sheet(hands.desk.snapshot()).notes
     hands.key(Key.Key_Return)
     hands.sees(lambda: cells(page, 0)[2] == "OFF")
     hands.key(Key.Key_F5)
-    assert hands.prompt() == "THIS MACHINE HAS NO LAMPS: NAME THEM UNDER [io.out] OF ITS FILE"
+    assert hands.prompt() == wording("screen.no-lamps")
 
 
 def test_the_shift_report_is_made_and_written_to_the_control(hands: Hands) -> None:
@@ -442,10 +457,10 @@ def test_the_shift_report_is_made_and_written_to_the_control(hands: Hands) -> No
     page._enter([each.name for each in page.model.functions].index("SHIFT REPORT"))
     hands.sees(lambda: bool(page.table.sheet.rows) and cells(page, 0) == ("Parts", "0"))
     hands.key(Key.Key_F3)
-    assert hands.prompt() == "THERE IS NO LATER SHIFT"
+    assert hands.prompt() == wording("screen.no-later-shift")
     hands.key(Key.Key_F2)
     hands.sees(
-        lambda: page.model.current.sheet(hands.desk.snapshot()).notes[-1].startswith("No part was begun")
+        lambda: begins(page.model.current.sheet(hands.desk.snapshot()).notes[-1], "screen.no-part-begun")
     )
     hands.key(Key.Key_F6)
     hands.sees(lambda: bool(page.table.sheet.rows) and cells(page, -1)[0] == "THIS CONTROL")
@@ -453,6 +468,6 @@ def test_the_shift_report_is_made_and_written_to_the_control(hands: Hands) -> No
     for _ in page.table.sheet.rows:
         hands.key(Key.Key_Down)
     hands.key(Key.Key_Return)
-    hands.sees(lambda: hands.prompt().endswith("ON THE DISK: A STICK MAY BE REMOVED"))
+    hands.sees(lambda: shows(hands.prompt(), "screen.file-is-whole"))
     (written,) = (data_folder() / "sheets").glob("shift-*.html")
-    assert "No part was begun in this time." in written.read_text()
+    assert wording("screen.no-part-begun") in written.read_text()

@@ -15,6 +15,7 @@ from core.executor.commands import CycleStart, FeedHold, Reset
 from core.executor.snapshot import Alarm, State
 from tests.screen.hands import Hands, Key
 from tests.screen.yes import twist_out, yes
+from tests.texts import begins, shows, text
 
 
 def test_pick_start_hold_resume_single_block_estop_recover(hands: Hands) -> None:
@@ -25,7 +26,7 @@ def test_pick_start_hold_resume_single_block_estop_recover(hands: Hands) -> None
     hands.sees(lambda: hands.machine.now.line > 4)
     hands.key(Key.Key_H)
     hands.sees_state(State.HOLD)
-    assert hands.prompt().startswith("TO GO ON")
+    assert begins(hands.prompt(), "screen.to-go-on")
     hands.both_palms()
     hands.sees_state(State.RUN)
     hands.key(Key.Key_S)
@@ -36,7 +37,7 @@ def test_pick_start_hold_resume_single_block_estop_recover(hands: Hands) -> None
     hands.key(Key.Key_E)
     hands.sees_state(State.ESTOP)
     hands.key(Key.Key_D)
-    assert "STILL PRESSED" in hands.prompt()
+    assert shows(hands.prompt(), "screen.e-stop-pressed")
     twist_out(hands.window)
     hands.sees_state(State.DISABLED)
     hands.key(Key.Key_D)
@@ -141,7 +142,7 @@ def test_losing_the_keyboard_lets_a_palm_go(hands: Hands) -> None:
 
 def test_no_start_without_a_program(hands: Hands) -> None:
     hands.both_palms()
-    hands.sees(lambda: hands.prompt() == "NO START: NO PROVED PROGRAM")
+    hands.sees(lambda: hands.prompt() == text("screen.no-start", why="NO PROVED PROGRAM"))
 
 
 def test_no_start_while_an_alarm_stands(hands: Hands) -> None:
@@ -149,7 +150,7 @@ def test_no_start_while_an_alarm_stands(hands: Hands) -> None:
     hands.machine.fault(Alarm(102, "following", "FOLLOWING ERROR", "blocked", "free the slide", line=4))
     hands.sees_state(State.FAULT)
     hands.both_palms()
-    hands.sees(lambda: hands.prompt() == "NO START: AN ALARM STANDS")
+    hands.sees(lambda: hands.prompt() == text("screen.no-start", why="AN ALARM STANDS"))
     assert hands.frame.notice.isVisible()
     hands.key(Key.Key_R)
     hands.sees_state(State.DISABLED)
@@ -169,9 +170,9 @@ def test_a_program_with_errors_is_shown_and_refused(
     hands.key(Key.Key_F2)
     hands.type(str(bad))
     hands.key(Key.Key_Return)
-    hands.sees(lambda: hands.prompt().startswith("WILL NOT RUN: LINE 3"))
+    hands.sees(lambda: hands.prompt().startswith(text("screen.will-not-run", why="LINE 3")))
     hands.both_palms()
-    hands.sees(lambda: hands.prompt() == "NO START: THE PROGRAM HAS ERRORS")
+    hands.sees(lambda: hands.prompt() == text("screen.no-start", why="THE PROGRAM HAS ERRORS"))
 
 
 def test_resetting_an_interrupted_program_is_asked_once(hands: Hands) -> None:
@@ -179,7 +180,7 @@ def test_resetting_an_interrupted_program_is_asked_once(hands: Hands) -> None:
     hands.both_palms()
     hands.sees_state(State.RUN)
     hands.key(Key.Key_R)
-    assert "FEED HOLD FIRST" in hands.prompt()
+    assert shows(hands.prompt(), "screen.feed-hold-first")
     hands.key(Key.Key_Space)
     hands.sees_state(State.HOLD)
     hands.key(Key.Key_R)
@@ -199,7 +200,7 @@ def test_no_other_program_and_no_leaving_while_one_runs(hands: Hands) -> None:
     assert not hands.page.files.isVisible()
     hands.window.close()
     assert hands.window.isVisible()
-    assert "BEFORE LEAVING" in hands.prompt()
+    assert shows(hands.prompt(), "screen.program-runs-no-leaving")
 
 
 def test_a_cycle_started_at_the_station_takes_the_keyboard_from_the_question(hands: Hands) -> None:
@@ -243,12 +244,12 @@ def test_block_delete_proves_the_program_again(hands: Hands) -> None:
 
 def test_drives_off_asks_for_the_drives(hands: Hands) -> None:
     hands.machine.now = replace(hands.machine.now, state=State.DISABLED)
-    hands.sees(lambda: hands.prompt() == "DRIVES ARE OFF: PRESS D FOR DRIVES ON")
+    hands.sees(lambda: hands.prompt() == text("screen.drives-off"))
 
 
 def test_readout_and_theme_change_by_key(hands: Hands) -> None:
     hands.key(Key.Key_F4)
-    hands.sees(lambda: hands.frame.position.readout == "DISTANCE TO GO")
+    hands.sees(lambda: hands.frame.position.readout == text("screen.distance-to-go"))
     hands.key(Key.Key_T)
     assert hands.window.look.palette.name == "light"
     hands.key(Key.Key_T)

@@ -21,6 +21,7 @@ from core.store.store import Store
 from core.store.store_rows import Kind, ShapeRow
 from tests.screen.hands import Hands, Key
 from tests.screen.yes import yes
+from tests.texts import begins, text
 
 LIMIT = 60.0
 
@@ -148,7 +149,7 @@ def test_what_cannot_be_is_told_and_not_drawn(hands: Hands, store: Store) -> Non
     store.set_offset(Kind.SHAPE, 1, "set", {"kind": "drill"}).result(LIMIT)
     hands.desk.book.read()
     page = opened(hands)
-    hands.sees(lambda: hands.prompt().startswith("T1: tip 3 is no end of a round tool"))
+    hands.sees(lambda: hands.prompt().startswith(f"T1: {text('screen.tip-not-round', tip=3)}"))
     hands.window.refresh()
     assert hands.window.look.colour("ghost").name() not in colours(hands, page.table)
     assert hands.window.look.colour("alarm").name() in colours(hands, page.table)
@@ -157,7 +158,7 @@ def test_what_cannot_be_is_told_and_not_drawn(hands: Hands, store: Store) -> Non
 def test_f3_asks_before_it_forgets(hands: Hands, store: Store) -> None:
     page = opened(hands)
     hands.key(Key.Key_F3)
-    assert hands.prompt().startswith("PRESS Y TO FORGET THE SHAPE OF T1")
+    assert hands.prompt() == text("screen.forget-shape", number=1)
     hands.key(Key.Key_Escape)
     assert 1 in store.shapes()
     hands.key(Key.Key_F3)
@@ -181,7 +182,7 @@ def test_history_tells_what_has_changed(hands: Hands, store: Store) -> None:
 def test_nothing_changes_under_a_running_program(hands: Hands, store: Store) -> None:
     opened(hands)
     hands.machine.now = replace(hands.machine.now, state=State.RUN)
-    hands.sees(lambda: hands.prompt().startswith("A PROGRAM IS UNDER WAY"))
+    hands.sees(lambda: begins(hands.prompt(), "screen.program-runs-wear-only"))
     hands.key(Key.Key_Right)
     hands.key(Key.Key_Return)
     hands.key(Key.Key_F4)
@@ -192,7 +193,7 @@ def test_without_a_store_the_reason_is_told(hands: Hands) -> None:
     opened(hands)
     hands.key(Key.Key_Right)
     hands.key(Key.Key_Return)
-    hands.sees(lambda: hands.prompt() == "NO OFFSETS ARE KEPT HERE")
+    hands.sees(lambda: hands.prompt() == text("screen.no-offsets-kept"))
 
 
 def test_refusal_is_spanish_where_the_operator_is(hands: Hands, store: Store) -> None:

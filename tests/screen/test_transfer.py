@@ -26,6 +26,7 @@ from tests.screen.desks import desk_on
 from tests.screen.fake import FakeMachine
 from tests.screen.hands import Hands, Key, window_on
 from tests.screen.yes import yes
+from tests.texts import shows, text
 
 DEFAULT = DncModel("/dev/ttyUSB0", 9600, 7, "E", 1, "xonxoff", "%", "\r\n")
 CAME = Received(b"O77\nM30\n", "O77.nc", 2, "ab" * 32, False, 3, (), 1.5)
@@ -142,12 +143,12 @@ def test_a_program_comes_in_under_a_new_name_and_starts_nothing(
     hands: Hands, lines: FakeLines, tmp_path: Path
 ) -> None:
     hands.key(Key.Key_F5)
-    hands.sees(lambda: cells(hands).get("WAITS") == "HELD BY THE OTHER SIDE (XOFF)")
+    hands.sees(lambda: cells(hands).get("WAITS") == text("screen.xoff"))
     assert cells(hands)["DONE"] == "50%"
     assert lines.job is not None
     posted = len(hands.machine.posted)
     lines.job.go.set()
-    hands.sees(lambda: page(hands).table.sheet.question == "NAME OF THE NEW PROGRAM?")
+    hands.sees(lambda: page(hands).table.sheet.question == text("screen.name-of-new-program"))
     assert page(hands).table.sheet.text == "O77.nc"
     assert cells(hands)["PROVED"] == "NO ERROR"
     hands.key(Key.Key_Delete)
@@ -156,7 +157,7 @@ def test_a_program_comes_in_under_a_new_name_and_starts_nothing(
     target = tmp_path / "own" / "new.nc"
     hands.sees(target.exists)
     assert target.read_bytes() == CAME.text
-    assert "NOTHING WAS STARTED" in hands.desk.notice
+    assert shows(hands.desk.notice, "screen.stored-as-new")
     assert len(hands.machine.posted) == posted
 
 
@@ -173,9 +174,9 @@ def test_a_taken_name_is_refused_and_the_program_still_there(
     hands.key(Key.Key_Delete)
     hands.type("o77")
     hands.key(Key.Key_Return)
-    hands.sees(lambda: "IS THERE ALREADY" in hands.desk.notice)
+    hands.sees(lambda: shows(hands.desk.notice, "screen.name-is-there"))
     assert old.read_bytes() == b"OLD\n"
-    assert page(hands).table.sheet.question == "NAME OF THE NEW PROGRAM?"
+    assert page(hands).table.sheet.question == text("screen.name-of-new-program")
 
 
 def test_it_is_thrown_away_after_asking(hands: Hands, lines: FakeLines, tmp_path: Path) -> None:
@@ -184,7 +185,7 @@ def test_it_is_thrown_away_after_asking(hands: Hands, lines: FakeLines, tmp_path
     lines.job.go.set()
     hands.sees(lambda: page(hands).table.sheet.question != "")
     hands.key(Key.Key_F6)
-    hands.sees(lambda: "PRESS Y TO THROW" in hands.desk.notice)
+    hands.sees(lambda: shows(hands.desk.notice, "screen.throw-away-received"))
     assert page(hands).table.sheet.question != ""
     yes(hands.window)
     hands.sees(lambda: page(hands).table.sheet.question == "")
@@ -195,7 +196,7 @@ def test_giving_up_keeps_nothing(hands: Hands, lines: FakeLines, tmp_path: Path)
     hands.key(Key.Key_F5)
     hands.sees(lambda: "WAITS" in cells(hands))
     hands.key(Key.Key_F6)
-    hands.sees(lambda: "NOTHING IS KEPT: cancelled" in hands.desk.notice)
+    hands.sees(lambda: text("screen.nothing-kept", why="cancelled") in hands.desk.notice)
     assert "PORT" in cells(hands)
     assert not (tmp_path / "own").exists()
 
@@ -205,7 +206,7 @@ def test_what_fails_on_the_line_is_told(hands: Hands, lines: FakeLines) -> None:
     hands.key(Key.Key_F5)
     assert lines.job is not None
     lines.job.go.set()
-    hands.sees(lambda: "NOTHING IS KEPT: parity error in line 7" in hands.desk.notice)
+    hands.sees(lambda: text("screen.nothing-kept", why="parity error in line 7") in hands.desk.notice)
     assert hands.desk.answers.sort is Sort.ANSWER
 
 
@@ -214,16 +215,16 @@ def test_where_no_port_is_there_that_is_told(hands: Hands) -> None:
     assert isinstance(section, SerialTransfer)
     port, section.ports = section.settings.port, ()
     hands.key(Key.Key_Return)
-    assert "NO SERIAL PORT IS THERE" in hands.desk.notice
+    assert shows(hands.desk.notice, "screen.no-serial-port")
     assert section.settings.port == port
     hands.key(Key.Key_Down)
     hands.key(Key.Key_Return)  # the other settings need none
-    assert "NO SERIAL PORT" not in hands.desk.notice
+    assert not shows(hands.desk.notice, "screen.no-serial-port")
 
 
 def test_without_a_program_on_the_desk_nothing_is_sent(hands: Hands, lines: FakeLines) -> None:
     hands.key(Key.Key_F4)
-    hands.sees(lambda: "NO PROGRAM IS ON THE DESK" in hands.desk.notice)
+    hands.sees(lambda: shows(hands.desk.notice, "screen.nothing-to-send"))
     assert lines.said == []
 
 
@@ -234,7 +235,7 @@ def test_the_program_on_the_desk_goes_out(hands: Hands, lines: FakeLines) -> Non
     hands.sees(lambda: lines.job is not None)
     assert lines.job is not None
     lines.job.go.set()
-    hands.sees(lambda: "pin.nc IS SENT: 1280 BYTES" in hands.desk.notice)
+    hands.sees(lambda: text("screen.is-sent", name="pin.nc", count=1280) in hands.desk.notice)
     assert hands.desk.answers.sort is Sort.DONE
     (said,) = lines.said
     assert said[1] is not None
@@ -262,7 +263,7 @@ def test_while_a_program_runs_letters_keep_their_meaning(
     lines.job.go.set()
     hands.sees(lambda: page(hands).table.sheet.question != "")
     hands.machine.now = replace(hands.machine.now, state=State.WAIT)
-    hands.sees(lambda: "UNDER WAY" in page(hands).prompt())
+    hands.sees(lambda: shows(page(hands).prompt(), "screen.name-as-it-is"))
     hands.key(Key.Key_H)
     hands.sees(lambda: FeedHold() in hands.machine.posted)
     assert page(hands).table.sheet.text == "O77.nc"

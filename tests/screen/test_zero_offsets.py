@@ -16,6 +16,8 @@ from core.store.store import Store
 from core.store.store_rows import Kind, ZeroRow
 from tests.screen.hands import Hands, Key
 from tests.screen.yes import yes
+from tests.texts import begins
+from tests.texts import text as wording
 
 
 @pytest.fixture
@@ -42,13 +44,13 @@ def enter(hands: Hands, text: str) -> None:
 
 def test_values_are_typed_over_and_saved(hands: Hands, store: Store) -> None:
     page = opened(hands)
-    hands.sees(lambda: page.asked.asked.question == "G54  X RADIUS, MM?")
+    hands.sees(lambda: page.asked.asked.question == f"G54  {wording('screen.x-radius')}")
     enter(hands, "1.5-.25")
     hands.sees(lambda: store.zero_offsets() == {54: ZeroRow(x=1.25)})
-    hands.sees(lambda: hands.prompt() == "G54 SAVED")
+    hands.sees(lambda: hands.prompt() == wording("programs.saved-names", names="G54"))
     hands.key(Key.Key_Tab)
     hands.key(Key.Key_Tab)
-    hands.sees(lambda: page.asked.asked.question == "G54  C, DEGREES?")
+    hands.sees(lambda: page.asked.asked.question == f"G54  {wording('screen.c-degrees')}")
     hands.type("-15")
     hands.sees(lambda: page.asked.asked.change == "G54 C   +0.000  →  −15.000")
     hands.key(Key.Key_Return)
@@ -62,11 +64,16 @@ def test_values_are_typed_over_and_saved(hands: Hands, store: Store) -> None:
 def test_what_is_refused_is_said_and_stays_to_be_mended(hands: Hands, store: Store) -> None:
     page = opened(hands)
     enter(hands, "9999")
-    assert hands.prompt() == "REFUSED: G54 X would become +9999.000 mm; it may be -5000…5000"
+    assert hands.prompt() == wording(
+        "screen.refused",
+        why=wording(
+            "screen.out-of-range", field="G54 X", value="+9999.000", unit="mm", low="-5000", high=5000
+        ),
+    )
     assert page.model.text == "9999"
     hands.key(Key.Key_Delete)
     enter(hands, "2+")
-    assert hands.prompt().startswith("REFUSED:")
+    assert begins(hands.prompt(), "screen.refused")
     assert store.zero_offsets() == {}
 
 
@@ -82,15 +89,15 @@ def test_undo_clear_and_history(hands: Hands, store: Store) -> None:
     page = opened(hands)
     enter(hands, "7")
     hands.sees(lambda: store.zero_offsets() == {54: ZeroRow(x=7.0)})
-    hands.sees(lambda: hands.prompt() == "G54 SAVED")
+    hands.sees(lambda: hands.prompt() == wording("programs.saved-names", names="G54"))
     hands.key(Key.Key_C)
-    assert hands.prompt().startswith("PRESS Y TO CLEAR G54")
+    assert begins(hands.prompt(), "screen.clear-zero")
     yes(hands.window)
     hands.sees(lambda: store.zero_offsets() == {})
     hands.sees(lambda: not page.model.book.busy and page.table.rows == {})
     hands.key(Key.Key_F4)
     hands.sees(lambda: store.zero_offsets() == {54: ZeroRow(x=7.0)})
-    hands.sees(lambda: hands.prompt() == "G54 TAKEN BACK")
+    hands.sees(lambda: hands.prompt() == wording("screen.taken-back", names="G54"))
     hands.key(Key.Key_F5)
     hands.sees(page.history.isVisible)
     assert [entry[1] for entry in page.history.entries] == ["G54", "G54", "G54"]
@@ -102,7 +109,7 @@ def test_undo_clear_and_history(hands: Hands, store: Store) -> None:
 def test_nothing_changes_under_a_running_program(hands: Hands, store: Store) -> None:
     opened(hands)
     hands.machine.now = replace(hands.machine.now, state=State.RUN)
-    hands.sees(lambda: hands.prompt() == "A PROGRAM IS UNDER WAY: G54 TO G59 CHANGE BETWEEN CYCLES ONLY")
+    hands.sees(lambda: hands.prompt() == wording("screen.program-runs-no-zero"))
     enter(hands, "3")
     hands.key(Key.Key_F4)
     hands.key(Key.Key_C)
@@ -132,7 +139,7 @@ def test_from_the_other_tables_and_back(hands: Hands, store: Store) -> None:
 def test_without_a_store_the_reason_is_told(hands: Hands) -> None:
     page = opened(hands)
     enter(hands, "3")
-    hands.sees(lambda: hands.prompt() == "NO OFFSETS ARE KEPT HERE")
+    hands.sees(lambda: hands.prompt() == wording("screen.no-offsets-kept"))
     assert page.table.rows == {}
 
 
@@ -152,7 +159,7 @@ def test_where_the_machine_stands_reads_what_is_typed(hands: Hands, store: Store
     hands.type("1.5")
     hands.key(Key.Key_F2)
     hands.sees(lambda: store.zero_offsets() == {54: ZeroRow(z=-85.0)})
-    hands.sees(lambda: hands.prompt() == "G54 SAVED")
+    hands.sees(lambda: hands.prompt() == wording("programs.saved-names", names="G54"))
     hands.key(Key.Key_Tab)
     hands.key(Key.Key_F2)
     hands.sees(lambda: store.zero_offsets() == {54: ZeroRow(z=-85.0, c=15.0)})
@@ -164,5 +171,5 @@ def test_an_axis_that_is_not_homed_is_no_place_to_count_from(hands: Hands, store
     opened(hands)
     hands.machine.now = replace(hands.machine.now, homed=(False, True, True))
     hands.key(Key.Key_F2)
-    assert hands.prompt() == "X DOES NOT KNOW ITS POSITION: HOME IT FIRST"
+    assert hands.prompt() == wording("screen.position-unknown", axis="X")
     assert store.history(Kind.ZERO) == ()

@@ -7,6 +7,7 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 
 from tests.screen.editor.writer import Writer
+from tests.texts import begins, shows
 
 Key = Qt.Key
 CTRL = Qt.KeyboardModifier.ControlModifier
@@ -104,7 +105,7 @@ def test_a_cross_beside_the_path_names_no_line(drawn: Writer) -> None:
     for _ in range(40):
         QTest.keyClick(drawn.editor.path, Key.Key_Up, Qt.KeyboardModifier.ShiftModifier)
     drawn.key(Key.Key_F3)
-    drawn.sees(lambda: drawn.prompt().startswith("THE CROSS STANDS ON NO LINE"))
+    drawn.sees(lambda: begins(drawn.prompt(), "editor.cross-on-no-line"))
 
 
 def test_esc_goes_back_to_the_text(drawn: Writer) -> None:
@@ -134,5 +135,5 @@ def test_zoom_keys_work_while_one_looks(drawn: Writer) -> None:
 def test_without_a_path_there_is_nothing_to_look_at(writer: Writer) -> None:
     writer.new("empty")
     writer.key(Key.Key_M, CTRL)
-    writer.sees(lambda: "WRITE A MOVE" in writer.prompt())
+    writer.sees(lambda: shows(writer.prompt(), "editor.no-path-yet"))
     assert writer.editor.path.ruler is None

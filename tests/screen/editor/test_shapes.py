@@ -24,6 +24,8 @@ from core.executor.snapshot import State
 from core.language.diagnostics import Diagnostic, Severity
 from tests.screen.editor.writer import Writer
 from tests.screen.hands import Key
+from tests.texts import begins, shows
+from tests.texts import text as wording
 
 SHIFT = Qt.KeyboardModifier.ShiftModifier
 ROWS = 2  # places before those of the rows, where not all of them fit: the keys that leaf
@@ -96,7 +98,7 @@ def test_what_is_wrong_is_said_and_nothing_is_written(writer: Writer) -> None:
     writer.key(Key.Key_Down)
     writer.type("0")
     writer.key(Key.Key_F2)
-    assert "type a peck" in writer.editor.prompt()
+    assert shows(writer.editor.prompt(), "editor.peck-too-deep")
     assert writer.text() == before
 
 
@@ -119,10 +121,10 @@ def test_lines_changed_by_hand_are_written_over_only_when_asked(writer: Writer) 
     changed = writer.text()
     writer.key(Key.Key_F3, SHIFT)
     writer.sees(lambda: writer.editor.mode is Mode.SHAPES)
-    assert "CHANGED BY HAND" in writer.editor.prompt()
+    assert shows(writer.editor.prompt(), "editor.line-changed-by-hand")
     writer.key(Key.Key_F2)
     assert writer.text() == changed
-    assert "F6 REPLACES" in writer.editor.prompt()
+    assert shows(writer.editor.prompt(), "editor.replaces-changed-lines")
     writer.key(Key.Key_F6)
     writer.sees(lambda: "G04F2" not in writer.text())
 
@@ -153,7 +155,7 @@ def test_letters_that_stop_the_machine_stop_it_here_too(writer: Writer) -> None:
 def test_another_language_has_no_shapes(writer: Writer) -> None:
     writer.new("other.h")
     writer.key(Key.Key_F3, SHIFT)
-    writer.sees(lambda: "ANOTHER LANGUAGE" in writer.editor.prompt())
+    writer.sees(lambda: shows(writer.editor.prompt(), "editor.no-shapes-in-language"))
     assert writer.editor.mode is Mode.TEXT
 
 
@@ -193,9 +195,9 @@ def test_the_places_over_the_text_open_what_stands_on_them(writer: Writer) -> No
     touch(writer, head, sums)
     assert (writer.editor.mode, writer.editor.shapes.model.of_shapes) == (Mode.SHAPES, False)
     writer.editor.shapes.refresh()  # the list of before stood there, and another form was opened by a touch
-    assert writer.editor.shapes.rows.heading == "CALCULATORS AND TEMPLATES"
+    assert writer.editor.shapes.rows.heading == wording("editor.calculators")
     assert "TRIANGLE" in writer.editor.shapes.rows.rows[0].label
-    assert writer.editor.shapes.model.prompt().startswith("A LETTER OPENS A CALCULATOR")
+    assert begins(writer.editor.shapes.model.prompt(), "editor.calculators-prompt")
     touch(writer, head, shapes)
     touch(writer, head, keyboard)
     assert writer.editor.lettered
@@ -265,9 +267,9 @@ def test_labels_that_are_long_take_two_lines_and_are_never_cut(qtbot: QtBot) -> 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(Painter, "write", writing)
         panel.grab()
-    assert "WALL AT THE CHUCK LEANS BY" not in drawn
+    assert wording("editor.wall-leans") not in drawn
     first = next(n for n, text in enumerate(drawn) if text.startswith("WALL"))
-    assert f"{drawn[first]} {drawn[first + 1]}" == "WALL AT THE CHUCK LEANS BY"
+    assert f"{drawn[first]} {drawn[first + 1]}" == wording("editor.wall-leans")
     assert "TOOL" in drawn
 
 

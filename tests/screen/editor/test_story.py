@@ -20,6 +20,8 @@ from tests.editor.shop import GOOD, Memory
 from tests.screen.desks import SAMPLES
 from tests.screen.editor.writer import Writer
 from tests.screen.hands import Key
+from tests.texts import begins, shows
+from tests.texts import text as wording
 
 CTRL = Qt.KeyboardModifier.ControlModifier
 
@@ -30,7 +32,7 @@ def test_a_program_from_nothing_with_an_error_mended(writer: Writer, tmp_path: P
     writer.key(Key.Key_Return)
     writer.key(Key.Key_X)  # FILE NOT FOUND, any key
     writer.key(Key.Key_F3)
-    assert writer.prompt() == "PRESS F1 TO CREATE A NEW FILE, ESC TO ABORT"
+    assert writer.prompt() == wording("screen.new-file")
     writer.key(Key.Key_F1)
     writer.sees(lambda: writer.editor.head.heading.mark == "NEW")
     writer.write(GOOD.replace("Z-.5", "Z-.5.5"))
@@ -51,7 +53,7 @@ def test_a_program_from_nothing_with_an_error_mended(writer: Writer, tmp_path: P
     assert writer.desk.session.now.name == "first.nc"
     assert (tmp_path / "first.nc").read_text() == GOOD
     assert [text for text, _why in memory.kept["first.nc"]] == [GOOD.encode()]
-    writer.sees(lambda: writer.prompt().startswith("TO START"))
+    writer.sees(lambda: writer.prompt().startswith(wording("screen.to-start")))
 
 
 def test_esc_aborts_a_new_file(writer: Writer, tmp_path: Path) -> None:
@@ -84,7 +86,7 @@ def test_a_name_that_cannot_be_is_refused_in_a_sentence(writer: Writer) -> None:
     writer.type("bad?name")
     writer.key(Key.Key_F3)
     writer.key(Key.Key_F1)
-    writer.sees(lambda: "CANNOT NAME A PROGRAM" in writer.prompt())
+    writer.sees(lambda: shows(writer.prompt(), "editor.no-program-name"))
     writer.key(Key.Key_Escape)
     writer.sees(lambda: writer.front == page_table.AUTOMATIC)
 
@@ -142,7 +144,7 @@ def test_a_sample_asks_for_a_name_and_stays_as_it_was(writer: Writer, tmp_path: 
     writer.sees(writer.editor.ask.first.hasFocus)
     writer.type("mine")
     writer.key(Key.Key_Return)
-    writer.sees(lambda: writer.prompt() == "mine.nc IS SAVED")
+    writer.sees(lambda: writer.prompt() == wording("editor.saved", name="mine.nc"))
     assert (SAMPLES / "pin.nc").read_bytes() == before
     assert (tmp_path / "mine.nc").read_bytes() == b"(MINE)" + before
     writer.key(Key.Key_F3)
@@ -167,11 +169,13 @@ def test_find_counts_and_replace_all_is_one_step(writer: Writer) -> None:
     writer.write("F100\nX1F1000\nZ1F100")
     writer.key(Key.Key_F, CTRL)
     writer.type("f100")
-    writer.sees(lambda: writer.editor.ask.answer == "2 FOUND, 1 MORE INSIDE LONGER WORDS")
+    writer.sees(
+        lambda: writer.editor.ask.answer == wording("editor.found-and-inside", found="2 FOUND", count=1)
+    )
     writer.key(Key.Key_Tab)
     writer.type("F300")
     writer.key(Key.Key_F5)
-    assert writer.editor.ask.answer == "2 REPLACED"
+    assert writer.editor.ask.answer == wording("editor.replaced", count=2)
     assert writer.text() == "F300\nX1F1000\nZ1F300"
     writer.key(Key.Key_Escape)
     writer.key(Key.Key_Z, CTRL)
@@ -196,7 +200,7 @@ def test_go_to_a_line_and_what_is_no_line(writer: Writer) -> None:
     writer.key(Key.Key_F5)
     writer.type("0")
     writer.key(Key.Key_Return)
-    assert writer.editor.ask.answer.startswith("A NUMBER FROM 1 TO")
+    assert begins(writer.editor.ask.answer, "editor.number-from-one")
     writer.key(Key.Key_Backspace)
     writer.type("7")
     writer.key(Key.Key_Return)
@@ -220,11 +224,11 @@ def test_an_older_version_is_restored_and_can_be_undone(writer: Writer, memory: 
     writer.new("part")
     writer.write(GOOD)
     writer.key(Key.Key_F2)
-    writer.sees(lambda: "IS SAVED" in writer.prompt())
+    writer.sees(lambda: shows(writer.prompt(), "editor.saved"))
     writer.type("(SECOND)")
     writer.key(Key.Key_F2)
     writer.sees(lambda: len(memory.kept["part.nc"]) == 2)
-    writer.sees(lambda: "IS SAVED" in writer.prompt())
+    writer.sees(lambda: shows(writer.prompt(), "editor.saved"))
     writer.key(Key.Key_F7)
     writer.sees(lambda: len(writer.editor.history.rows) == 2)
     writer.key(Key.Key_Down)
@@ -291,7 +295,7 @@ def test_f1_saves_and_leads_to_the_main_menu(writer: Writer, tmp_path: Path) -> 
     writer.sees(lambda: writer.front == page_table.MENU)
     assert (tmp_path / "menu.nc").exists()
     assert writer.desk.session.now.phase is Phase.EMPTY  # that is what F3 is for
-    assert writer.desk.notice == "menu.nc IS SAVED; F2 PUTS IT ON THE DESK"
+    assert writer.desk.notice == wording("editor.saved-not-loaded", name="menu.nc")
 
 
 def test_who_only_looks_at_a_program_changes_nothing_on_the_desk(writer: Writer, tmp_path: Path) -> None:
@@ -316,7 +320,7 @@ def test_who_only_looks_at_a_program_changes_nothing_on_the_desk(writer: Writer,
         writer.sees(lambda: writer.front != page_table.EDITOR)
         assert writer.desk.session.now is on_desk
         if leaves is not Key.Key_Escape:
-            assert writer.desk.notice == "other.nc WAS ONLY LOOKED AT: mine.nc STAYS ON THE DESK"
+            assert writer.desk.notice == wording("editor.only-looked-at", name="other.nc", other="mine.nc")
     assert not [each for each in writer.machine.posted[posted:] if isinstance(each, LoadJob)]
 
 
@@ -367,7 +371,7 @@ def test_f3_of_an_empty_list_edits_nothing(writer: Writer) -> None:
     model.all, model.listed = (), ()
     writer.key(Key.Key_F3)
     assert writer.front == page_table.PROGRAMS
-    assert writer.desk.notice == "NO PROGRAM IS MARKED"
+    assert writer.desk.notice == wording("screen.no-program-marked")
 
 
 def test_at_the_question_for_a_file_f3_edits_what_is_marked_or_typed(writer: Writer, tmp_path: Path) -> None:
@@ -378,7 +382,7 @@ def test_at_the_question_for_a_file_f3_edits_what_is_marked_or_typed(writer: Wri
     writer.key(Key.Key_F2)
     writer.key(Key.Key_F3)
     assert writer.front == page_table.AUTOMATIC
-    assert writer.desk.notice.startswith("TYPE A NAME, OR MARK A PROGRAM")
+    assert begins(writer.desk.notice, "editor.name-or-mark")
     files = writer.page.files
     names = [entry.name for entry in files._entries]
     for _ in range(names.index("other.nc")):
@@ -400,7 +404,7 @@ def test_a_day_at_the_editor(writer: Writer, tmp_path: Path, memory: Memory) -> 
     writer.write("G90G94G72F300\nT1\nM03S1000\nX1Z.1\nF5Z-.5\nF5X1.5\nM05\nF300X2Z1\nM30")
     writer.sees(lambda: writer.proved() and not writer.editor.findings.findings.errors)
     writer.key(Key.Key_F2)
-    writer.sees(lambda: "IS SAVED" in writer.prompt())
+    writer.sees(lambda: shows(writer.prompt(), "editor.saved"))
     written = writer.text()
 
     writer.key(Key.Key_F, CTRL)  # every feed of 5 to 8, and back again as one step
@@ -408,7 +412,7 @@ def test_a_day_at_the_editor(writer: Writer, tmp_path: Path, memory: Memory) -> 
     writer.key(Key.Key_Tab)
     writer.type("F8")
     writer.key(Key.Key_F5)
-    assert writer.editor.ask.answer == "2 REPLACED"
+    assert writer.editor.ask.answer == wording("editor.replaced", count=2)
     writer.key(Key.Key_Escape)
     assert writer.text() == written.replace("F5", "F8")
     writer.key(Key.Key_F8)
@@ -430,7 +434,7 @@ def test_a_day_at_the_editor(writer: Writer, tmp_path: Path, memory: Memory) -> 
     writer.sees(lambda: writer.proved() and not writer.editor.findings.findings.errors)
     writer.key(Key.Key_F2)
     writer.sees(lambda: len(memory.kept["day.nc"]) == 2)
-    writer.sees(lambda: "IS SAVED" in writer.prompt())
+    writer.sees(lambda: shows(writer.prompt(), "editor.saved"))
 
     writer.key(Key.Key_F7)  # the first version back, saved by leaving
     writer.sees(lambda: len(writer.editor.history.rows) == 2)

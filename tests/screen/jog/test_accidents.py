@@ -13,6 +13,7 @@ from core.executor.snapshot import State
 from tests.screen.hands import LIMIT
 from tests.screen.jog.bench import INCH, SHIFT, JogBench, Key
 from tests.screen.yes import twist_out
+from tests.texts import shows, text
 
 SLOW = 5 * INCH / 60  # mm/s: the speed that is chosen at first
 AMAX = 120 * INCH
@@ -84,7 +85,7 @@ def test_a_missed_release_ends_with_the_silence_of_the_key(jog: JogBench) -> Non
     jog.repeats(Key.Key_Left)
     jog.run(0.55)
     stands(jog, jog.shot.demand[1])
-    assert "SILENT" in jog.prompt
+    assert shows(jog.prompt, "jog.key-silent")
 
 
 def test_the_window_that_loses_the_keyboard(jog: JogBench, qtbot: QtBot) -> None:
@@ -99,7 +100,7 @@ def test_the_window_that_loses_the_keyboard(jog: JogBench, qtbot: QtBot) -> None
     jog.window.activateWindow()
     qtbot.waitUntil(jog.window.isActiveWindow, timeout=LIMIT)
     jog.run(0.3)
-    assert "KEYBOARD WENT ELSEWHERE" in jog.prompt
+    assert shows(jog.prompt, "jog.keyboard-left-jog")
     jog.up(Key.Key_Left)
     moving_again = jog.shot.demand[1]
     jog.down(Key.Key_Left)
@@ -158,7 +159,7 @@ def test_two_arrows_at_once(jog: JogBench) -> None:
     jog.down(Key.Key_Up)
     stands(jog, at)
     assert jog.shot.demand[0] == 0.0
-    assert "TWO AT ONCE" in jog.prompt
+    assert shows(jog.prompt, "jog.two-at-once")
     jog.up(Key.Key_Left)
     jog.up(Key.Key_Up)
 
@@ -199,7 +200,7 @@ def test_arrows_in_an_entry_move_nothing(jog: JogBench) -> None:
     jog.down(Key.Key_Left)
     jog.run(0.5)
     assert jog.shot.demand == (0.0, 0.0, 0.0)
-    assert "AN ENTRY IS OPEN" in jog.prompt
+    assert shows(jog.prompt, "jog.entry-open")
     jog.up(Key.Key_Left)
     jog.key(Key.Key_Escape)
     moving(jog)
@@ -221,7 +222,7 @@ def test_the_soft_limit_ends_it_and_it_is_said(jog: JogBench) -> None:
     jog.up(Key.Key_Right)
     jog.down(Key.Key_Right)
     jog.run(1.0)
-    assert jog.prompt == "REFUSED: jog: Z is at the end of its travel in +"
+    assert jog.prompt == text("screen.refused", why=f"jog: {text('jog.end-of-travel', axis='Z', side='+')}")
     jog.up(Key.Key_Right)
 
 
@@ -232,7 +233,7 @@ def test_with_the_drives_off_it_says_why(jog: JogBench) -> None:
     jog.run(0.1)
     jog.down(Key.Key_Left)
     jog.run(0.3)
-    assert jog.prompt == "THE DRIVES ARE OFF: PRESS D FOR DRIVES ON"
+    assert jog.prompt == text("screen.drives-off-for-hands")
     jog.up(Key.Key_Left)
 
 

@@ -16,6 +16,7 @@ from core.executor.snapshot import State
 from tests.screen.hands import LIMIT
 from tests.screen.jog.bench import SHIFT, JogBench, Key
 from tests.screen.yes import twist_out
+from tests.texts import shows, text
 
 
 def palms(jog: JogBench) -> None:
@@ -59,7 +60,7 @@ def test_the_palms_start_the_spindle_and_nothing_else_does(jog: JogBench) -> Non
     palms(jog)
     jog.run(1.5)
     assert jog.shot.rpm_actual == pytest.approx(200.0, abs=10.0)
-    assert "SPINDLE TURNS" in jog.prompt
+    assert text("jog.spindle-turns") in jog.prompt
 
 
 def test_one_palm_starts_nothing(jog: JogBench) -> None:
@@ -79,7 +80,7 @@ def test_palms_without_a_choice_start_neither_spindle_nor_program(jog: JogBench)
     jog.type("b")
     palms(jog)
     assert (jog.shot.state, jog.shot.rpm_command) == (State.IDLE, 0.0)
-    assert "NOTHING IS CHOSEN" in jog.prompt
+    assert shows(jog.prompt, "jog.nothing-chosen")
 
 
 def test_it_runs_once(jog: JogBench) -> None:
@@ -97,7 +98,7 @@ def test_what_is_jogged_away_has_to_be_chosen_again(jog: JogBench) -> None:
     jog.run(0.5)
     jog.up(Key.Key_Left)
     jog.rests()
-    assert "CHOOSE AGAIN" in jog.prompt
+    assert shows(jog.prompt, "jog.choose-again")
     palms(jog)
     assert jog.shot.rpm_command == 0.0
 
@@ -188,7 +189,7 @@ def test_with_the_drives_off_nothing_is_chosen(jog: JogBench) -> None:
     jog.type("b3")
     proved(jog)
     assert jog.page.model.hand.line.ready is None
-    assert "DRIVES ARE OFF" in jog.prompt
+    assert shows(jog.prompt, "screen.drives-off")
 
 
 def test_an_alarm_stops_it_and_lets_nothing_be_chosen(jog: JogBench) -> None:
@@ -208,7 +209,7 @@ def test_a_held_feed_hold_lets_nothing_start(jog: JogBench) -> None:
     palms(jog)
     jog.run(0.5)
     assert (jog.shot.state, jog.shot.rpm_command) == (State.IDLE, 0.0)
-    assert "feed hold" in jog.shot.start_refused
+    assert text("jog.in-feed-hold") in jog.shot.start_refused
     jog.desk.station.release_hold()
 
 
@@ -281,7 +282,7 @@ def test_the_collet_is_not_opened_while_it_turns(jog: JogBench) -> None:
     turning(jog)
     jog.type("6")
     proved(jog)
-    assert "NOT OPENED BY HAND WHILE THE SPINDLE TURNS" in jog.prompt
+    assert shows(jog.prompt, "jog.collet-while-turning")
     palms(jog)
     assert "collet" in jog.shot.outputs
 

@@ -17,6 +17,7 @@ from tests.screen.hands import LIMIT
 from tests.screen.jog import bench
 from tests.screen.jog.bench import JogBench, Key, opened
 from tests.screen.jog.test_by_hand import chosen, palms, proved
+from tests.texts import text as wording
 
 
 @pytest.fixture
@@ -92,7 +93,7 @@ def test_a_program_that_began_while_jog_was_opened_does_not_begin_there_again(
     jog.executor.post(CycleStart())
     jog.run(0.5)
     assert (jog.shot.state, jog.shot.ends) == (State.IDLE, ends)
-    assert jog.shot.start_refused == "no line is ready"
+    assert jog.shot.start_refused == wording("jog.no-line-ready")
 
 
 def test_nothing_is_ready_beside_the_question_for_a_size(jog: JogBench) -> None:

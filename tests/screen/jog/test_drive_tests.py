@@ -14,6 +14,7 @@ from core.executor.snapshot import State
 from tests.screen.hands import LIMIT
 from tests.screen.jog.bench import INCH, SHIFT, JogBench, Key
 from tests.screen.yes import twist_out
+from tests.texts import shows, text
 
 SIZE = 0.01 * INCH
 
@@ -59,7 +60,11 @@ def test_the_first_press_asks_and_moves_nothing(jog: JogBench, page: DriveTestPa
     jog.run(1.0)
     assert jog.shot.state is State.IDLE
     assert jog.shot.demand == (0.0, 0.0, 0.0)
-    assert jog.prompt == "Z FROM 0.00000 in TO 0.01000 in AND BACK, 1.0 S: HOLD → TO PLAY IT, LET GO TO STOP"
+    assert jog.prompt == text(
+        "jog.play-test",
+        travel=text("jog.test-travel", axis="Z", here="0.00000 in", there="0.01000 in", seconds="1.0"),
+        key="→",
+    )
     jog.up(Key.Key_Right)
     jog.key(Key.Key_Left)  # another arrow asks anew
     assert jog.shot.demand == (0.0, 0.0, 0.0)
@@ -90,10 +95,10 @@ def test_held_to_its_end_it_is_kept_and_told_in_figures(
     found = page.model.found
     assert found is not None
     assert [each.way for each in found.steps] == pytest.approx([SIZE, -SIZE])
-    assert page.model.kept.startswith("drive test Z step")
+    assert page.model.kept.startswith(text("jog.drive-test-of", axis="Z", kind="step"))
     assert (page.model.scope.shelf.folder / page.model.kept).exists()
     kept = page.model.scope.shelf.open(page.model.scope.shelf.folder / page.model.kept)
-    assert "drive test" in kept.about
+    assert text("jog.drive-test") in kept.about
     titles = [page.model.sheet().rows[0].cells[0]]
     for _ in range(3):
         jog.key(Key.Key_F5)
@@ -198,7 +203,7 @@ def test_it_has_no_rapid(jog: JogBench, page: DriveTestPage) -> None:
     jog.key(Key.Key_Right)
     jog.down(Key.Key_Right, SHIFT)
     jog.run(0.3)
-    assert "NO RAPID" in jog.prompt
+    assert shows(jog.prompt, "jog.test-no-rapid")
     assert page.model.hold.held is None
     assert jog.shot.demand == (0.0, 0.0, 0.0)
 
@@ -219,7 +224,7 @@ def test_with_the_estop_in_it_says_so(jog: JogBench, page: DriveTestPage) -> Non
 def test_an_axis_that_is_not_homed_is_not_tested(lost: JogBench) -> None:
     page = on_page(lost)
     lost.key(Key.Key_Right)
-    assert "Z IS NOT HOMED" in page.asks()
+    assert shows(page.asks(), "jog.test-not-homed", axis="Z")
     lost.down(Key.Key_Right)
     lost.run(0.5)
     assert lost.shot.demand[1] == 0.0
@@ -239,7 +244,7 @@ def test_no_room_is_told_before(jog: JogBench, page: DriveTestPage) -> None:
     on_page(jog)
     here = jog.shot.demand
     jog.key(Key.Key_Right)
-    assert "Z HAS NO ROOM FOR IT" in jog.prompt
+    assert shows(jog.prompt, "jog.no-room", axis="Z")
     jog.down(Key.Key_Right)
     jog.run(0.5)
     assert jog.shot.demand == here

@@ -8,6 +8,7 @@ import pytest
 
 from core.executor.snapshot import State
 from tests.screen.jog.bench import INCH, JogBench, Key
+from tests.texts import begins, text
 
 PROGRAM = "G90G94F300\nG72\nT1\nM03S1000\nX1Z.1\nG01F60X.5Z.1\nZ-.5\nX1Z.5G00\nM30\n"
 
@@ -80,14 +81,14 @@ def test_a_correction_at_a_stop_counts_in_the_next_part_of_the_repeat(jog: JogBe
     jog.until(lambda: jog.shot.state is State.PROGRAM_STOP, 60.0)
     jog.key(Key.Key_F8)
     jog.run(0.02)
-    assert jog.prompt.startswith("A PROGRAM IS UNDER WAY: ONLY WEAR")
+    assert begins(jog.prompt, "screen.program-runs-wear-only")
     for _ in range(4):
         jog.key(Key.Key_Right)
-    assert jog.prompt.startswith("PARTS RUN: A CORRECTION COUNTS FROM THE NEXT PART")
+    assert begins(jog.prompt, "jog.counts-from-next-part")
     jog.enter("-.002")
     jog.saved()
     jog.run(0.05)
-    assert jog.prompt == "T1 SAVED; IT COUNTS FROM THE NEXT PART"
+    assert jog.prompt == text("jog.saved-for-next-part", saved="T1 SAVED")
     assert jog.shot.cycle_repeat
     jog.desk.rebuilding.renewing.worker.settle(60.0)
     jog.key(Key.Key_F1)
@@ -116,13 +117,13 @@ def test_f8_under_a_running_cycle_is_refused(jog: JogBench, tmp_path: Path) -> N
     jog.key(Key.Key_F8)
     jog.enter("5")
     jog.run(0.02)
-    assert jog.prompt == "A PROGRAM IS UNDER WAY: ONLY WEAR AND F9 CORRECTIONS MAY CHANGE"
+    assert jog.prompt == text("screen.program-runs-wear-only")
     assert jog.store.tools()[1].x == -1.0 * INCH
     jog.key(Key.Key_F1)
     jog.key(Key.Key_F5)
     jog.down(Key.Key_Left)
     jog.run(0.1)
-    assert jog.prompt.startswith("A PROGRAM IS UNDER WAY")
+    assert jog.prompt == text("screen.program-runs-no-jog")
     jog.up(Key.Key_Left)
     jog.key(Key.Key_H)
     jog.until(lambda: jog.shot.state is State.HOLD)

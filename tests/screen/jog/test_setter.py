@@ -8,6 +8,7 @@ from core.executor.snapshot import State
 from core.store.store_rows import Kind, ToolRow
 from drivers.lookalikes.plant_hands import PlantHands
 from tests.screen.jog.bench import INCH, SHIFT, JogBench, Key
+from tests.texts import Pattern, begins, shows, text
 
 ABOVE = (1.0, -0.6)  # in: machine X and Z from which X- finds it
 BESIDE = (0.65, -0.2)  # and from which Z- does
@@ -56,12 +57,12 @@ def test_a_new_tool_is_found_by_two_touches_and_kept_by_return(setter: JogBench)
     choose(setter, 3)
     put(setter, ABOVE)
     setter.key(Key.Key_P)
-    assert "T3 AT THE TOOL SETTER: HOLD ↑ (X−)" in setter.prompt
+    assert shows(setter.prompt, "jog.at-setter", number=3, keys=Pattern(r"↑ \(X−\).*"))
     hold(setter, Key.Key_Up)
-    assert "RETURN KEEPS" in setter.prompt
+    assert shows(setter.prompt, "jog.return-keeps-found")
     words = setter.page.asked.asked
     assert "not set  →  +0.1" in words.change
-    assert words.text.startswith("tool setter X− ±")
+    assert begins(words.text, "jog.reason-setter", way="X−")
     setter.key(Key.Key_Return)
     put(setter, BESIDE)
     setter.key(Key.Key_P)
@@ -70,7 +71,7 @@ def test_a_new_tool_is_found_by_two_touches_and_kept_by_return(setter: JogBench)
     setter.saved()
     row = setter.desk.book.tools[3]
     assert (row.x, row.z) == pytest.approx((TIP[0] * INCH, TIP[1] * INCH), abs=0.002)
-    assert "tool setter Z−" in setter.desk.book.history(Kind.TOOL)[0].why
+    assert shows(setter.desk.book.history(Kind.TOOL)[0].why, "jog.reason-setter", way="Z−")
 
 
 def test_a_tool_that_was_set_shows_the_difference_and_a_large_one_warns(setter: JogBench) -> None:
@@ -113,10 +114,10 @@ def test_letting_go_finds_nothing_and_the_next_press_begins_anew(setter: JogBenc
     setter.run(0.3)
     setter.up(Key.Key_Up)
     setter.until(lambda: setter.shot.state is State.IDLE)
-    assert "NOT TOUCHED OFF" in setter.prompt
+    assert shows(setter.prompt, "jog.not-touched-off")
     assert setter.page.model.tool.asked == ""
     hold(setter, Key.Key_Up)
-    assert "RETURN KEEPS" in setter.prompt
+    assert shows(setter.prompt, "jog.return-keeps-found")
 
 
 def test_another_key_and_another_page_end_it(setter: JogBench) -> None:
@@ -176,28 +177,28 @@ def test_of_a_round_tip_the_centre_is_set(setter: JogBench) -> None:
 
 def test_what_is_refused_before_anything_moves(setter: JogBench) -> None:
     setter.key(Key.Key_P)
-    assert "WHICH TOOL?" in setter.prompt
+    assert shows(setter.prompt, "jog.which-tool")
     given(setter, 2, ToolRow(x=1.0, z=1.0))
     choose(setter, 2)
     setter.key(Key.Key_P)
-    assert "T2 HAS NO TIP: PRESS Q" in setter.prompt
+    assert shows(setter.prompt, "jog.no-tip", number=2)
     choose(setter, 3)
     setter.key(Key.Key_P)
     setter.down(Key.Key_Up, SHIFT)
     setter.run(0.05)
-    assert "NO RAPID" in setter.prompt
+    assert shows(setter.prompt, "jog.touch-off-no-rapid")
     setter.up(Key.Key_Up, SHIFT)
     hands(setter).set_input("probe", True)
     setter.run(0.05)
     setter.down(Key.Key_Up)
     setter.run(0.1)
     assert setter.shot.state is State.IDLE
-    assert "ON ALREADY" in setter.prompt.upper()
+    assert text("jog.input-on-already").upper() in setter.prompt.upper()
 
 
 def test_a_lathe_without_a_setter_says_so(jog: JogBench) -> None:
     jog.key(Key.Key_P)
-    assert "NO TOOL SETTER" in jog.prompt
+    assert shows(jog.prompt, "jog.no-setter")
 
 
 # --- buttons beside the slides ------------------------------------------------------------------------------
@@ -244,7 +245,7 @@ def test_two_buttons_and_a_button_with_a_key_move_nothing(setter: JogBench) -> N
     setter.run(0.2)
     hands(setter).set_input("jog_x_minus", True)
     setter.run(0.05)
-    assert "TWO AT ONCE" in setter.prompt
+    assert shows(setter.prompt, "jog.two-at-once")
     setter.until(lambda: setter.shot.state is State.IDLE, 0.5)
     setter.run(0.5)
     assert setter.shot.state is State.IDLE
@@ -276,7 +277,7 @@ def test_a_button_touches_off_as_a_key_does(setter: JogBench) -> None:
     hands(setter).set_input("jog_x_minus", True)
     setter.run(0.1)
     setter.until(lambda: setter.shot.state is State.IDLE)
-    assert "RETURN KEEPS" in setter.prompt
+    assert shows(setter.prompt, "jog.return-keeps-found")
     hands(setter).set_input("jog_x_minus", False)
     setter.run(0.1)
-    assert "RETURN KEEPS" in setter.prompt
+    assert shows(setter.prompt, "jog.return-keeps-found")

@@ -11,6 +11,7 @@ from core.executor.commands import JogStep
 from core.executor.snapshot import State
 from tests.screen.jog.bench import INCH, JogBench, Key
 from tests.screen.jog.test_by_hand import by_estop, palms, proved
+from tests.texts import shows, text
 
 X, Z = 0, 1
 
@@ -75,7 +76,9 @@ def test_a_diameter(jog: JogBench) -> None:
     assert "→" in jog.page.asked.asked.change
     assert rows(jog) == {}
     jog.key(Key.Key_Return)
-    assert "Z IS TOUCHED" in jog.page.model.tool.note()  # a new tool is kept with both axes
+    assert shows(
+        jog.page.model.tool.note(), "jog.touched-one-of-two", axis="Z"
+    )  # a new tool is kept with both axes
     assert step(jog) is CutStep.OFF
     jog.key(Key.Key_F6)
     jog.enter("0")
@@ -122,14 +125,14 @@ def test_x_that_has_moved_is_told_and_the_cut_counts_no_more(jog: JogBench) -> N
     cut(jog)
     goes(jog, Key.Key_Right)
     goes(jog, Key.Key_Down, 0.3)
-    assert "X HAS MOVED" in jog.prompt
+    assert shows(jog.prompt, "jog.moved-since-cut", axis="X")
     assert step(jog) is CutStep.CUT
     goes(jog, Key.Key_Up, 0.3)  # coming back is no cut either
     jog.type("0")
     jog.run(1.5)
     assert step(jog) is CutStep.CUT
     jog.key(Key.Key_Return)
-    assert "NO CUT YET" in jog.prompt
+    assert text("jog.no-cut-spindle-stands") in jog.prompt
     assert rows(jog) == {}
 
 
@@ -142,7 +145,7 @@ def test_x_that_moves_while_the_size_is_asked(jog: JogBench) -> None:
     assert jog.shot.state is State.IDLE  # an entry is open: no arrow moves anything
     jog.desk.post(JogStep("X", 0.5, 5.0))  # whoever else moves it
     jog.run(0.5)
-    assert "X HAS MOVED" in jog.prompt
+    assert shows(jog.prompt, "jog.moved-since-cut", axis="X")
     jog.key(Key.Key_Return)
     assert rows(jog) == {}
 
@@ -198,7 +201,7 @@ def test_esc_gives_it_up_and_changes_nothing(jog: JogBench, until: Callable[[Jog
     until(jog)
     jog.key(Key.Key_Escape)
     assert step(jog) is CutStep.OFF
-    assert "NOTHING WAS CHANGED" in jog.prompt
+    assert text("jog.skim-given-up") in jog.prompt
     jog.key(Key.Key_Return)
     assert rows(jog) == {}
 
@@ -223,11 +226,11 @@ def test_leaving_the_page_gives_it_up(jog: JogBench) -> None:
 
 def test_without_a_tool_or_a_home_it_is_refused(lost: JogBench) -> None:
     lost.type("c")
-    assert "WHICH TOOL" in lost.prompt
+    assert shows(lost.prompt, "jog.which-tool")
     lost.type("t")
     lost.enter("1")
     lost.type("c")
-    assert "NOT HOMED" in lost.prompt
+    assert shows(lost.prompt, "jog.position-means-nothing", axis="X")
     assert step(lost) is CutStep.OFF
 
 
@@ -236,5 +239,5 @@ def test_the_size_is_not_asked_while_the_spindle_turns(jog: JogBench) -> None:
     goes(jog, Key.Key_Right)
     jog.run(1.0)
     assert jog.page.model.tool.asked == ""
-    assert "STOPS THE SPINDLE" in jog.prompt
+    assert shows(jog.prompt, "jog.retract-along")
     by_estop(jog)

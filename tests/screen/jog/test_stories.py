@@ -8,6 +8,7 @@ from core.executor.snapshot import State
 from core.store.store_rows import ToolRow
 from tests.screen.jog.bench import INCH, SHIFT, JogBench, Key
 from tests.screen.yes import yes
+from tests.texts import begins, shows, text
 
 
 def step_to(jog: JogBench, key: Key, step: int, presses: int) -> None:
@@ -50,7 +51,7 @@ def test_a_step_is_cut_short_by_the_page_and_that_is_said(jog: JogBench) -> None
     jog.run(0.5)
     assert jog.shot.state is State.IDLE
     assert jog.shot.demand[1] > -0.09 * INCH
-    assert "stopped before the end of its step" in jog.prompt
+    assert shows(jog.prompt, "jog.stopped-in-step")
 
 
 def touch(jog: JogBench, key: str, answer: str) -> None:
@@ -65,7 +66,7 @@ def test_two_tools_are_set_by_touching(jog: JogBench) -> None:
     jog.type("t")
     jog.enter("1")
     touch(jog, "x", ".5-.002")
-    assert "T1 IS SET WHEN Z IS TOUCHED TOO" in jog.prompt
+    assert text("jog.touched-one-of-two", number=1, axis="Z") in jog.prompt
     assert jog.store.tools() == {}
     touch(jog, "z", "0")
     assert jog.prompt == "T1 SAVED"
@@ -82,7 +83,7 @@ def test_two_tools_are_set_by_touching(jog: JogBench) -> None:
     assert second.x == pytest.approx((-1.0 - 0.375) * INCH, abs=0.0013)
     assert second.z == pytest.approx((0.5 - 0.1) * INCH, abs=0.0013)
     assert jog.page.model.tool.tip(jog.shot) == pytest.approx((0.375 * INCH, 0.1 * INCH), abs=1e-9)
-    assert [change.why for change in jog.store.history()] == ["touched off, new tool"] * 2
+    assert [change.why for change in jog.store.history()] == [text("jog.touched-off")] * 2
 
 
 def set_two(jog: JogBench) -> None:
@@ -117,7 +118,7 @@ def test_the_master_takes_all_along_or_is_set_alone(jog: JogBench) -> None:
     jog.saved()
     jog.type("z")
     jog.run(0.02)
-    assert "IS THE MASTER: ALL TOOLS FOLLOW" in jog.page.asked.asked.foot
+    assert shows(jog.page.asked.asked.foot, "jog.is-master")
     jog.enter("1")
     jog.saved()
     # the face was at −50 mm, it is at −25.4 mm now: 24.6 mm for everybody
@@ -164,11 +165,27 @@ def test_fields_of_a_tool(jog: JogBench) -> None:
 @pytest.mark.parametrize(
     ("key", "answer", "why"),
     [
-        ("x", "1,5", "REFUSED: , in 1,5 is no number"),
-        ("x", "", "REFUSED: nothing is entered"),
-        ("x", "200", "REFUSED: X would be out of range"),
-        ("q", "11", "REFUSED: tip quadrant takes 0…9"),
-        ("w", ".3", "REFUSED: wear X would become +0.30000 in; it may be -0.2…0.2"),
+        (
+            "x",
+            "1,5",
+            text(
+                "screen.refused",
+                why=text("screen.no-number", what=",", entry="1,5", hint=text("screen.decimal-point")),
+            ),
+        ),
+        ("x", "", text("screen.refused", why=text("screen.nothing-entered"))),
+        ("x", "200", text("screen.refused", why=text("jog.out-of-range", axis="X"))),
+        ("q", "11", text("screen.refused", why=text("screen.takes", field="tip quadrant", range="0…9"))),
+        (
+            "w",
+            ".3",
+            text(
+                "screen.refused",
+                why=text(
+                    "screen.out-of-range", field="wear X", value="+0.30000", unit="in", low=-0.2, high=0.2
+                ),
+            ),
+        ),
     ],
 )
 def test_what_is_no_answer_is_refused_and_stays(jog: JogBench, key: str, answer: str, why: str) -> None:
@@ -184,19 +201,19 @@ def test_what_is_no_answer_is_refused_and_stays(jog: JogBench, key: str, answer:
 
 def test_without_a_tool_it_asks_for_one(jog: JogBench) -> None:
     jog.type("x")
-    assert jog.prompt == "WHICH TOOL? PRESS T AND TYPE ITS NUMBER FIRST"
+    assert jog.prompt == text("jog.which-tool")
     jog.type("t")
     jog.enter("33")
-    assert jog.prompt.startswith("REFUSED: T33 does not exist")
+    assert begins(jog.prompt, "screen.refused", why=text("screen.no-such-tool", number=33))
 
 
 # --- homing ------------------------------------------------------------------------------------------------
 
 
 def test_home_asks_once_and_takes_the_axes_in_their_order(lost: JogBench) -> None:
-    assert lost.prompt == "X AND Z NOT HOMED: JOG SLOWLY, THERE ARE NO SOFT LIMITS; PRESS HOME"
+    assert lost.prompt == text("jog.not-homed-jog-slowly", axes="X AND Z")
     lost.key(Key.Key_Home)
-    assert lost.prompt.startswith("HOME Z, THEN X: PRESS RETURN FOR ALL")
+    assert begins(lost.prompt, "jog.home", first="Z, THEN X")
     lost.run(0.5)
     assert lost.shot.state is State.IDLE
     lost.key(Key.Key_Home)
@@ -214,7 +231,7 @@ def test_home_asks_once_and_takes_the_axes_in_their_order(lost: JogBench) -> Non
     lost.until(done)
     assert list(dict.fromkeys(seen)) == [("NOT HOMED", "HOMING"), ("HOMING", "HOMED"), ("HOMED", "HOMED")]
     lost.key(Key.Key_Home)
-    assert lost.prompt == "EVERY AXIS KNOWS ITS POSITION: THERE IS NOTHING TO HOME"
+    assert lost.prompt == text("jog.nothing-to-home")
 
 
 def test_one_axis_alone(lost: JogBench) -> None:
@@ -254,7 +271,7 @@ def test_an_unhomed_axis_is_jogged_slowly_and_not_touched_off(lost: JogBench) ->
     lost.enter("1")
     lost.rests()
     lost.type("x")
-    assert lost.prompt == "X IS NOT HOMED: ITS POSITION MEANS NOTHING YET"
+    assert lost.prompt == text("jog.position-means-nothing", axis="X")
 
 
 def test_hold_ends_homing(lost: JogBench) -> None:

@@ -15,6 +15,7 @@ from app.desk.interrupted_notice import NoticeRow
 from app.screen.window_layout import FINGER
 from core.executor.snapshot import State
 from tests.screen.jog.bench import INCH, JogBench, Key
+from tests.texts import shows, text
 
 THOU = 0.001 * INCH
 
@@ -122,7 +123,7 @@ def test_a_dialog_in_front_ends_it(wheeled: JogBench, qtbot: QtBot) -> None:
     dialog.setModal(True)
     dialog.show()
     wheeled.run(0.1)
-    assert "HANDWHEEL IS OFF" in wheeled.prompt
+    assert shows(wheeled.prompt, "jog.keyboard-left-wheel")
     dialog.close()
     stays(wheeled)
 
@@ -130,7 +131,7 @@ def test_a_dialog_in_front_ends_it(wheeled: JogBench, qtbot: QtBot) -> None:
 def test_a_screen_that_stands_still_ends_it(wheeled: JogBench) -> None:
     selected(wheeled)
     wheeled.run(0.6, screen=False)
-    assert wheeled.shot.wheel_ended == "the page that asked for it was silent"
+    assert wheeled.shot.wheel_ended == text("jog.page-silent")
     stays(wheeled)
 
 
@@ -152,7 +153,7 @@ def test_an_arrow_while_it_turns_stops_both(wheeled: JogBench) -> None:
     notches(wheeled, 20)
     wheeled.up(Key.Key_Right)
     stays(wheeled)
-    assert "HANDWHEEL" in wheeled.prompt
+    assert shows(wheeled.prompt, "jog.wheel-off-because", why=text("jog.key-while-turned").upper())
 
 
 def test_the_step_key_changes_the_click(wheeled: JogBench) -> None:
@@ -169,7 +170,7 @@ def test_the_step_key_changes_the_click(wheeled: JogBench) -> None:
 
 def test_without_one_the_key_says_so_and_nothing_is_drawn(jog: JogBench) -> None:
     jog.key(Key.Key_V)
-    assert jog.prompt == "THIS MACHINE HAS NO HANDWHEEL"
+    assert jog.prompt == text("jog.no-wheel")
     assert not jog.page.model.wheel_drawn
 
 
