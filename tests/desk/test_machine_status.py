@@ -175,7 +175,7 @@ def test_a_wait_says_for_what() -> None:
 def test_the_message_of_a_stop_lasts_as_long_as_the_stop() -> None:
     stop = replace(AT, state=State.PROGRAM_STOP, message="CHECK THE BORE")
     assert status_of(stop, Readout.POSITION, True).message == "CHECK THE BORE"
-    assert status_of(replace(stop, message=""), Readout.POSITION, True).message == "PROGRAM STOP"
+    assert status_of(replace(stop, message=""), Readout.POSITION, True).message == text("screen.program-stop")
     assert status_of(replace(stop, state=State.RUN), Readout.POSITION, True).message == ""
 
 
@@ -249,7 +249,7 @@ def test_drives_are_on_where_they_say_so_whatever_the_state_is() -> None:
 def test_only_the_part_that_is_silent_is_unknown() -> None:
     view = status_of(replace(AT, unknown=frozenset({Unknown.SPINDLE})), Readout.POSITION, True)
     assert all(axis.known for axis in view.position.axes)
-    assert view.lamps[0].word == "SPINDLE UNKNOWN"
+    assert view.lamps[0].word == text("screen.spindle-unknown")
     assert view.lamps[1].word == "COOLANT"
 
 

@@ -12,7 +12,7 @@ from app.jog.jog_speeds import CONTINUOUS, JogSpeeds
 from core.executor.commands import Command, Jog, JogStep, JogStop
 from core.executor.snapshot import Snapshot, State
 from core.interpreter.modal_state import Modal
-from tests.texts import shows
+from tests.texts import shows, text
 
 INCH = 25.4
 FRAME = 0.016
@@ -119,7 +119,7 @@ def test_a_screen_that_stood_still_does_not_go_on(scene: Scene) -> None:
     assert len(scene.jogs) == renewed
     scene.frames(FRAME)
     assert scene.stopped
-    assert "AWAY" in scene.said[-1]
+    assert text("jog.screen-away-jog") in scene.said[-1]
     assert scene.nothing_more()
 
 

@@ -142,7 +142,7 @@ def correct(day: Day, x: str, z: str = "") -> None:
     day.key(Key.Key_F9)
     day.enter("1", x, z, "")
     day.sees(lambda: not day.desk.book.busy)
-    assert day.prompt.startswith("D1 SAVED")
+    assert day.prompt.startswith(text("screen.saved", names="D1"))
     day.key(Key.Key_Escape)
     assert day.page == page_table.AUTOMATIC
 

@@ -127,7 +127,7 @@ def test_a_correction_that_cannot_be_run_stops_at_the_end_of_the_part(day: Day) 
     correct(day, "-9")
     day.sees(lambda: begins(day.prompt, "screen.no-next-part"))
     day.reaches(State.IDLE)
-    day.sees(lambda: shows(day.prompt, "screen.will-not-run") or "NO REPEAT" in day.prompt.upper())
+    day.sees(lambda: shows(day.prompt, "screen.will-not-run") or shows(day.prompt, "screen.no-repeat"))
     assert day.count("part") == 2
     day.palms()
     assert day.shot.state is State.IDLE

@@ -36,6 +36,8 @@ from core.store.store_rows import EventRow
 from resources.translations.collect import _NO_TEXT, HERE, HOLE, HOUSE, texts
 from resources.translations.collect import catalogue as written
 from tests.screen.hands import Hands, Key
+from tests.texts import text as wording
+from tests.texts import text_in_spanish
 
 KEY_LABEL = 8  # characters
 _LOGGED = re.compile(r'\.log\(\s*"(\w+)"')
@@ -90,11 +92,11 @@ def test_an_alarm_of_the_control_is_told_in_spanish(spanish: Hands, monkeypatch:
         Alarm(102, "following", "FOLLOWING ERROR", "Z is 2.1 off its setpoint", remedy, line=4)
     )
     texts = " / ".join(drawn(spanish, monkeypatch))
-    assert "ALARMA 102" in texts
-    assert "ERROR DE SEGUIMIENTO" in texts
-    assert "Z está a 2.1 de su consigna" in texts
+    assert text_in_spanish("screen.alarm", number=102, what="") in texts
+    assert text_in_spanish("screen.following-error") in texts
+    assert text_in_spanish("screen.off-setpoint", axis="Z", distance="2.1") in texts
     assert "libere el carro" in texts
-    assert "LÍNEA 4" in texts
+    assert text_in_spanish("screen.line", line=4) in texts
     assert "  ·  LINE" not in texts
 
 
@@ -227,9 +229,11 @@ def test_what_is_put_together_is_told_whole(english: str, told: str) -> None:
 
 
 def test_a_refusal_with_values_is_told_in_spanish(spanish: Hands) -> None:
-    spanish.desk.say("REFUSED: spindle limit 9000 is not between 0 and 3500 rpm")
+    why = wording("screen.spindle-limit-between", limit=9000, most=3500)
+    spanish.desk.say(wording("screen.refused", why=why))
     told = catalogue("es").translate(spanish.desk.notice)
-    assert told == "RECHAZADO: el tope del husillo 9000 no está entre 0 y 3500 rpm"
+    in_spanish = text_in_spanish("screen.spindle-limit-between", limit=9000, most=3500)
+    assert told == text_in_spanish("screen.refused", why=in_spanish)
 
 
 @pytest.mark.parametrize(

@@ -181,7 +181,7 @@ def test_the_palms_start_no_program_in_mdi(at_mdi: Operator) -> None:
 
 def test_a_tool_that_was_never_set_is_refused_before_the_start(at_mdi: Operator) -> None:
     at_mdi.line("T9")
-    assert "Tool 9" in page_of(at_mdi).line.message
+    assert shows(page_of(at_mdi).line.message, "screen.tool-never-set", number=9)
     assert at_mdi.mdi.line.ready is None
     at_mdi.key(Key.Key_Escape)
     at_mdi.run("T1")

@@ -127,7 +127,7 @@ def measured(day: Day, *sizes: str) -> None:
         if number:
             day.key(Key.Key_F3)
         day.enter(size)
-        day.sees(lambda: "KEPT" in day.prompt and settled(day))
+        day.sees(lambda: shows(day.prompt, "measure.reading-kept") and settled(day))
 
 
 # --- features ---------------------------------------------------------------------------------------------
@@ -151,7 +151,7 @@ def test_a_feature_that_cannot_be_is_refused_and_stays_to_be_mended(
     day: Day, fields: tuple[str, ...], why: str
 ) -> None:
     feature(day, *fields)
-    assert "REFUSED" in day.prompt
+    assert shows(day.prompt, "screen.refused")
     assert why in day.prompt
     assert sheet(day).title == "FEATURE"
 
@@ -404,7 +404,7 @@ def test_the_chart_is_loaded_when_it_is_opened(day: Day) -> None:
 def life(day: Day, limit: str, *, stops: bool = True) -> None:
     section(day, LIFE)
     day.enter(limit)
-    day.sees(lambda: "SAVED" in day.prompt)
+    day.sees(lambda: shows(day.prompt, "screen.saved"))
     if stops:
         day.sees(lambda: cells(day)[0][1] == limit)
         day.key(Key.Key_Escape)
@@ -529,7 +529,7 @@ def test_a_secondary_offset_is_corrected_as_a_radius(day: Day) -> None:
     day.key(Key.Key_Return, Key.Key_Down)
     day.enter("4")
     day.key(Key.Key_F6)
-    day.sees(lambda: "KEPT" in day.prompt)
+    day.sees(lambda: shows(day.prompt, "measure.feature-kept"))
     parts(day, 1)
     measured(day, ".5012")
     day.key(Key.Key_Escape)

@@ -114,7 +114,7 @@ def test_a_machine_that_is_not_heard_says_so_on_every_page(hands: Hands, page: s
     (row,) = hands.frame.notices.rows
     assert (row.text, row.tone) == (text("screen.spindle-may-turn"), "alarm")
     assert begins(row.figures, "screen.not-known", what=Pattern("POSITIONS, SPINDLE, OUTPUTS, INPUTS.*"))
-    assert "SPINDLE UNKNOWN" in [lamp.word for lamp in hands.frame.strip.lamps]
+    assert text("screen.spindle-unknown") in [lamp.word for lamp in hands.frame.strip.lamps]
     hands.machine.now = replace(hands.machine.now, unknown=frozenset({Unknown.OUTPUTS}))
     hands.window.refresh()
     (row,) = hands.frame.notices.rows

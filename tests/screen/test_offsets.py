@@ -76,7 +76,7 @@ def test_a_correction_is_entered_seen_and_runs_in_the_next_cycle(hands: Hands, s
     answer(hands, "")
     hands.sees(lambda: 1 in page.table.offsets)
     assert store.secondary()[1].x == pytest.approx(-0.001 * 25.4)
-    hands.sees(lambda: hands.prompt() == "D1 SAVED")
+    hands.sees(lambda: hands.prompt() == wording("screen.saved", names="D1"))
     hands.key(Key.Key_Escape)
     assert hands.frame.page is hands.page
     hands.sees(lambda: hands.prompt().startswith(wording("screen.to-start")))
@@ -166,8 +166,7 @@ def test_a_correction_while_a_part_runs_is_proved_meanwhile(hands: Hands, store:
     answer(hands, "1", ".1", "", "")
     hands.sees(
         lambda: (
-            hands.prompt()
-            == wording("programs.saved-names", names="D1") + wording("screen.counts-from-next-start")
+            hands.prompt() == wording("screen.saved", names="D1") + wording("screen.counts-from-next-start")
         )
     )
     hands.sees(lambda: len(renewals(hands)) == 2)
@@ -229,7 +228,7 @@ def test_wear_between_two_parts(hands: Hands, store: Store) -> None:
     hands.sees(lambda: tools_of(hands).asked.asked.question == "T1  WEAR X Ø?")
     hands.type("-.0005")
     hands.key(Key.Key_F2)
-    hands.sees(lambda: hands.prompt() == "T1 SAVED")
+    hands.sees(lambda: hands.prompt() == wording("screen.saved", names="T1"))
     hands.type("-.0002")
     hands.key(Key.Key_F2)
     hands.sees(lambda: store.tools()[1].wear_x == pytest.approx(-0.00035 * 25.4))

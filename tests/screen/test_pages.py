@@ -78,7 +78,7 @@ def test_an_alarm_goes_before_what_a_page_has_to_say(hands: Hands) -> None:
     hands.machine.fault(Alarm(102, "following", "FOLLOWING ERROR", "blocked", "free the slide", line=4))
     hands.sees(lambda: begins(hands.prompt(), "screen.what-to-do", remedy="free the slide"))
     assert hands.frame.title.state == text("screen.alarm", number=102, what=text("screen.following-error"))
-    assert hands.frame.prompt.reason == "CAUSE: blocked"
+    assert hands.frame.prompt.reason == text("screen.cause", cause="blocked")
     assert hands.frame.run.stop == f"{hands.frame.title.state}  ·  {text('screen.line', line=4)}"
     hands.key(Key.Key_F7)
     assert hands.frame.log.isVisible()

@@ -534,7 +534,7 @@ def test_the_analyses_stand_behind_f8(hands: Hands) -> None:
     hands.sees(lambda: shows(page.above.words, "scope.passes-by-angle"))
     hands.sees(lambda: page.drawing.chart is not None and len(page.drawing.chart.plots) == 2)
     hands.key(Key.Key_F4)
-    hands.sees(lambda: "no arc" in page.above.words)
+    hands.sees(lambda: text("scope.no-arc") in page.above.words)
     hands.sees(lambda: page.drawing.chart is not None and not page.drawing.chart.drawing.curves)
     hands.key(Key.Key_F8)
     assert hands.frame.page.NAME == page_table.SCOPE

@@ -209,11 +209,11 @@ def test_coolant_and_the_way_are_the_operators_choice(operator: Operator) -> Non
     operator.type("38")
     page = found(operator)
     assert page.starts.starts[-1] == "COOLANT"
-    assert page.starts.choices == ("F5: WITH COOLANT",)
+    assert page.starts.choices == (text("search.with-coolant"),)
     operator.key(Key.Key_F5)
     page = page_of(operator)
     assert page.starts.starts == ("SPINDLE FORWARD G97 2200 RPM",)
-    assert page.starts.choices == ("F5: WITHOUT COOLANT",)
+    assert page.starts.choices == (text("search.without-coolant"),)
     assert page.starts.trouble == ""
     confirmed(operator)
     operator.key(Key.Key_F5)  # another start is not the one that was proved
@@ -352,7 +352,7 @@ def test_only_the_way_out_is_taken_and_the_page_stays(operator: Operator) -> Non
     page = page_of(operator)
     assert operator.prompt() == text("search.look-at-way-out")
     assert [leg.label for leg in page.path.legs] == ["", "1 X", "2 Z", "3 Z"]
-    assert page.starts.starts == ("NOTHING BUT THE SLIDES",)
+    assert page.starts.starts == (text("search.only-slides"),)
     assert page.starts.choices[0] == text("search.leaves-part", feed="20.00 in/min")
     operator.palms()
     assert operator.shot.state is State.IDLE  # not before it is confirmed

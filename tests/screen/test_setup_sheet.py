@@ -21,7 +21,7 @@ from tests.screen.desks import desk_on
 from tests.screen.fake import FakeMachine
 from tests.screen.hands import Hands, Key
 from tests.screen.yes import yes
-from tests.texts import begins, shows
+from tests.texts import begins, shows, text_in_spanish
 from tests.texts import text as wording
 
 SETUP = "SETUP SHEET"
@@ -136,7 +136,7 @@ def test_it_is_written_as_pdf_and_html(hands: Hands, tmp_path: Path) -> None:
     made = "".join(pdf.pages)
     digest = hashlib.sha256((samples() / "bushing.nc").read_bytes()).hexdigest()
     for words in (
-        "Setup sheet: bushing.nc",
+        wording("screen.setup-sheet", program="bushing.nc"),
         "GAUGE THE OUTSIDE AND CORRECT D1",
         digest,
         "BORING, VNMG160404",
@@ -175,7 +175,7 @@ def test_the_page_says_its_language(hands: Hands, tmp_path: Path) -> None:
     hands.sees(lambda: not function.busy)
     page = (tmp_path / "bushing.nc-setup.html").read_text(encoding="utf-8")
     assert '<html lang="es">' in page
-    assert "Hoja de preparación" in page
+    assert text_in_spanish("screen.setup-sheet", program="bushing.nc") in page
 
 
 def test_there_are_no_more_notes_than_can_be_read(hands: Hands) -> None:

@@ -82,7 +82,7 @@ def test_a_new_shape_by_keys_alone(hands: Hands, store: Store) -> None:
     hands.key(Key.Key_Right)
     hands.key(Key.Key_Return)
     hands.sees(lambda: 2 in page.model.book.shapes)
-    hands.sees(lambda: hands.prompt() == "T2 SAVED")
+    hands.sees(lambda: hands.prompt() == text("screen.saved", names="T2"))
     for _ in range(4):
         hands.key(Key.Key_Down)
     hands.sees(lambda: page.asked.asked.question == "T2  INSERT?")

@@ -170,7 +170,10 @@ def test_find_counts_and_replace_all_is_one_step(writer: Writer) -> None:
     writer.key(Key.Key_F, CTRL)
     writer.type("f100")
     writer.sees(
-        lambda: writer.editor.ask.answer == wording("editor.found-and-inside", found="2 FOUND", count=1)
+        lambda: (
+            writer.editor.ask.answer
+            == wording("editor.found-and-inside", found=wording("editor.found", count=2), count=1)
+        )
     )
     writer.key(Key.Key_Tab)
     writer.type("F300")

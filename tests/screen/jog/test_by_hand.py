@@ -56,7 +56,7 @@ def test_the_palms_start_the_spindle_and_nothing_else_does(jog: JogBench) -> Non
     jog.run(0.5)
     assert (jog.shot.rpm_command, jog.shot.state) == (0.0, State.IDLE)
     assert "G97M03S200" in jog.prompt
-    assert "PALM" in jog.prompt
+    assert text("screen.both-palms") in jog.prompt
     palms(jog)
     jog.run(1.5)
     assert jog.shot.rpm_actual == pytest.approx(200.0, abs=10.0)

@@ -68,7 +68,7 @@ def test_the_first_press_asks_and_moves_nothing(jog: JogBench, page: DriveTestPa
     jog.up(Key.Key_Right)
     jog.key(Key.Key_Left)  # another arrow asks anew
     assert jog.shot.demand == (0.0, 0.0, 0.0)
-    assert "TO −0.01000 in" in jog.prompt
+    assert shows(jog.prompt, "jog.test-travel", there="−0.01000 in")
     jog.key(Key.Key_Escape)
     assert page.model.hold.asked is None
 

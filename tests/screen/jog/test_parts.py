@@ -64,7 +64,7 @@ def test_a_wear_correction_between_two_parts(jog: JogBench, tmp_path: Path) -> N
     jog.type("-.002")  # the part is .002 too large on its diameter
     jog.key(Key.Key_F2)
     jog.saved()
-    assert jog.prompt == "T1 SAVED"
+    assert jog.prompt == text("screen.saved", names="T1")
     proved(jog)
     assert cut(jog) - first == pytest.approx(-0.001 * INCH, abs=1e-6)
 
@@ -88,7 +88,7 @@ def test_a_correction_at_a_stop_counts_in_the_next_part_of_the_repeat(jog: JogBe
     jog.enter("-.002")
     jog.saved()
     jog.run(0.05)
-    assert jog.prompt == text("jog.saved-for-next-part", saved="T1 SAVED")
+    assert jog.prompt == text("jog.saved-for-next-part", saved=text("screen.saved", names="T1"))
     assert jog.shot.cycle_repeat
     jog.desk.rebuilding.renewing.worker.settle(60.0)
     jog.key(Key.Key_F1)

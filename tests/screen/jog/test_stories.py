@@ -69,7 +69,7 @@ def test_two_tools_are_set_by_touching(jog: JogBench) -> None:
     assert text("jog.touched-one-of-two", number=1, axis="Z") in jog.prompt
     assert jog.store.tools() == {}
     touch(jog, "z", "0")
-    assert jog.prompt == "T1 SAVED"
+    assert jog.prompt == text("screen.saved", names="T1")
     # the tip stands at diameter .498 with the slide at home: part zero is .249 further in
     assert jog.store.tools()[1].x == pytest.approx(-0.249 * INCH, abs=1e-9)
     assert jog.store.tools()[1].z == 0.0

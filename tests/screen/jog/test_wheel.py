@@ -52,7 +52,7 @@ def selected(jog: JogBench, axis: str = "X") -> None:
 @pytest.mark.parametrize("axis", ["X", "Z"])
 def test_a_notch_is_a_thousandth(wheeled: JogBench, axis: str) -> None:
     selected(wheeled, axis)
-    assert f"MOVES {axis}" in wheeled.prompt
+    assert shows(wheeled.prompt, "jog.wheel-moves", axis=axis)
     notches(wheeled, 5)
     wheeled.until(lambda: wheeled.shot.state is State.IDLE)
     wheeled.run(0.3)
