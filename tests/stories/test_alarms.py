@@ -127,7 +127,12 @@ def test_every_stop_is_in_f7_with_who_or_what_stopped(story: Story) -> None:
     operator.reaches("PROGRAM STOP")
     operator.answers("r", fragment("screen.give-up-program"), lambda: operator.state == "READY")
     operator.key("F7")
-    for text in ("703  ·  RESET", "part.nc was given up", "705  ·  OPTIONAL STOP", "706  ·  SINGLE BLOCK"):
+    for text in (
+        "703  ·  RESET",
+        wording("log.given-up", what="part.nc"),
+        "705  ·  OPTIONAL STOP",
+        "706  ·  SINGLE BLOCK",
+    ):
         operator.sees(text)
     operator.key("Next")
     operator.sees("704  ·  PROGRAM STOP")

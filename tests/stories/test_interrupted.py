@@ -15,6 +15,7 @@ from tests.texts import text as wording
 
 PART = "G90G94F300G72\nT3\nX1.2Z.2\nM03S900\nX.8\nG95F.05Z-.2\nF.005Z-1\nX1.2\nG94F300Z.2\nM05\nX2Z2\nM30\n"
 TOOLS = {3: (-0.5, -2.0)}
+IN_THE_LOG = wording("log.interrupted", program="part.nc", line=7, tool="T3", part=1, why="E-STOP")
 CUT = (-2.0 - 0.3) * 25.4  # machine Z in the middle of line 7
 
 
@@ -68,7 +69,7 @@ def test_after_an_estop_in_the_cut_both_palms_begin_nothing_and_the_job_is_shown
     assert isinstance(kept, dict)
     assert kept["where"][:2] == pytest.approx(stood[:2], abs=0.05)
     assert kept["why"] == "E-STOP"
-    assert operator.events("interrupted") == ["part.nc line 7, T3, part 1: E-STOP"]
+    assert operator.events("interrupted") == [IN_THE_LOG]
 
 
 def test_a_program_given_up_leaves_the_same_job_and_y_then_the_palms_begin_it_anew(story: Story) -> None:
@@ -211,9 +212,7 @@ def test_another_program_takes_its_place_only_when_that_is_meant(story: Story) -
     operator.sees(fragment("desk.gives-job-up", name="other.nc"))
     job = opening("desk.interrupted")
     operator.until(lambda: operator.says_yes(lambda: not operator.shows(job)), "it is given up")
-    assert operator.events("cleared") == [
-        "part.nc line 7, T3, part 1: E-STOP; other.nc was loaded in its place"
-    ]
+    assert operator.events("cleared") == [wording("log.replaced-by", what=IN_THE_LOG, name="other.nc")]
 
 
 def test_a_computer_that_goes_down_in_the_cut_leaves_the_job(story: Story) -> None:
