@@ -6,11 +6,16 @@ import pytest
 
 from tests.stories.conftest import Story
 from tests.stories.operator import Operator
-from tests.texts import text
+from tests.texts import opening, text
 
 TOOLS = {1: (0.0, 0.0)}
 HEAD = "G90G94F300\nT1\nM03S600\nX.5Z.5\n"
 BAR = f"{HEAD}M97I10C1P1\nM30\n}}1\nM05\nZ9\nM99\n"
+
+
+def beyond(place: str) -> str:
+    """Return how the finding begins that Z would leave its travel; ``place`` is in inches."""
+    return opening("findings.would-go-to", axis="Z", place=place, unit="in")
 
 
 def is_refused(operator: Operator, line: int, why: str, remedy: str) -> None:
@@ -33,21 +38,36 @@ def is_refused(operator: Operator, line: int, why: str, remedy: str) -> None:
 
 def test_the_end_of_the_bar_would_run_against_the_limit_and_the_bar_is_not_even_begun(story: Story) -> None:
     operator = story.begins(BAR, tools=TOOLS)
-    is_refused(operator, 9, "With input 10 on at line 5: Z would go to 9.0000 in", "check the Z word")
+    why = text("findings.with-input", number=10, state="on", line=5, what=beyond("9.0000"))
+    is_refused(operator, 9, why, "check the Z word")
 
 
 def test_what_block_delete_leaves_out_would_run_against_the_limit(story: Story) -> None:
     operator = story.begins(f"{HEAD}/Z-1\nG91Z6\nG90\nZ0\nM30\n", tools=TOOLS)
-    is_refused(operator, 6, "With block delete on: Z would go to 6.5000 in", "check the Z word")
+    why = text("findings.with-block-delete", state="on", what=beyond("6.5000"))
+    is_refused(operator, 6, why, "check the Z word")
 
 
-@pytest.mark.parametrize(("lines", "line", "why", "remedy"), [
-    ("M13\nG95F.004Z-.2\nM12\n", 6, "the collet open", "Close the collet with M12"),
-    ("T0\nX.5Z.4\nF5Z.3\n", 7, "after the T0 on line 5", "Write T with the tool's number"),
-    ("M05\nX-.5Z.1\nF20\nM19S60\nG04F3\n(~PLXC)\n(X.25Y0)\n(END)\n", 11, "no live tool is on", "M15 or M27"),
-    ("M97I99C1P1\nM30\n}1\nG04F1\nM99\n", 5, "no input 99", "Correct the number"),
-    ("X.4 RETRACT\n", 5, "text outside parentheses", "Write (RETRACT)."),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("lines", "line", "why", "remedy"),
+    [
+        ("M13\nG95F.004Z-.2\nM12\n", 6, text("findings.cuts-with-open-collet"), "Close the collet with M12"),
+        (
+            "T0\nX.5Z.4\nF5Z.3\n",
+            7,
+            text("findings.cuts-after", what="the T0 on line 5"),
+            "Write T with the tool's number",
+        ),
+        (
+            "M05\nX-.5Z.1\nF20\nM19S60\nG04F3\n(~PLXC)\n(X.25Y0)\n(END)\n",
+            11,
+            text("findings.mills-without-live-tool"),
+            "M15 or M27",
+        ),
+        ("M97I99C1P1\nM30\n}1\nG04F1\nM99\n", 5, text("findings.no-input", number=99), "Correct the number"),
+        ("X.4 RETRACT\n", 5, text("findings.text-outside", text="RETRACT"), "Write (RETRACT)."),
+    ],
+)
 def test_a_mistake_that_breaks_metal_is_told_with_its_line_and_remedy(
     story: Story, lines: str, line: int, why: str, remedy: str
 ) -> None:
