@@ -39,7 +39,7 @@ def text(name: str, /, **values: object) -> str:
 
 
 def pattern(name: str, /, **values: object) -> Pattern:
-    """Return a regular expression for the text; a value that is not given stands for anything."""
+    """Return a regular expression for the text; a value that is not given matches anything."""
     template = all_texts()[name]
     unknown = values.keys() - {part[1:-1] for part in HOLE.findall(template)}
     if unknown:
@@ -61,12 +61,12 @@ def _as_pattern(value: object) -> str:
 
 
 def begins(shown: str, name: str, /, **values: object) -> bool:
-    """Return whether the screen shows the text first; a value that is not given stands for anything."""
+    """Return whether the screen shows the text first; a value that is not given matches anything."""
     return re.match(pattern(name, **values), shown) is not None
 
 
 def shows(shown: str, name: str, /, **values: object) -> bool:
-    """Return whether the text is part of what is shown; a value that is not given stands for anything."""
+    """Return whether the text is part of what is shown; a value that is not given matches anything."""
     return re.search(pattern(name, **values), shown) is not None
 
 
