@@ -7,7 +7,7 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 
 from tests.screen.editor.writer import Writer
-from tests.texts import begins, shows
+from tests.texts import begins, shows, text
 
 Key = Qt.Key
 CTRL = Qt.KeyboardModifier.ControlModifier
@@ -82,7 +82,7 @@ def test_a_taper_is_measured_by_keys(drawn: Writer) -> None:
     assert rows["ΔZ"] == "−1.00000"
     assert rows["DISTANCE"] == "1.11803"  # the root of 1.25
     assert rows["ANGLE TO Z"] == "26.57°"  # its tangent is a half
-    drawn.sees(lambda: drawn.prompt().startswith("ARROWS"))
+    drawn.sees(lambda: drawn.prompt().startswith(text("editor.next-point")))
 
 
 def test_from_the_cross_to_the_line(drawn: Writer) -> None:
