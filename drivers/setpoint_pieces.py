@@ -64,6 +64,18 @@ class PieceQueue:
             return self._pieces[0].p, self._zero
         return at(self._pieces[index], t)
 
+    def piece_at(self, t: float) -> tuple[Piece, float]:
+        """Return the piece that is played at ``t``, and until when it is; a resting one where none is."""
+        if t >= self._end:
+            return Piece(t, INF, self._rest, self._zero, self._zero), INF
+        index = bisect_right(self._starts, t) - 1
+        if index < 0:
+            return Piece(t, INF, self._pieces[0].p, self._zero, self._zero), self._starts[0]
+        piece = self._pieces[index]
+        ends = piece.t + piece.dt
+        following = self._starts[index + 1] if index + 1 < len(self._starts) else self._end
+        return piece, min(ends, following)
+
     def motion_at(self, t: float) -> tuple[tuple[float, ...], tuple[float, ...], tuple[float, ...]]:
         """Position, velocity and acceleration at ``t``."""
         p, v = self.demand_at(t)

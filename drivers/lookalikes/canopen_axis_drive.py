@@ -141,24 +141,30 @@ class AxisDrive:
         self._going = False
         self.values: dict[tuple[int, int], int] = {}
         self.second: Callable[[], int] | None = None  # counts of a second encoder input
-
-    # --- objects ------------------------------------------------------------------------------------------
-
-    def read(self, index: int, _sub: int) -> int | None:
-        """What lives in the drive."""
-        count = self.servo.axis.count
-        live: dict[int, Callable[[], int]] = {
+        self._readers: dict[int, Callable[[], int]] = {
             od.DEVICE_TYPE: lambda: 0x00020192,
             od.SUPPORTED: lambda: _MODES,
             od.STATUS: self.status,
             od.MODE_SHOWN: lambda: self.mode,
-            od.POSITION: lambda: round(self.servo.reading / count),
-            od.TORQUE: lambda: round(10.0 * self.servo.load),
-            od.FOLLOWING: lambda: round((self.p - self.servo.reading) / count) if self.power.powered else 0,
+            od.POSITION: lambda: round(servo.reading / servo.axis.count),
+            od.TORQUE: lambda: round(10.0 * servo.load),
+            od.FOLLOWING: self._following_error,
         }
+
+    # --- objects ------------------------------------------------------------------------------------------
+
+    def read(self, index: int, _sub: int) -> int | None:
+        """Return a value that lives in the drive, None where the stored one counts."""
+        reader = self._readers.get(index)
+        if reader is not None:
+            return reader()
         if index == od.SECOND_POSITION and self.second is not None:
             return (self.second() + 2**31) % 2**32 - 2**31
-        return live[index]() if index in live else None
+        return None
+
+    def _following_error(self) -> int:
+        """Return setpoint minus position in counts; 0 without power."""
+        return round((self.p - self.servo.reading) / self.servo.axis.count) if self.power.powered else 0
 
     def write(self, index: int, sub: int, value: int) -> None:
         """What the host says."""
@@ -209,6 +215,8 @@ class AxisDrive:
     def step(self, dt: float) -> None:
         """One step of drive and slide."""
         if not self.power.powered:
+            if self.servo.v == 0.0 and self.v == 0.0 and self.p == self.servo.reading:
+                return
             self.playing = self._homing = self._going = self.interpolates = False
             self.servo.roll(dt)
             self.p, self.v = self.servo.reading, 0.0

@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 from drivers.canopen import canopen_objects as od
 from drivers.canopen.canopen_config import CanopenConfig
+from drivers.canopen.canopen_nodes import CanTerminal
 from drivers.lookalikes.plant import Plant
 
 _STATION = ("estop", "start", "hold", "spindle_auto")
@@ -20,6 +21,10 @@ class TerminalBoard:
         self._plant = plant
         self.outputs = bytearray(8)
         self.values: dict[tuple[int, int], int] = {}
+        self._wired: dict[int, list[tuple[str, CanTerminal]]] = {}  # inputs by sub-index
+        for name_of_input, where in config.inputs.items():
+            if where.node == name:
+                self._wired.setdefault(where.sub, []).append((name_of_input, where))
         for output, model in config.outputs.items():
             if plant.terminals.outputs.get(output):
                 self.outputs[model.terminal.sub - 1] |= 1 << model.terminal.bit
@@ -67,13 +72,15 @@ class TerminalBoard:
                 board.write(name, on, now)
 
     def _inputs(self, sub: int) -> int:
+        wired = self._wired.get(sub)
+        if wired is None:
+            return 0
         now = self._plant.clock.now()
-        state = self._plant.panel.state(now)
-        states = {**self._plant.terminals.read(now), **{name: getattr(state, name) for name in _STATION}}
+        state, states = self._plant.panel.state(now), self._plant.terminals.read(now)
         byte = 0
-        for name, where in self._config.inputs.items():
-            if where.node == self._name and where.sub == sub:
-                byte |= (bool(states.get(name)) is not where.active_low) << where.bit
+        for name, where in wired:
+            on = getattr(state, name) if name in _STATION else states.get(name)
+            byte |= (bool(on) is not where.active_low) << where.bit
         return byte
 
     def _analog(self, sub: int) -> int:
@@ -106,16 +113,17 @@ class EncoderDevice:
         self.steps = abs(counts)  # as it says of itself
         self.stuck: int | None = None
         self.values: dict[tuple[int, int], int] = {}
-
-    def read(self, index: int, _sub: int) -> int | None:
-        """What lives in the device."""
-        live: dict[int, Callable[[], int]] = {
+        self._readers: dict[int, Callable[[], int]] = {
             od.DEVICE_TYPE: lambda: 0x00020196,
             od.ENCODER_RESOLUTION: lambda: self.steps,
             od.ENCODER_TURNS: lambda: self.turns,
             od.ENCODER_POSITION: lambda: self.position % (self.steps * self.turns),
         }
-        return live[index]() if index in live else None
+
+    def read(self, index: int, _sub: int) -> int | None:
+        """What lives in the device."""
+        reader = self._readers.get(index)
+        return None if reader is None else reader()
 
     @property
     def position(self) -> int:

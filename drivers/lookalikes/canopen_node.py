@@ -8,7 +8,7 @@ from typing import NamedTuple, Protocol
 import can
 import canopen
 from canopen import LocalNode, ObjectDictionary
-from canopen.objectdictionary import ODVariable
+from canopen.objectdictionary import ODVariable, datatypes
 
 from drivers.canopen import canopen_objects as od
 
@@ -67,7 +67,8 @@ class _NoTask(canopen.network.PeriodicMessageTask):
         """Nothing runs."""
 
 
-_Entry = tuple[int, int, int]  # index, sub-index and bytes of an entry of a PDO
+_Entry = tuple[int, int, int, bool]  # index, sub-index, bytes and sign of an entry of a PDO
+_SIGNED = frozenset(datatypes.SIGNED_TYPES)
 
 
 class _Taken(NamedTuple):
@@ -204,10 +205,11 @@ class DeviceNode:
 
     def _apply(self, entries: list[_Entry], data: bytes) -> None:
         at = 0
-        for index, sub, size in entries:
+        for index, sub, size, signed in entries:  # as the library's node does, which takes longer
             part = data[at : at + size]
             if len(part) == size:
-                self.local.set_data(index, sub, part)
+                self.local.data_store.setdefault(index, {})[sub] = part
+                self.device.write(index, sub, int.from_bytes(part, "little", signed=signed))
             at += size
 
     def _answer(self, told: _Communication) -> None:
@@ -215,7 +217,7 @@ class DeviceNode:
             if self._syncs % kind == 0:
                 self.network.send_message(cob, b"".join([self._value(*entry) for entry in entries]))
 
-    def _value(self, index: int, sub: int, size: int) -> bytes:
+    def _value(self, index: int, sub: int, size: int, _signed: bool) -> bytes:
         """As the library's node has it, which takes longer."""
         value = self.device.read(index, sub)
         if value is None:
@@ -256,7 +258,12 @@ class DeviceNode:
     def _mapped(self, index: int) -> list[_Entry]:
         """What a PDO holds."""
         entries = [self._stored(index, sub) for sub in range(1, self._stored(index, 0) + 1)]
-        return [(entry >> 16, entry >> 8 & 0xFF, (entry & 0xFF) // 8) for entry in entries]
+        places = [(entry >> 16, entry >> 8 & 0xFF, (entry & 0xFF) // 8) for entry in entries]
+        return [(index, sub, size, self._is_signed(index, sub)) for index, sub, size in places]
+
+    def _is_signed(self, index: int, sub: int) -> bool:
+        variable = self.local.object_dictionary.get_variable(index, sub)
+        return variable is not None and variable.data_type in _SIGNED
 
     def _stored(self, index: int, sub: int) -> int:
         """A number that is kept as it was written, such as those of communication; 0 where none is."""

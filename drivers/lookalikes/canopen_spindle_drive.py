@@ -82,6 +82,15 @@ class SpindleDrive:
         self._ordered: int | None = None
         self._at = 0.0
         self.values: dict[tuple[int, int], int] = {}
+        self._readers: dict[int, Callable[[], int]] = {
+            od.DEVICE_TYPE: lambda: 0x00020192,
+            od.SUPPORTED: lambda: 0x64 if self.positions else 0x04,
+            od.STATUS: lambda: self.axis.status() if self.as_axis else self.power.word | self._reached(),
+            od.MODE_SHOWN: lambda: self.mode,
+            od.VELOCITY: lambda: round(self.slide.v / 6.0 if self.as_axis else self.motor.speed),
+            od.TORQUE: lambda: 0 if self.as_axis else round(10.0 * self.motor.load),
+            od.POSITION: self._position,
+        }
 
     @property
     def as_axis(self) -> bool:
@@ -90,17 +99,12 @@ class SpindleDrive:
 
     def read(self, index: int, _sub: int) -> int | None:
         """What lives in the drive."""
+        reader = self._readers.get(index)
+        return None if reader is None else reader()
+
+    def _position(self) -> int:
         counted = self.slide.place / _TURN * self._counts
-        live: dict[int, Callable[[], int]] = {
-            od.DEVICE_TYPE: lambda: 0x00020192,
-            od.SUPPORTED: lambda: 0x64 if self.positions else 0x04,
-            od.STATUS: lambda: self.axis.status() if self.as_axis else self.power.word | self._reached(),
-            od.MODE_SHOWN: lambda: self.mode,
-            od.VELOCITY: lambda: round(self.slide.v / 6.0 if self.as_axis else self.motor.speed),
-            od.TORQUE: lambda: 0 if self.as_axis else round(10.0 * self.motor.load),
-            od.POSITION: lambda: (round(counted) + 2**31) % 2**32 - 2**31,
-        }
-        return live[index]() if index in live else None
+        return (round(counted) + 2**31) % 2**32 - 2**31
 
     def _reached(self) -> int:
         return REACHED if abs(self.motor.speed - self.target) < 10 else 0

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from drivers.lookalikes.plant_config import SimAxis
+from drivers.lookalikes.servo_response import Response, ServoLoop, Setpoints
 from drivers.lookalikes.worn_axis import WornAxis
 
 _SETTLED = 1e-4  # mm or degrees, and per second: below this the slide is put on its setpoint
@@ -13,8 +14,10 @@ _SETTLED = 1e-4  # mm or degrees, and per second: below this the slide is put on
 class Servo:
     """A slide and its drive. Positions are as the control counts them: from home once homed."""
 
-    def __init__(self, axis: SimAxis) -> None:
+    def __init__(self, axis: SimAxis, step: float = 0.001) -> None:
+        """``step`` is the interval of the model's grid, s."""
         self.axis = axis
+        self._step = step
         self.homed = axis.absolute
         self.switch = 0.0 if axis.absolute else -axis.power_up  # where home is in the present count
         self.p = axis.power_up if axis.absolute else 0.0
@@ -26,6 +29,7 @@ class Servo:
         self.over = 0.0  # seconds outside the following window
         self.load = 0.0  # per cent of what the drive can, signed
         self._wn = 2 * math.pi * axis.bandwidth
+        self._loop = ServoLoop(self._wn * step, axis.feed_forward) if self._wn * step < 0.5 else None
 
     @property
     def reading(self) -> float:
@@ -81,6 +85,45 @@ class Servo:
             return self.over > axis.following_time
         self.over = 0.0
         return False
+
+    def foresee(self, setpoints: Setpoints, steps: int) -> Response | None:
+        """Return how the slide follows ``steps`` setpoints, or None where a fault or a limit may act.
+
+        The bounds are those of ``follow``: the first force exactly, everything else by the sum of its parts.
+        """
+        faulty = self.jammed or self.runaway or self.stuck is not None or self.worn.gib or self.worn.deceives
+        loop, axis, dt = self._loop, self.axis, self._step
+        if faulty or loop is None:
+            return None
+        response = loop.response(self.p, self.v * dt, setpoints)
+        p, dp, ddp = setpoints
+        lag, drift, slow, fast = response
+        slow, fast = abs(slow), abs(fast)
+        if abs(lag) + abs(drift) * steps + slow + fast > axis.following_window:
+            return None
+        bent = 2.0 * abs(ddp) + slow * loop.slow_bend + fast * loop.fast_bend
+        first = self._wn * (self._wn * (p - self.p) + 2.0 * (axis.feed_forward * dp / dt - self.v))
+        if max(bent / (dt * dt), abs(first)) > axis.amax * axis.reserve:
+            return None
+        fastest = abs(dp) + 2.0 * abs(ddp) * steps + abs(drift) + slow + fast
+        return response if fastest <= axis.vmax * 1.1 * dt else None
+
+    def glide(self, setpoints: Setpoints, response: Response, steps: int) -> None:
+        """Move as ``steps`` calls of ``follow`` do, by the response that ``foresee`` returned."""
+        assert self._loop is not None
+        p, dp, ddp = setpoints
+        lag, drift, slow, fast = response
+        dt, slow_mode, fast_mode = self._step, self._loop.slow_mode, self._loop.fast_mode
+        slow, fast = slow * slow_mode ** (steps - 1), fast * fast_mode ** (steps - 1)
+        self.p = p + dp * steps + ddp * steps * steps + lag + drift * steps
+        self.p += slow * slow_mode + fast * fast_mode
+        moved = dp + ddp * (2 * steps - 1) + drift + slow * (slow_mode - 1.0) + fast * (fast_mode - 1.0)
+        bent = (
+            2.0 * ddp + (slow * self._loop.slow_bend / slow_mode) + (fast * self._loop.fast_bend / fast_mode)
+        )
+        self.v = moved / dt
+        self.load = 100.0 * bent / (dt * dt) / (self.axis.amax * self.axis.reserve)
+        self.over = 0.0
 
     def _seen(self) -> float:
         """What the drive takes for its place."""

@@ -11,14 +11,12 @@ import pytest
 
 import resources
 from core.store.store import Store
-from tests import late_computer
 from tests.stories.fork_server import ForkServer
 from tests.stories.operator import Operator
 from tests.stories.x11 import SIZE, Server, missing, server
 
 FAILURES = Path(__file__).resolve().parents[2] / "story-failures"
 INCH = 25.4
-_TRIES, _LATE_TRIES = 2, 4
 Tools = Mapping[int, tuple[float, float]]
 _REPORTS = pytest.StashKey[list[pytest.TestReport]]()
 
@@ -44,11 +42,13 @@ class Story:
         machine: str = "gt75.toml",
         changes: Mapping[str, str] | None = None,
         tools: Tools | None = None,
+        in_real_time: bool = False,
     ) -> Operator:
         """``turndesk`` is switched on.
 
         ``program`` is the text of a program that is on the desk then, ``machine`` a shipped machine file and
         ``changes`` what is written otherwise in it, ``tools`` the X (radius) and Z of offsets, inches.
+        ``in_real_time``: other processes share its clock (``tests.stories.patient_clock``).
         """
         words = ["--machine", str(self._machine(machine, changes or {}))]
         if program:
@@ -59,7 +59,7 @@ class Story:
             with Store.open(self.home) as store:
                 store.set_tool(number, "before the story", x=x * INCH, z=z * INCH).result()
         self.home.mkdir(exist_ok=True)
-        operator = Operator(self.server, self.forks, self.home, *words)
+        operator = Operator(self.server, self.forks, self.home, *words, in_real_time=in_real_time)
         self.operators.append(operator)
         operator.arrives()
         return operator
@@ -110,16 +110,3 @@ def pytest_runtest_makereport(item: pytest.Item) -> Iterator[None]:
     if report.failed and "story" in getattr(item, "fixturenames", ()):
         report.sections.append(("picture of the screen", str(FAILURES / f"{item.name}.png")))
     return report  # type: ignore[return-value]
-
-
-@pytest.hookimpl(tryfirst=True)
-def pytest_runtest_protocol(item: pytest.Item, nextitem: pytest.Item | None) -> bool | None:
-    """A story that fails is told once more: a computer that stalls shuts real hands out, a fault stays."""
-    if "story" not in getattr(item, "fixturenames", ()):
-        return None
-
-    def again(tries: int, _reports: list[pytest.TestReport]) -> bool:
-        item.stash[_REPORTS] = []
-        return tries < (_LATE_TRIES if late_computer.told_late() else _TRIES)
-
-    return late_computer.run_again(item, nextitem, again)

@@ -9,13 +9,14 @@ from __future__ import annotations
 
 import ctypes
 import json
+import os
 import sys
 import threading
 import time
 from collections.abc import Callable
 from typing import Any
 
-from PySide6.QtCore import QEvent, QObject, QPoint, QRectF, Qt, Signal, Slot
+from PySide6.QtCore import QEvent, QObject, QPoint, QRectF, Qt, QTimer, Signal, Slot
 from PySide6.QtGui import QFontMetricsF, QKeyEvent, QPainter, QPaintEvent, QWindow
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QLineEdit, QMenu, QPlainTextEdit, QWidget
@@ -26,8 +27,10 @@ from app.screen.keyboard import Keyboard
 from app.screen.main_window import MainWindow
 from app.screen.panel import FingerPanel, Panel
 from drivers.lookalikes.plant_hands import PlantHands
+from tests.stories import patient_clock
 
 LOOK = 0.01  # s
+BEAT = 30  # ms between two beats of Qt's thread
 Told = dict[str, Any]
 _telling = threading.Lock()
 
@@ -123,6 +126,8 @@ class Eyes(QObject):
             "break": _break,
             "spoil": _spoil,
             "kill": _kill,
+            "real time": lambda _asked: patient_clock.run_in_real_time(),
+            "hurry": lambda told: patient_clock.CLOCK.run_at(told["rate"]),
         }
         tell({"answer": asked["number"], "is": doing[asked["ask"]](asked)})
 
@@ -214,6 +219,7 @@ def _spoil(told: Told) -> None:
 
 def _kill(_told: Told) -> None:
     """The executor's thread ends, wherever it is."""
+    patient_clock.run_in_real_time()
     thread, _ = _executor()
     ctypes.pythonapi.PyThreadState_SetAsyncExc(
         ctypes.c_ulong(thread.ident), ctypes.py_object(KeyboardInterrupt)
@@ -269,7 +275,12 @@ def _machine(desk: Desk) -> Told:
 
 
 def main() -> int:
+    if "STORY_IN_REAL_TIME" not in os.environ:
+        patient_clock.install()
     app = QApplication(["turndesk"])
+    beats = QTimer()
+    beats.timeout.connect(patient_clock.CLOCK.beat_of_screen)
+    beats.start(BEAT)
     painted = Painted()
     painted.attend()
     eyes = Eyes(painted)
@@ -297,7 +308,7 @@ def main() -> int:
     for each in (eyes.watch, eyes.listen):
         threading.Thread(target=each, daemon=True).start()
     status = console()
-    del app
+    del beats, app
     return status
 
 

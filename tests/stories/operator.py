@@ -22,6 +22,7 @@ READS = 1.2  # s of looking at the prompt before the palms
 READ = 0.6  # s in which a question is read
 AGAIN = 3.0  # s behind which somebody does again what has done nothing
 MEANS = {"y", "F10"}
+HURRY = 5.0  # times as fast passes the machine's time while nobody's hand is needed
 _TRIES = 20  # of a hand that the screen has forgotten behind a stall
 NEAR = 0.01  # mm: what a slide at rest may tremble
 FINGERTIP = 18  # pixels: 4 mm of a screen of 1024x600 that is 10 inches across
@@ -36,7 +37,9 @@ class Operator:
     ``ctrl``, ``alt``, ``meta`` and ``altgr``.
     """
 
-    def __init__(self, server: Server, forks: ForkServer, home: Path, *arguments: str) -> None:
+    def __init__(
+        self, server: Server, forks: ForkServer, home: Path, *arguments: str, in_real_time: bool = False
+    ) -> None:
         self.server, self.home = server, home
         self._meant = 0.0  # when a key was pressed that answers
         self.once = False  # keys are pressed once, whatever the screen says of them
@@ -47,6 +50,8 @@ class Operator:
         self._window = ""
         self._told = threading.Condition()
         environment = server.environment | {"TURNDESK_HOME": str(home)}
+        if in_real_time:
+            environment["STORY_IN_REAL_TIME"] = "yes"
         self._errors = (home.parent / "stderr.txt").open("wb")
         self.popen = forks.begins(arguments, environment, self._errors)
         self._reader = threading.Thread(target=self._read, daemon=True)
@@ -152,6 +157,15 @@ class Operator:
     def until(self, true: Callable[[], bool], what: object = "") -> None:
         """Wait for it."""
         until(true, lambda: f"{what} is not so: {self.machine}, {self.last_words}")
+
+    def lets_it_run(self, true: Callable[[], bool], what: object = "") -> None:
+        """Wait for it with hands off; the machine's time passes several times as fast meanwhile."""
+        self.ask("hurry", rate=HURRY)
+        try:
+            self.until(true, what)
+        finally:
+            if not self._ended:
+                self.ask("hurry", rate=1.0)
 
     def keeps(self, true: Callable[[], bool], seconds: float, what: object = "") -> None:
         """It stays so for as long."""
@@ -396,7 +410,8 @@ class Operator:
         self.until(lambda: bool(self.screen["active"]), "the window back")
 
     def freezes(self, seconds: float) -> int:
-        """Qt's thread does nothing for as long; ``answered`` tells when it is over."""
+        """Qt's thread does nothing for as long; ``answered`` says when it is over."""
+        self.ask("real time")
         return self.post("freeze", seconds=seconds)
 
     def breaks(self, what: str, *values: object) -> None:
@@ -405,6 +420,7 @@ class Operator:
 
     def stops_the_process(self) -> None:
         """As a debugger or a suspended computer stops it: every thread of it."""
+        self.ask("real time")
         os.kill(self.popen.pid, signal.SIGSTOP)
 
     def lets_it_go_on(self) -> None:

@@ -32,7 +32,7 @@ OURS = ("setpoint", "too early", "splice", "Error", "queue")  # words of whoever
 def in_the_cut(operator: Operator) -> None:
     operator.drives_on()
     operator.starts()
-    operator.until(lambda: operator.machine["line"] == 7, "the cut")
+    operator.lets_it_run(lambda: operator.machine["line"] == 7, "the cut")
     operator.until(lambda: operator.state == "RUNNING", "feeding")
 
 
@@ -186,7 +186,7 @@ def test_a_computer_that_was_away_is_told_in_an_operators_words(story: Story) ->
     operator.during(0.5)
     operator.cycle_start()
     operator.reaches("RUNNING", "WAITING")
-    operator.reaches("READY")
+    operator.lets_it_run(lambda: operator.state == "READY", "the end")
     assert operator.machine["parts"] == 1
 
 

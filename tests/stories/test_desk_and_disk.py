@@ -19,7 +19,7 @@ def test_a_program_that_somebody_else_changes_is_told_before_the_start(story: St
     operator.starts()
     operator.until(lambda: operator.slides[0] > 1.0, "a cut")
     (story.folder / "part.nc").unlink()  # what runs is the text that was proved
-    operator.until(lambda: operator.machine["parts"] == 1, "a part")
+    operator.lets_it_run(lambda: operator.machine["parts"] == 1, "a part")
     assert max(seen["slides"][0] for seen in operator.seen) < 0.51 * 25.4
     operator.sees(fragment("programs.not-on-disk"))
 
@@ -33,4 +33,4 @@ def test_the_close_button_of_the_window_does_not_end_a_cut(story: Story) -> None
     subprocess.run(close, env=story.server.environment, check=True, capture_output=True)
     operator.sees(fragment("screen.program-runs-no-leaving"))
     assert operator.state == "RUNNING"
-    operator.until(lambda: operator.machine["parts"] == 1, "a part")
+    operator.lets_it_run(lambda: operator.machine["parts"] == 1, "a part")

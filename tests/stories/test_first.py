@@ -14,7 +14,7 @@ def test_a_part_is_made_by_keyboard(story: Story) -> None:
     operator = story.begins(SHORT, tools=TOOLS)
     operator.drives_on()
     operator.starts()
-    operator.until(lambda: operator.machine["parts"] == 1, "a part")
+    operator.lets_it_run(lambda: operator.machine["parts"] == 1, "a part")
     operator.reaches("READY")
     operator.sees(text("screen.to-start"))
     assert operator.is_at((0.0, 0.0))

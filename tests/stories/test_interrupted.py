@@ -22,7 +22,7 @@ CUT = (-2.0 - 0.3) * 25.4  # machine Z in the middle of line 7
 def in_the_cut(operator: Operator) -> None:
     operator.drives_on()
     operator.starts()
-    operator.until(lambda: operator.machine["line"] == 7 and operator.slides[1] < CUT, "the cut")
+    operator.lets_it_run(lambda: operator.machine["line"] == 7 and operator.slides[1] < CUT, "the cut")
 
 
 def twists_the_estop_out(operator: Operator) -> None:
@@ -69,6 +69,7 @@ def test_after_an_estop_in_the_cut_both_palms_begin_nothing_and_the_job_is_shown
     assert isinstance(kept, dict)
     assert kept["where"][:2] == pytest.approx(stood[:2], abs=0.05)
     assert kept["why"] == "E-STOP"
+    operator.until(lambda: bool(operator.events("interrupted")), "an entry of the log")
     assert operator.events("interrupted") == [IN_THE_LOG]
 
 
@@ -88,9 +89,10 @@ def test_a_program_given_up_leaves_the_same_job_and_y_then_the_palms_begin_it_an
     operator.sees(opening("desk.begins-at-line-1"))
     operator.cycle_start()
     operator.reaches("RUNNING", "WAITING")
-    operator.until(lambda: operator.machine["parts"] == 1, "the part")
+    operator.lets_it_run(lambda: operator.machine["parts"] == 1, "the part")
     operator.reaches("READY")
     operator.until(lambda: operator.status["interrupted"] is None, "status.json")
+    operator.until(lambda: bool(operator.events("cleared")), "an entry of the log")
     assert [text for text in operator.events("cleared") if shows(text, "stories.begins-anew")]
 
 
@@ -132,7 +134,7 @@ def test_the_part_is_finished_by_searchto_and_the_row_goes(story: Story) -> None
     operator.sees(fragment("search.start-restart"))
     operator.during(1.0)  # what starts was read
     operator.cycle_start()
-    operator.until(lambda: operator.machine["parts"] == 1, "the part")
+    operator.lets_it_run(lambda: operator.machine["parts"] == 1, "the part")
     operator.reaches("READY")
     operator.until(lambda: not operator.shows(opening("desk.interrupted")), "nothing is interrupted")
     operator.until(lambda: operator.status["interrupted"] is None, "status.json")
@@ -209,6 +211,8 @@ def test_another_program_takes_its_place_only_when_that_is_meant(story: Story) -
     operator.key("Escape")
     operator.key("F2")
     operator.enters("other.nc")
+    operator.until(lambda: operator.says_yes(lambda: not operator.shows("INTERRUPTED:")), "it is given up")
+    operator.until(lambda: bool(operator.events("cleared")), "an entry of the log")
     operator.sees(fragment("desk.gives-job-up", name="other.nc"))
     job = opening("desk.interrupted")
     operator.until(lambda: operator.says_yes(lambda: not operator.shows(job)), "it is given up")

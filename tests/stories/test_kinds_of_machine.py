@@ -65,7 +65,7 @@ def loads(operator: Operator, name: str) -> None:
 
 def makes(operator: Operator, parts: int) -> None:
     operator.starts()
-    operator.until(lambda: operator.machine["parts"] == parts, f"part {parts}")
+    operator.lets_it_run(lambda: operator.machine["parts"] == parts, f"part {parts}")
     operator.reaches("READY")
 
 

@@ -87,6 +87,6 @@ def test_a_bar_program_whose_branches_are_good_runs_either_way(story: Story) -> 
     operator = story.begins(good, tools=TOOLS)
     operator.drives_on()
     operator.starts()
-    operator.until(lambda: operator.machine["parts"] == 1, "a part")
+    operator.lets_it_run(lambda: operator.machine["parts"] == 1, "a part")
     operator.reaches("READY")
     assert operator.is_at((0.5 * 25.4, 0.5 * 25.4))

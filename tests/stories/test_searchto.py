@@ -49,7 +49,7 @@ def in_the_second_groove(operator: Operator) -> None:
     """Z-.4, where the feed is slow enough for any hand."""
     wakes(operator)
     operator.starts()
-    operator.until(
+    operator.lets_it_run(
         lambda: (
             operator.machine["line"] == 8 and abs(tip(operator)[1] + 0.4) < 0.002 and tip(operator)[0] < 0.99
         ),
@@ -135,7 +135,7 @@ def test_the_loop_goes_on_in_the_pass_that_broke_off_and_makes_the_part(story: S
     operator.key("Return")
     operator.sees(state_at(8, 2, 3))
     confirms(operator)
-    operator.until(lambda: operator.machine["parts"] == 1, "the part")
+    operator.lets_it_run(lambda: operator.machine["parts"] == 1, "the part")
     cut = {
         round(each["slides"][1] / INCH + 2.0, 1)
         for each in operator.seen[since:]
@@ -164,7 +164,7 @@ def test_bar_work_is_entered_at_part_three_by_keys_and_by_the_mouse(story: Story
     operator.sees(state_at(7, 3, 3))
     since = len(operator.seen)
     confirms(operator)
-    operator.until(lambda: operator.state == "READY" and operator.machine["line"] == 0, "the end")
+    operator.lets_it_run(lambda: operator.state == "READY" and operator.machine["line"] == 0, "the end")
     deepest = min(each["slides"][1] for each in operator.seen[since:]) / INCH + 2.0
     assert deepest == pytest.approx(-0.6, abs=0.003)  # Z-.4, shifted twice by .1
     assert operator.machine["parts"] == 0  # two parts were left out

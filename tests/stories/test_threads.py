@@ -36,7 +36,7 @@ def test_the_pot_is_turned_to_half_in_a_pass_and_the_thread_is_made(story: Story
     operator = in_a_pass(story)
     operator.keys(*["comma"] * 5)
     operator.until(lambda: operator.machine["turning"] < 200, "a slower spindle")
-    operator.until(lambda: operator.machine["parts"] == 1, "a part")
+    operator.lets_it_run(lambda: operator.machine["parts"] == 1, "a part")
     operator.reaches("READY")
     assert operator.machine["alarms"] == []
     assert operator.events("thread") == []
@@ -90,7 +90,7 @@ def test_a_program_that_begins_where_the_machine_stands_is_proved_out(story: Sto
     operator.key("s")
     operator.until(lambda: not operator.machine["single_block"], "single block off")
     pressed(operator)
-    operator.until(lambda: operator.machine["parts"] == 1, "a part")
+    operator.lets_it_run(lambda: operator.machine["parts"] == 1, "a part")
     operator.reaches("READY")
     assert operator.machine["alarms"] == []
     assert operator.is_at((0.7 * INCH, -0.5 * INCH))

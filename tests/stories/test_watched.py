@@ -34,7 +34,7 @@ def cutting(operator: Operator) -> None:
 def test_half_a_second_of_stall_at_a_standstill_is_told_and_nothing_starts_unread(
     story: Story, text: str
 ) -> None:
-    operator = story.begins(text, tools=TOOLS, changes=FED)
+    operator = story.begins(text, tools=TOOLS, changes=FED, in_real_time=True)
     operator.drives_on()
     operator.starts()
     operator.until(lambda: operator.is_at((0.05 * INCH, 0.0)) and operator.machine["rpm"] > 590, "standstill")

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import copy
 import itertools
+import queue
 from collections.abc import Callable, Mapping
+from types import SimpleNamespace
 
 import can
+import can.interfaces.virtual
 
 import resources
 from app.compose.canopen_backend import canopen_machine, canopen_peers
@@ -20,7 +23,16 @@ from drivers.lookalikes.canopen_node import Device
 TICK = 0.005
 _channels = itertools.count()
 SHIPPED = resources.machine_file("gt75-canopen.toml")
+
+
 # The virtual bus copies a frame byte by byte for each who listens. Nobody here writes into one.
+def _without_locks(_maxsize: int = 0) -> queue.SimpleQueue[can.Message]:
+    """Make a queue of the virtual bus: both ends of a bench are on one thread."""
+    return queue.SimpleQueue()
+
+
+_QUEUES = SimpleNamespace(Queue=_without_locks, Empty=queue.Empty, Full=queue.Full)
+setattr(can.interfaces.virtual, "queue", _QUEUES)  # noqa: B010
 setattr(can.Message, "__deepcopy__", lambda frame, _memo: copy.copy(frame))  # noqa: B010
 
 
