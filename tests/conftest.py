@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import gc
 import os
+from collections.abc import Generator
+from contextlib import suppress
 
 import pytest
 from hypothesis import settings
@@ -16,7 +18,7 @@ from xdist.remote import Producer
 from tests import late_computer
 from tests.named import SAFETY, not_run
 from tests.steady_examples import same_examples_whatever_is_loaded
-from tests.waiting_apart import KINDER, WaitingApart, in_order, waits_first
+from tests.waiting_apart import KINDER, URGENT, WaitingApart, in_order, waits_first
 
 settings.register_profile("steady", derandomize=True, deadline=None)
 settings.register_profile("search", deadline=None)
@@ -71,13 +73,17 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Producer) -> Waiting
     return WaitingApart(config, log) if config.getoption("dist") == "load" else None
 
 
-@pytest.hookimpl(tryfirst=True)
-def pytest_runtest_protocol(item: pytest.Item, nextitem: pytest.Item | None) -> bool | None:
-    """What is marked ``real_time`` is played again when it has failed because this computer was late."""
+def pytest_runtest_setup() -> None:
+    """Every test begins on a computer that is not late."""
     late_computer.forget()
-    if item.get_closest_marker("real_time") is None:
-        return None
-    return late_computer.run_again(item, nextitem, lambda _tries, _reports: late_computer.told_late())
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport(item: pytest.Item) -> Generator[None, pytest.TestReport, pytest.TestReport]:
+    """A test of real processes has no verdict on a computer that was late."""
+    report = yield
+    late_computer.without_verdict(item, report)
+    return report
 
 
 def pytest_configure(config: pytest.Config) -> None:
@@ -89,5 +95,6 @@ def pytest_configure(config: pytest.Config) -> None:
     if whole and not hasattr(config, "workerinput"):
         config.pluginmanager.register(SafetyRan(), "safety-ran")
     worker = os.environ.get("PYTEST_XDIST_WORKER")
-    if worker is not None and not waits_first(worker):
-        os.nice(KINDER)
+    if worker is not None:
+        with suppress(PermissionError):  # only root may claim more of a core than others
+            os.nice(-URGENT if waits_first(worker) else KINDER)

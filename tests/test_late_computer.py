@@ -1,14 +1,16 @@
-"""What is played again for a late computer, and what is not."""
+"""Which failures a late computer leaves without a verdict, and which not."""
 
 from __future__ import annotations
 
 import json
 import threading
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 
-from tests.late_computer import TRIES, command_was_late, forget, played_again, stalls_told, tell, told_late
+from tests.late_computer import command_was_late, forget, stalls_told, tell, told_late, without_verdict
 
 
 def told_by(home: Path, *events: tuple[str, str]) -> bool:
@@ -28,17 +30,25 @@ def test_a_late_computer_counts_when_it_is_what_is_told_first(first: str, late: 
     assert told_late() is late
 
 
-def test_whatever_is_late_each_time_ends(tmp_path: Path) -> None:
-    played: list[int] = []
-    played_again(lambda: played.append(1), lambda: told_by(tmp_path, ("alarm", "903 THE COMPUTER WAS")))
-    assert len(played) == TRIES
+@pytest.mark.parametrize(
+    ("code", "marked", "verdict"),
+    [("late", True, "skipped"), ("following", True, "failed"), ("late", False, "failed")],
+)
+def test_only_a_real_time_test_on_a_late_computer_has_no_verdict(
+    code: str, marked: bool, verdict: str
+) -> None:
+    mark = pytest.mark.real_time.mark if marked else None
+    item: Any = SimpleNamespace(location=("a.py", 1, "test"), get_closest_marker=lambda _name: mark)
+    report: Any = SimpleNamespace(outcome="failed", failed=True, longrepr="why")
+    tell(code)
+    without_verdict(item, report)
+    forget()
+    assert report.outcome == verdict
 
 
-def test_any_other_cause_is_not_played_again(tmp_path: Path) -> None:
-    played: list[int] = []
+def test_another_cause_before_lateness_counts(tmp_path: Path) -> None:
     wrong = ("alarm", "102 FOLLOWING ERROR: X"), ("stop", "903 THE COMPUTER WAS TOO LATE")
-    played_again(lambda: played.append(1), lambda: told_by(tmp_path, *wrong))
-    assert len(played) == 1
+    assert not told_by(tmp_path, *wrong)
 
 
 def test_a_spindle_that_stops_is_the_computers_only_behind_a_silence(tmp_path: Path) -> None:

@@ -26,6 +26,7 @@ WAIT = (
     "tests/drivers/transfer/",
 )
 KINDER = 3  # how much less of a core who reckons claims than who has a machine in real time
+URGENT = 10  # how much more who has a machine in real time claims, where that is allowed
 _MOST = 50  # tests that a worker is given at once
 _SHARES = 8  # at least so many portions for each worker
 

@@ -10,6 +10,8 @@ from typing import Any, NamedTuple
 import pytest
 
 from app.cli.main import main
+from app.compose import headless_run
+from drivers.clocks import StepClock
 from tests.worked import worked
 
 
@@ -49,6 +51,12 @@ def turndesk(home: Path, capsys: pytest.CaptureFixture[str]) -> Turndesk:
         return Told(status, told.out, told.err)
 
     return run
+
+
+@pytest.fixture
+def paced_by_steps(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let ``--realtime`` run on a clock of steps, so that a busy computer changes nothing that is counted."""
+    monkeypatch.setattr(headless_run, "RealClock", StepClock)
 
 
 @pytest.fixture

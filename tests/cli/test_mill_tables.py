@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -12,7 +11,6 @@ from core.store.store import Store
 from core.store.store_rows import Kind, MillRow, PresetRow
 from core.store.tool_lives import LifeRow
 from tests.cli.conftest import Turndesk
-from tests.late_computer import stalls_told
 
 TOOL = ("offsets", "set", "TOOL7", "L=60", "R=12/2", "DL=-.02", "name=Mill 12", "time2=90", "stop=1")
 PRESET = ("offsets", "set", "preset3", "x=230", "y=210", "z=-350", "rot=2.5", "c=-30")
@@ -86,15 +84,7 @@ def test_of_a_spoilt_table_nothing_is_imported(turndesk: Turndesk, home: Path, t
         assert store.mill_tools() == {}
 
 
-@pytest.fixture
-def stalls() -> Iterator[None]:
-    """What goes by while the control is away counts no time at feed: such a run is played again."""
-    with stalls_told(0.05):
-        yield
-
-
-@pytest.mark.real_time
-@pytest.mark.usefixtures("stalls")
+@pytest.mark.usefixtures("paced_by_steps")
 def test_a_part_with_a_tool_whose_life_is_gone_is_refused(
     turndesk: Turndesk, home: Path, tmp_path: Path
 ) -> None:

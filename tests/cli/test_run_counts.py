@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -11,19 +11,11 @@ from core.store import part_cycles, tool_lives
 from core.store.store import Store
 from core.store.tool_lives import LifeRow
 from tests.cli.conftest import Turndesk
-from tests.late_computer import stalls_told
 
-pytestmark = pytest.mark.real_time
+pytestmark = pytest.mark.usefixtures("paced_by_steps")
 
-# .05 in at 6 in/min is .5 s at feed with T1: longer than a busy computer looks away.
+# .05 in at 6 in/min is .5 s at feed with T1.
 TEXT = "G90G94F300\nG73\nT1\nG00X1Z.1\nG01G94F6Z.05\nM30\n"
-
-
-@pytest.fixture(autouse=True)
-def _stalls() -> Iterator[None]:
-    """What goes by while the control is away counts no time at feed: such a run is played again."""
-    with stalls_told(0.05):
-        yield
 
 
 @pytest.fixture

@@ -25,6 +25,7 @@ M30
 
 @pytest.mark.long
 @pytest.mark.usefixtures("halrun")
+@pytest.mark.real_time
 def test_a_program_runs_to_its_end_where_it_was_proved_to(tmp_path: Path) -> None:
     done = run(tmp_path, PIECE, lathe(tmp_path, PATIENT))
     assert "complete" in done.stdout, done.stdout + done.stderr

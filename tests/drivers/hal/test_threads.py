@@ -29,6 +29,7 @@ def passes_of(z: FloatArray, turns: FloatArray) -> list[FloatArray]:
 
 @pytest.mark.long
 @pytest.mark.usefixtures("halrun")
+@pytest.mark.real_time
 def test_every_pass_has_the_lead_of_the_measured_spindle_and_the_same_start(tmp_path: Path) -> None:
     done = run(tmp_path, THREAD, lathe(tmp_path, (*PATIENT, *WANDER), WANDER_HAL))
     assert "complete" in done.stdout, done.stdout + done.stderr
