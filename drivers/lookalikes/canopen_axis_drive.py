@@ -215,8 +215,6 @@ class AxisDrive:
     def step(self, dt: float) -> None:
         """One step of drive and slide."""
         if not self.power.powered:
-            if self.servo.v == 0.0 and self.v == 0.0 and self.p == self.servo.reading:
-                return
             self.playing = self._homing = self._going = self.interpolates = False
             self.servo.roll(dt)
             self.p, self.v = self.servo.reading, 0.0
