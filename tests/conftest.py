@@ -18,6 +18,7 @@ from xdist.remote import Producer
 from tests import late_computer
 from tests.named import SAFETY, not_run
 from tests.steady_examples import same_examples_whatever_is_loaded
+from tests.store_template import use_template
 from tests.waiting_apart import KINDER, URGENT, WaitingApart, in_order, waits_first
 
 settings.register_profile("steady", derandomize=True, deadline=None)
@@ -76,6 +77,12 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Producer) -> Waiting
 def pytest_runtest_setup() -> None:
     """Every test begins on a computer that is not late."""
     late_computer.forget()
+
+
+@pytest.fixture(autouse=True)
+def _copied_stores(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let an empty store be a copy."""
+    use_template(request.node, monkeypatch)
 
 
 @pytest.hookimpl(wrapper=True)

@@ -213,9 +213,12 @@ def create(path: Path) -> None:
             leftover.unlink(missing_ok=True)
         with closing(sqlite3.connect(unfinished, isolation_level=None)) as connection:
             configured(connection)
+            # Nobody sees this file before it is whole and on the disk, so no step of its own has to be.
+            connection.execute("PRAGMA synchronous = OFF")
+            connection.execute("PRAGMA journal_mode = MEMORY")
             connection.execute(f"PRAGMA application_id = {APPLICATION_ID}")
-            connection.execute("PRAGMA journal_mode = WAL")
             migrate(connection, migrations())
+            connection.execute("PRAGMA journal_mode = WAL")
         put_in_place(unfinished, path)
     except (OSError, sqlite3.Error) as error:
         raise why(path, error) from error

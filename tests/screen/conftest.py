@@ -49,12 +49,17 @@ def left_over() -> list[str]:
     return found
 
 
+_before: list[set[str]] = []  # what the test before has left, where one ran: each look collects garbage
+
+
 @pytest.fixture(autouse=True)
 def nothing_left(qapp: QApplication) -> Iterator[None]:
     """Fails a test that leaks; set up first, so that it looks last."""
-    before = set(left_over())
+    before = _before[0] if _before else set(left_over())
     yield
-    leaked = [name for name in left_over() if name not in before]
+    after = left_over()
+    _before[:] = [set(after)]
+    leaked = [name for name in after if name not in before]
     speak_in(ENGLISH)  # a window on the desk speaks its language in every picture, also in the last one
     assert not leaked, f"left over: {leaked}"
 
