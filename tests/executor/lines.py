@@ -16,6 +16,7 @@ from core.interpreter.job_setup import Setup, ToolOffset
 from core.interpreter.restart.restart_approach import Choices, begin_at
 from core.interpreter.restart.restart_point import RestartPoint
 from core.interpreter.restart.state_rebuild import StateRebuild
+from core.language.diagnostics import Diagnostic
 from core.language.source import Dialect, Source
 from core.proving.prove_program import prove
 from tests.executor.rig import Rig
@@ -36,10 +37,10 @@ def line_job(rig: Rig, text: str, tools: Mapping[int, ToolOffset] = TOOLS) -> Jo
     return make_job(Source("MDI", text, Dialect(rig.machine.language)), setup)
 
 
-def errors(rig: Rig, text: str) -> list[str]:
-    """What proving has against a line."""
+def errors(rig: Rig, text: str) -> list[Diagnostic]:
+    """Return the errors that proving finds in a line."""
     job = line_job(rig, text)
-    return [d.message for d in prove(job.source, job.setup, rig.machine).errors]
+    return list(prove(job.source, job.setup, rig.machine).errors)
 
 
 def press(rig: Rig, text: str) -> None:

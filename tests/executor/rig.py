@@ -146,6 +146,10 @@ class Rig:
     def said(self, kind: str) -> list[str]:
         return [event.text for event in self.events if event.kind == kind]
 
+    def numbers(self, kind: str) -> list[int]:
+        """Return the alarm numbers of the logged stops of this kind."""
+        return [int(said.split()[0]) for said in self.said(kind)]
+
 
 def off_line(shot: Snapshot, a: tuple[float, float], b: tuple[float, float]) -> float:
     """How far the demand lies off the line through two points (x, z), mm."""

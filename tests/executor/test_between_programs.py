@@ -19,6 +19,7 @@ from core.executor.snapshot import State
 from core.interpreter.job_setup import SecondaryOffset, ToolOffset
 from core.interpreter.modal_state import Modal
 from tests.executor.rig import INCH, Rig
+from tests.texts import text
 
 TOOLS = {1: ToolOffset(-12.7, -50.8), 2: ToolOffset(6.35, -25.4)}
 
@@ -82,7 +83,7 @@ def test_changed_offsets_count_at_once_for_the_loaded_tool() -> None:
     rig.post(UseOffsets({1: ToolOffset(-12.0, -50.0)}, {}))
     assert rig.shot.offset == (-12.0, -50.0)
     assert rig.shot.modal.tool == 1
-    assert rig.said("offsets") == ["the offsets of the tables are in force"]
+    assert rig.said("offsets") == [text("executor.offsets-in-force")]
 
 
 def test_changed_offsets_are_refused_while_a_program_is_under_way() -> None:
@@ -91,7 +92,7 @@ def test_changed_offsets_are_refused_while_a_program_is_under_way() -> None:
     rig.until(State.PROGRAM_STOP)
     rig.post(UseOffsets({1: ToolOffset(-12.0, -50.0)}, {1: SecondaryOffset(1.0)}))
     assert rig.shot.offset == (-12.7, -50.8)
-    assert rig.said("refused")[-1].startswith("a program is under way: it keeps the offsets")
+    assert rig.said("refused")[-1].startswith(text("executor.program-keeps-offsets"))
 
 
 def test_the_speed_asked_for_is_told_before_pot_and_limit() -> None:
@@ -111,7 +112,7 @@ def test_the_spindle_is_stopped_by_hand_between_programs_only() -> None:
     rig.until(State.PROGRAM_STOP)
     rig.post(SpindleStop())
     assert rig.shot.spindle_asked == 900.0
-    assert "feed hold and reset" in rig.said("refused")[-1]
+    assert text("executor.program-keeps-spindle") in rig.said("refused")[-1]
     rig.run(0.3)
     rig.sim.machine.press_left()
     rig.sim.machine.press_right()
@@ -130,14 +131,17 @@ def test_an_output_is_forced_at_rest_and_told_in_the_log() -> None:
     assert {"catcher", "coolant"} <= rig.shot.outputs
     assert rig.shot.modal.coolant
     assert rig.shot.modal.outputs == frozenset({"catcher"})
-    assert rig.said("force") == ["catcher on by hand", "coolant on by hand"]
+    assert rig.said("force") == [
+        text("executor.by-hand", output="catcher", on="on"),
+        text("executor.by-hand", output="coolant", on="on"),
+    ]
 
 
 @pytest.mark.parametrize(
     ("name", "on", "why"),
     [
-        ("laser", True, "this machine has no output laser"),
-        ("coolant", True, "only at rest, not in state RUNNING"),
+        ("laser", True, text("executor.no-output", output="laser")),
+        ("coolant", True, text("executor.output-not-now", output="coolant", state="RUNNING")),
     ],
 )
 def test_no_output_is_forced_while_a_program_runs_nor_one_that_is_not_there(
@@ -157,7 +161,7 @@ def test_the_collet_is_not_opened_by_hand_while_the_spindle_turns() -> None:
     rig.run(1.0)
     rig.post(SpindleStop())
     rig.post(ForceOutput("collet", False))  # it still runs down
-    assert rig.said("refused")[-1] == "the collet is not opened by hand while the spindle turns"
+    assert rig.said("refused")[-1] == text("executor.collet-spindle-turns")
     rig.run(3.0)
     rig.post(ForceOutput("collet", False))
     rig.tick()

@@ -14,6 +14,7 @@ from core.interpreter.omniturn.carry_over import RAPID, UNITS, inherited_setting
 from core.language.source import Dialect, Source
 from tests.executor.lines import mdi
 from tests.executor.rig import INCH, Rig
+from tests.texts import text
 
 NAMES_NONE = "G90G94F300\nX.1\nM30\n"
 
@@ -53,11 +54,11 @@ def test_a_program_proved_in_inches_does_not_start_in_millimetres() -> None:
     rig = after_a_metric_job()
     job = rig.load(NAMES_NONE)
     load(rig, job)
-    assert rig.shot.start_refused.startswith("no line is ready")  # MDI is still open
+    assert rig.shot.start_refused.startswith(text("executor.no-line"))  # MDI is still open
     rig.post(Prepare())
     load(rig, job)
     assert rig.shot.start_refused == (
-        "the control counts in mm now, and the program says nothing of it: load it again"
+        text("executor.program-silent-on", change=text("executor.counts-in", unit="mm"))
     )
     load(rig, make_job(job.source, replace(job.setup, metric=True)))
     rig.until(State.IDLE)
@@ -80,7 +81,9 @@ def test_no_repeat_in_another_unit_than_the_first_time() -> None:
     rig.start("G90G94F300\nX.1\nG71\nX2\nM30\n")
     rig.until(State.IDLE)
     assert rig.shot.parts == 1
-    assert rig.said("refused")[-1].startswith("no repeat: the control counts in mm now")
+    assert rig.said("refused")[-1].startswith(
+        text("executor.no-repeat", why=text("executor.counts-in", unit="mm"))
+    )
 
 
 @pytest.mark.parametrize(("inch", "metric"), [(True, False), (False, True)])

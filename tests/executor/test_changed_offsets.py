@@ -13,6 +13,7 @@ from core.interpreter.job_setup import SecondaryOffset, ToolOffset
 from core.language.source import Source
 from tests.executor.lines import mdi
 from tests.executor.rig import INCH, Rig
+from tests.texts import text
 
 TOOLS = {1: ToolOffset(-12.7, -50.8)}
 PART = "G90G94F300G73\nT1\nX1Z.1\nX.5Z.1D3\nZ-.3\nD0X1Z.1\nM30\n"
@@ -65,7 +66,7 @@ def test_the_part_waits_for_its_proof() -> None:
     job = running(rig)
     rig.post(Renew())
     rig.until(State.WAIT)
-    assert rig.shot.waiting_for == "PROOF WITH THE CHANGED OFFSETS"
+    assert rig.shot.waiting_for == text("executor.proof-wait")
     assert rig.shot.parts == 1
     assert not rig.shot.counts
     stood = rig.shot.demand
@@ -86,11 +87,13 @@ def test_a_program_that_fails_its_proof_is_not_repeated() -> None:
     rig.post(Renew(new, Proof(new.digest, ("line 4: X leaves its travel",))))
     rig.until(State.IDLE)
     assert rig.shot.parts == 1
-    assert rig.said("refused") == ["no repeat: the program has errors: line 4: X leaves its travel"]
+    assert rig.said("refused") == [
+        text("executor.no-repeat", why=text("executor.program-errors", errors="line 4: X leaves its travel"))
+    ]
     rig.run(0.4)
     rig.post(CycleStart())
     assert rig.state is State.IDLE
-    assert rig.shot.start_refused.startswith("the program has errors: line 4")
+    assert rig.shot.start_refused.startswith(text("executor.program-errors", errors="line 4"))
 
 
 def test_a_proof_of_other_offsets_does_not_count() -> None:
@@ -98,7 +101,7 @@ def test_a_proof_of_other_offsets_does_not_count() -> None:
     job = running(rig)
     rig.post(Renew(corrected(job, -0.1), good(job)))
     rig.until(State.IDLE)
-    assert "the proof belongs to another program" in rig.said("refused")[0]
+    assert text("executor.other-proof") in rig.said("refused")[0]
 
 
 def test_what_could_not_be_proved_stops_with_its_reason() -> None:
@@ -106,10 +109,10 @@ def test_what_could_not_be_proved_stops_with_its_reason() -> None:
     running(rig)
     rig.post(Renew(), Renew(trouble="the offsets cannot be read"))
     rig.until(State.IDLE)
-    assert rig.said("refused") == ["no repeat: the offsets cannot be read"]
+    assert rig.said("refused") == [text("executor.no-repeat", why="the offsets cannot be read")]
     rig.run(0.4)
     rig.post(CycleStart())
-    assert rig.shot.start_refused == "the program is not proved yet"
+    assert rig.shot.start_refused == text("executor.not-proved")
 
 
 def test_the_second_correction_takes_the_place_of_the_first() -> None:
@@ -127,9 +130,7 @@ def test_another_program_is_not_slipped_in() -> None:
     job = running(rig)
     other = make_job(Source("PART", PART.replace("X.5", "X.1")), job.setup)
     rig.post(Renew(other, good(other)))
-    assert rig.said("refused") == [
-        "another program is under way: new offsets are taken by the same program only"
-    ]
+    assert rig.said("refused") == [text("executor.other-program-runs")]
     assert depth(rig) == pytest.approx(DEPTH, abs=1e-6)
 
 

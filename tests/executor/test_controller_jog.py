@@ -10,6 +10,7 @@ from core.executor.jog_line import LIMIT_MARGIN, JogLine
 from core.executor.jogging import BlockJogger, Jogger, jogger_of
 from core.executor.machine_context import MachineContext
 from tests.executor.played_controller import PlayedController, context_of
+from tests.texts import text
 
 LEASE = 0.4
 
@@ -29,7 +30,7 @@ def test_who_jogs_follows_from_what_the_driver_has() -> None:
     ("controller", "why"),
     [
         (PlayedController(hindrance="its modes are being verified"), "its modes are being verified"),
-        (PlayedController(resting=False), "the controller is still moving"),
+        (PlayedController(resting=False), text("executor.controller-moving")),
         (PlayedController(), ""),
     ],
 )
@@ -41,7 +42,7 @@ def test_a_controller_that_is_not_ready_does_not_jog(controller: PlayedControlle
 
 def test_it_jogs_along_its_own_axes_only() -> None:
     jogger, _ = jogger_on(PlayedController())
-    why = "X: the controller jogs along its own axes only"
+    why = text("executor.controller-axes-only", axis="X")
     assert jogger.refusal("X", 5.0, LEASE, (1.0, 0.0, 0.0)) == why
     assert jogger.step_refusal("X", 0.1, 5.0, (1.0, 0.0, 0.0)) == why
 
@@ -89,7 +90,7 @@ def test_a_step_goes_from_where_the_axis_is_sent_to() -> None:
     context.sample = context.sample._replace(demand=(1.0, 2.0, 0.0))
     jogger.step("Z", -0.5, 5.0)
     assert controller.steps == [("Z", 1.5, 5.0)]
-    assert jogger.step_refusal("Z", 0.1, 5.0) == "Z is still moving; wait for the end of its step"
+    assert jogger.step_refusal("Z", 0.1, 5.0) == text("executor.step-not-over", axis="Z")
 
 
 def test_what_does_not_jog_is_not_stopped() -> None:
@@ -111,7 +112,7 @@ def test_a_step_that_is_stopped_is_said_to_be_short() -> None:
     assert not jogger.over()
     controller.resting = True
     assert jogger.over()
-    assert said == ["Z was stopped before the end of its step"]
+    assert said == [text("executor.step-cut-short", axis="Z")]
 
 
 def let_go(controller: PlayedController) -> tuple[BlockJogger, MachineContext]:
@@ -155,7 +156,7 @@ def test_a_key_pressed_again_begins_nothing_once_it_does_not_hold(spoilt: str) -
 
 def test_a_lathe_has_no_tilted_plane() -> None:
     jogger = Jogger(context_of(None))
-    assert jogger.refusal("X", 5.0, LEASE, (1.0, 0.0, 0.0)).startswith("a tilted plane needs X, Y and Z")
+    assert jogger.refusal("X", 5.0, LEASE, (1.0, 0.0, 0.0)).startswith(text("executor.tilted-needs"))
 
 
 def three_axes() -> MachineContext:
@@ -169,7 +170,7 @@ def three_axes() -> MachineContext:
 @pytest.mark.parametrize("direction", [(0.6, 0.8, 0.1), (0.0, 0.0, 0.0), (float("nan"), 0.0, 1.0)])
 def test_a_direction_that_is_none_is_refused(direction: tuple[float, float, float]) -> None:
     why = Jogger(three_axes()).refusal("X", 5.0, LEASE, direction)
-    assert why == "a tilted plane needs X, Y and Z, and a direction of length 1"
+    assert why == text("executor.tilted-needs")
 
 
 def test_along_a_tilted_plane_every_axis_is_homed_first() -> None:
@@ -177,7 +178,7 @@ def test_along_a_tilted_plane_every_axis_is_homed_first() -> None:
     assert Jogger(context).refusal("X", 5.0, LEASE, (0.6, 0.8, 0.0)) == ""
     context.sample = context.sample._replace(homed=(True, False, True))
     why = Jogger(context).refusal("X", 5.0, LEASE, (0.6, 0.8, 0.0))
-    assert why == "along a tilted plane every axis has to be homed first"
+    assert why == text("executor.tilted-homed")
 
 
 def test_a_line_of_three_goes_as_far_as_its_first_end_and_as_hard_as_its_weakest_axis() -> None:

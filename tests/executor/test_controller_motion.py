@@ -15,7 +15,9 @@ from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.machine_requirements import first_needs, needs_of
 from core.interpreter.modal_state import Modal
 from core.ports import ArcOp, BlockOp, LineOp, RapidOp, ThreadOp
+from tests.coded import raises_code
 from tests.executor.played_controller import PlayedController, context_of, turn_feed_pot
+from tests.texts import text
 
 FULL = Turning(1.0, 3500.0)
 
@@ -100,10 +102,14 @@ def test_a_surface_speed_on_an_arc_is_that_of_the_part_not_of_the_machine() -> N
 
 
 @pytest.mark.parametrize(
-    ("words", "expected"), [({"c": 90.0}, "X and Z only"), ({"x": 1.0, "feed": 0.0}, "no feed")]
+    ("words", "expected"),
+    [
+        ({"c": 90.0}, text("executor.controller-x-z")),
+        ({"x": 1.0, "feed": 0.0}, text("executor.line-no-feed", line=7)),
+    ],
 )
 def test_what_cannot_be_moved_is_refused(words: dict[str, object], expected: str) -> None:
-    with pytest.raises(AlarmError, match=expected):
+    with raises_code(AlarmError, "program", expected):
         list(parts_of(block(Kind.FEED, **words), FULL))
 
 
@@ -239,7 +245,7 @@ def test_a_thread_without_its_spindle_draws_x_back_or_says_why_not(hindrance: st
     motion.retract(THREAD)
     assert controller.asked == ["abort"]
     if hindrance:
-        with pytest.raises(AlarmError, match="spindle"):
+        with raises_code(AlarmError, "thread-lost"):
             motion.retracted()
         return
     motion.retracted()

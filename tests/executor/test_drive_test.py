@@ -22,6 +22,7 @@ from core.executor.drive_test_path import PAUSE, DriveTestPath, Limits, Shape, b
 from core.executor.snapshot import State
 from tests.executor.rig import INCH, TICK, Rig
 from tests.executor.test_jog_steps import nothing_homed
+from tests.texts import text
 
 AMAX = 120 * INCH
 LEASE = 0.2
@@ -58,7 +59,7 @@ def test_it_goes_its_size_and_comes_back_to_where_it_began(path: DriveTestPath) 
     _, seen = hold(rig, path)
     assert rig.state is State.IDLE
     assert rig.said("refused") == []
-    assert rig.said("test") == [f"{path.axis} drive test"]
+    assert rig.said("test") == [text("executor.test-kind", axis=path.axis)]
     assert rig.shot.drive_test.whole == 1
     index, other = (0, 1) if path.axis == "X" else (1, 0)
     assert rig.shot.demand[index] == pytest.approx(0.0, abs=1e-9)
@@ -127,7 +128,7 @@ def test_let_go_it_brakes_where_it_is_and_says_so(stopper: Command) -> None:
     rig.post(stopper)
     assert rig.until(State.IDLE) < 0.03 + 20.0 / AMAX + 3 * TICK
     assert -5.0 < rig.shot.demand[1] < -0.5
-    assert rig.said("refused") == ["Z was stopped before the end of its drive test"]
+    assert rig.said("refused") == [text("executor.test-cut-short", axis="Z")]
     assert rig.shot.drive_test.whole == 0
 
 
@@ -140,7 +141,7 @@ def test_a_host_that_dies_leaves_it_at_rest_within_its_lease() -> None:
     assert not sample.moving
     assert abs(sample.demand[1] - began) < 20.0 * (LEASE + 0.03)
     rig.until(State.IDLE)
-    assert rig.said("refused") == ["Z was stopped before the end of its drive test"]
+    assert rig.said("refused") == [text("executor.test-cut-short", axis="Z")]
 
 
 @pytest.mark.parametrize("late", [0.07, 0.08, 0.09, 0.14])
@@ -195,7 +196,7 @@ def test_estop_in_the_middle_and_another_test_afterwards() -> None:
     assert rig.state is State.ESTOP
     assert not rig.sim.ports.axes.sample().enabled
     rig.post(DriveTest(STEP, LEASE))
-    assert rig.said("refused")[-1] == "no jog in state E-STOP"
+    assert rig.said("refused")[-1] == text("executor.no-jog", state="E-STOP")
 
 
 @pytest.mark.parametrize(
@@ -218,18 +219,24 @@ def test_whatever_else_is_asked_meanwhile_ends_it(other: Command) -> None:
 @pytest.mark.parametrize(
     ("path", "why"),
     [
-        (DriveTestPath("B", Shape.STEP, 0.5), "no axis B"),
-        (DriveTestPath("C", Shape.STEP, 0.5), "C is a rotary axis"),
-        (DriveTestPath("X", Shape.STEP, 0.0), "larger than 0"),
-        (DriveTestPath("X", Shape.STEP, 2.6), "no larger than 2.54 mm"),
-        (DriveTestPath("X", Shape.STEP, math.nan), "larger than 0"),
-        (DriveTestPath("X", Shape.RAMP, 26.0, speed=5.0), "no larger than 25.4 mm"),
-        (DriveTestPath("X", Shape.RAMP, 1.0), "faster than 0"),
-        (DriveTestPath("X", Shape.RAMP, 1.0, speed=1e4), "faster than 0"),
-        (DriveTestPath("X", Shape.RAMP, 0.1, speed=20.0), "too short to become even"),
-        (DriveTestPath("X", Shape.SINE, 0.5), "0.5 to 200 Hz"),
-        (DriveTestPath("X", Shape.SINE, 0.5, frequencies=(math.nan,)), "0.5 to 200 Hz"),
-        (DriveTestPath("X", Shape.SINE, 0.5, frequencies=(150.0,)), "too few for a sine of 150 Hz"),
+        (DriveTestPath("B", Shape.STEP, 0.5), text("executor.no-jog-axis", axis="B")),
+        (DriveTestPath("C", Shape.STEP, 0.5), text("executor.rotary", axis="C")),
+        (DriveTestPath("X", Shape.STEP, 0.0), text("executor.test-size", mm="2.54")),
+        (DriveTestPath("X", Shape.STEP, 2.6), text("executor.test-size", mm="2.54")),
+        (DriveTestPath("X", Shape.STEP, math.nan), text("executor.test-size", mm="2.54")),
+        (DriveTestPath("X", Shape.RAMP, 26.0, speed=5.0), text("executor.test-size", mm="25.4")),
+        (DriveTestPath("X", Shape.RAMP, 1.0), text("executor.ramp-speed", speed=42)),
+        (DriveTestPath("X", Shape.RAMP, 1.0, speed=1e4), text("executor.ramp-speed", speed=42)),
+        (
+            DriveTestPath("X", Shape.RAMP, 0.1, speed=20.0),
+            text("executor.test-too-short", mm="0.1", speed=20),
+        ),
+        (DriveTestPath("X", Shape.SINE, 0.5), text("executor.sine-range")),
+        (DriveTestPath("X", Shape.SINE, 0.5, frequencies=(math.nan,)), text("executor.sine-range")),
+        (
+            DriveTestPath("X", Shape.SINE, 0.5, frequencies=(150.0,)),
+            text("executor.too-few-samples", rate=1000, hz=150),
+        ),
     ],
 )
 def test_tests_without_sense_are_refused(path: DriveTestPath, why: str) -> None:
@@ -245,7 +252,7 @@ def test_tests_without_sense_are_refused(path: DriveTestPath, why: str) -> None:
 def test_a_lease_without_sense_is_refused(lease: float) -> None:
     rig = ready()
     rig.post(DriveTest(STEP, lease))
-    assert rig.said("refused") == ["drive test: a drive test needs a lease above 0"]
+    assert rig.said("refused") == [text("executor.drive-test", why=text("executor.test-lease"))]
 
 
 def test_the_whole_of_it_has_to_fit_with_its_braking() -> None:
@@ -265,7 +272,7 @@ def test_the_whole_of_it_has_to_fit_with_its_braking() -> None:
         hold(rig, DriveTestPath("X", Shape.STEP, size))
         assert (rig.said("refused") == []) is fits
         assert rig.shot.demand == pytest.approx(here, abs=1e-9)
-    assert "its travel ends before" in rig.said("refused")[0]
+    assert text("executor.test-travel", axis="X", mm="0.520", sign="+") in rig.said("refused")[0]
     rig.events.clear()
     hold(rig, DriveTestPath("X", Shape.SINE, -2.0, frequencies=(5.0,)))
     assert rig.said("refused") == []
@@ -275,7 +282,7 @@ def test_an_axis_that_is_not_homed_is_not_tested() -> None:
     rig = Rig(nothing_homed())
     rig.ready()
     rig.post(DriveTest(STEP, LEASE))
-    assert "X is not homed" in rig.said("refused")[0]
+    assert text("executor.test-not-homed", axis="X") in rig.said("refused")[0]
 
 
 def test_not_while_the_spindle_turns() -> None:
@@ -283,7 +290,7 @@ def test_not_while_the_spindle_turns() -> None:
     rig.start("G90G94F300\nM03S500\nM02\n")
     rig.until(State.IDLE)
     rig.post(DriveTest(STEP, LEASE))
-    assert rig.said("refused") == ["drive test: the spindle turns; stop it first"]
+    assert rig.said("refused") == [text("executor.drive-test", why=text("executor.spindle-turns-stop"))]
 
 
 def test_not_with_the_guard_open_and_it_ends_where_one_is_opened() -> None:
@@ -302,7 +309,9 @@ def test_nothing_is_tested_while_a_program_is_under_way(command: Command) -> Non
     rig.start("G90G94F300\nG01F60Z-1\nM00\nM30\n")
     rig.run(0.2)
     rig.post(command)
-    assert rig.said("refused") == (["no jog in state RUNNING"] if isinstance(command, DriveTest) else [])
+    assert rig.said("refused") == (
+        [text("executor.no-jog", state="RUNNING")] if isinstance(command, DriveTest) else []
+    )
     rig.until(State.PROGRAM_STOP)
     rig.post(command)
     rig.run(0.3)
@@ -316,7 +325,7 @@ def test_a_late_one_is_refused() -> None:
     rig.executor.tick()
     rig.run(0.2)
     assert rig.shot.demand[0] == 0.0
-    assert "DriveTest came too late" in rig.said("refused")[0]
+    assert text("executor.came-too-late", command="DriveTest") in rig.said("refused")[0]
 
 
 def test_the_handwheel_does_not_move_under_it() -> None:

@@ -12,6 +12,7 @@ from core.executor.snapshot import State
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.modal_state import Modal
 from tests.executor.rig import INCH, TICK, Rig, off_line
+from tests.texts import text
 
 pytestmark = pytest.mark.long
 
@@ -21,9 +22,9 @@ AMAX = 120 * INCH
 STEP_OFF = 0.00254  # mm, the path may be left by two counts
 
 
-def moving_rig(text: str = RAPID, seconds: float = 0.4) -> Rig:
+def moving_rig(program: str = RAPID, seconds: float = 0.4) -> Rig:
     rig = Rig()
-    rig.start(text)
+    rig.start(program)
     rig.run(seconds)
     assert rig.state is State.RUN
     return rig
@@ -43,7 +44,7 @@ def test_hold_from_full_speed_is_at_rest_in_time_and_on_the_path() -> None:
     ramp = speed / (120 * INCH / 0.8)
     assert rig.clock.now() - pressed <= 0.03 + ramp + TICK + 1e-9
     assert max(seen) < STEP_OFF
-    assert rig.said("stop") == ["702 FEED HOLD: feed hold was pressed"]
+    assert rig.numbers("stop") == [702]
 
 
 def test_the_stations_button_holds_too() -> None:
@@ -52,7 +53,7 @@ def test_the_stations_button_holds_too() -> None:
     rig.until(State.HOLD)
     rig.post(CycleStart())
     assert rig.state is State.HOLD
-    assert rig.shot.start_refused == "feed hold is pressed"
+    assert rig.shot.start_refused == text("executor.hold-pressed")
     rig.sim.machine.release_hold()
     rig.run(0.4)
     rig.post(CycleStart())
@@ -137,10 +138,10 @@ def test_resume_into_a_cut_without_the_spindle_is_refused() -> None:
     assert rig.shot.rpm_actual == 0.0
     rig.post(CycleStart())
     assert rig.state is State.HOLD
-    assert rig.shot.start_refused == "spindle switch off"
+    assert rig.shot.start_refused == text("executor.switch-off-refused")
     rig.sim.machine.set_spindle_auto(True)
     rig.run(2.0)
-    assert rig.shot.announced == ("THE SPINDLE STARTS AT 1000 RPM FORWARD",)
+    assert rig.shot.announced == (text("executor.spindle-starts", rpm=1000, direction="FORWARD"),)
     at = rig.shot.actual
     rig.post(CycleStart())
     assert rig.shot.waiting_for == "AT SPEED"
@@ -160,13 +161,13 @@ def test_half_override_takes_twice_as_long() -> None:
     assert half.until(State.IDLE) == pytest.approx(2 * whole.until(State.IDLE), rel=0.03)
 
 
-@pytest.mark.parametrize("text", ["G90G94F300\nG01F30Z-1\nM30\n", RAPID])
-def test_override_0_holds_and_more_goes_on(text: str) -> None:
-    rig = moving_rig(text)
+@pytest.mark.parametrize("program", ["G90G94F300\nG01F30Z-1\nM30\n", RAPID])
+def test_override_0_holds_and_more_goes_on(program: str) -> None:
+    rig = moving_rig(program)
     rig.sim.machine.set_feed_pot(0.0)
     rig.run(1.0)
     assert rig.state is State.WAIT
-    assert rig.shot.waiting_for == "FEED OVERRIDE AT 0"
+    assert rig.shot.waiting_for == text("executor.feed-override-0")
     stood = rig.shot.actual
     rig.run(5.0)
     assert rig.shot.actual == stood
@@ -286,7 +287,10 @@ def test_the_log_tells_of_overrides_once() -> None:
     rig.run(1.0)
     rig.sim.machine.set_feed_pot(0.0)
     rig.run(1.0)
-    assert rig.said("override") == ["feed 50 %", "feed 0 %"]
+    assert rig.said("override") == [
+        text("executor.feed-percent", percent=50),
+        text("executor.feed-percent", percent=0),
+    ]
 
 
 def test_a_million_blocks_do_not_keep_a_hold_waiting() -> None:

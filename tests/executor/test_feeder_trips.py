@@ -15,6 +15,7 @@ from core.executor.snapshot import State
 from core.ports import Trip
 from tests.executor.rig import Rig
 from tests.executor.test_signal_lamps import with_lamps
+from tests.texts import text
 
 PART = "G90G94F300\nM03S1000\nM08\nG01F20Z-1\nM30\n"
 
@@ -53,12 +54,18 @@ class FedRig(Rig):
         assert self.feeder.acknowledged == [7]
 
 
+def tripped(who: str, what: str, names: str) -> str:
+    return text(
+        "executor.trip", who=text(f"executor.{who}"), seconds=1.5, what=text(f"executor.{what}"), names=names
+    )
+
+
 def test_at_rest_it_is_told_and_nothing_is_held() -> None:
     rig = FedRig()
     rig.ready()
     rig.post(ForceOutput("coolant", True))
     rig.trips("coolant")
-    assert rig.said("disturbed") == ["CONTROL WAS SILENT FOR 1.5 S, SWITCHED OFF: COOLANT"]
+    assert rig.said("disturbed") == [tripped("control-silent", "switched-off", "COOLANT")]
     assert rig.state is State.IDLE
     assert rig.shot.alarms == ()
 
@@ -73,8 +80,8 @@ def test_lamps_alone_are_not_worth_a_word() -> None:
 @pytest.mark.parametrize(
     ("found", "words"),
     [
-        (False, "CONTROL WAS SILENT FOR 1.5 S, SWITCHED OFF: SPINDLE, COOLANT"),
-        (True, "THE MACHINE WAS NOT HEARD FOR 1.5 S, FOUND ON, SWITCHED OFF: SPINDLE, COOLANT"),
+        (False, tripped("control-silent", "switched-off", "SPINDLE, COOLANT")),
+        (True, tripped("machine-not-heard", "found-on", "SPINDLE, COOLANT")),
     ],
 )
 def test_a_cut_is_held_and_its_part_does_not_count(found: bool, words: str) -> None:
@@ -108,5 +115,5 @@ def test_at_rest_an_output_that_somebody_else_moves_is_told_once_and_then_counts
         rig.run(0.6)
     rig.sim.ports.io.write("coolant", on)
     rig.run(1.0)
-    words = "COOLANT HAS COME ON" if on else "COOLANT HAS GONE OFF"
-    assert rig.said("disturbed") == [f"{words} BY ITSELF"]
+    words = text("executor.come-on", output="COOLANT") if on else text("executor.gone-off", output="COOLANT")
+    assert rig.said("disturbed") == [text("executor.without-order", what=words)]

@@ -17,6 +17,7 @@ from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.modal_state import Modal
 from tests.executor.rig import Rig
 from tests.machine.mill import MILL
+from tests.texts import text
 
 AXES = ("X", "Y", "Z", "A", "C")
 HOME = (0.0,) * 5
@@ -131,5 +132,7 @@ def test_a_way_out_of_proportion_is_followed_all_along() -> None:
 def test_a_move_beyond_the_swivel_range_is_refused_before_it_begins() -> None:
     rig = rig_with(line(1, HOME, (0.0, 0.0, 0.0, 121.0, 0.0), 25.0))
     rig.until(State.FAULT)
-    assert "A to 121.000 degrees" in rig.shot.alarms[0].cause
+    assert rig.shot.alarms[0].cause == text(
+        "executor.line-moves", line=1, axis="A", place="121.000", unit="degrees"
+    )
     assert rig.shot.actual == HOME

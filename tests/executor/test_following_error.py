@@ -12,7 +12,9 @@ from core.executor.following_error import FollowingErrorWatch
 from core.executor.raised_alarm import AlarmError
 from core.executor.snapshot import State
 from core.ports import AxisSample
+from tests.coded import raises_code
 from tests.executor.rig import Rig
+from tests.texts import text
 
 pytestmark = pytest.mark.long
 
@@ -206,7 +208,7 @@ def test_a_slide_pushed_by_hand_with_the_drives_off_is_told_and_one_in_estop_is_
     rig.sim.machine.push("Z", 0.1)
     rig.run(0.4)
     assert codes(rig) == ["moved-unasked"]
-    assert "Z has moved by 0.250 mm" in rig.shot.alarms[0].cause
+    assert text("executor.moved-by", axis="Z", distance="0.250 mm") in rig.shot.alarms[0].cause
     rig.post(Reset())
     rig.run(1.0)
     assert codes(rig) == []
@@ -262,5 +264,5 @@ def test_a_sample_that_is_no_new_one_counts_for_no_time() -> None:
     for _ in range(100):
         watch.look(sample(1.0, 0.0, 0.5), unpowered=False)
     watch.look(sample(1.01, 0.0, 0.5), unpowered=False)
-    with pytest.raises(AlarmError, match=r"Z is 0\.500 mm off"):
+    with raises_code(AlarmError, "standstill", text("executor.off-setpoint", axis="Z", distance="0.500 mm")):
         watch.look(sample(1.3, 0.0, 0.5), unpowered=False)

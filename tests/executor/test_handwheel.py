@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+import re
 
 import pytest
 
@@ -24,6 +25,7 @@ from core.executor.snapshot import State
 from core.machine.hardware_model import AnalogModel
 from core.machine.machine_model import InputModel, Machine
 from tests.executor.rig import INCH, TICK, Rig
+from tests.texts import pattern, text
 
 THOU = 0.001 * INCH
 LEASE = 0.25
@@ -166,7 +168,7 @@ def test_clicks_faster_than_the_axis_are_dropped_and_not_played_later() -> None:
     assert run_on <= RAPID * 0.1 + RAPID**2 / AMAX + 0.03 * RAPID + 0.254
     assert took < 0.3
     assert rig.shot.demand[1] < 1.2 * RAPID
-    assert rig.said("refused") == ["handwheel: turned faster than Z goes; clicks are dropped"]
+    assert rig.said("refused") == [text("executor.handwheel", why=text("executor.wheel-too-fast", axis="Z"))]
 
 
 def test_an_axis_that_is_not_homed_goes_at_a_tenth() -> None:
@@ -188,7 +190,9 @@ def test_the_soft_limit_keeps_no_click() -> None:
     rig.rests()
     limit = 4.0 * INCH - 0.01
     assert rig.shot.demand[0] == pytest.approx(limit, abs=0.002)
-    assert "handwheel: X is at the end of its travel in +" in rig.said("refused")
+    assert text("executor.handwheel", why=text("executor.travel-end", axis="X", sign="+")) in rig.said(
+        "refused"
+    )
     rig.spin(-1)
     rig.rests()
     assert rig.shot.demand[0] == pytest.approx(limit - 0.01 * INCH, abs=0.002)
@@ -258,7 +262,7 @@ def test_a_page_that_is_silent_loses_it_within_its_lease() -> None:
     rig.select()
     rig.page = None
     rig.spin(int(LEASE / TICK) + 5)
-    ended(rig, "the page that asked for it was silent")
+    ended(rig, text("executor.page-silent"))
 
 
 def test_leaving_the_page_stops_it_at_once() -> None:
@@ -300,7 +304,7 @@ def test_estop_takes_it_away_and_its_release_gives_nothing_back() -> None:
     rig.sim.machine.release_estop()
     rig.run(0.5)
     rig.post(EnableDrives())
-    ended(rig, "it moves nothing in state E-STOP")
+    ended(rig, text("executor.moves-nothing", state="E-STOP"))
 
 
 def test_a_silent_station_stops_the_slide() -> None:
@@ -309,7 +313,7 @@ def test_a_silent_station_stops_the_slide() -> None:
     rig.spin(20)
     rig.sim.machine.station_silent()
     rig.run(0.4)
-    ended(rig, "operator station silent")
+    ended(rig, text("executor.station-silent-refused"))
 
 
 def test_a_counter_that_leaps_is_no_hand() -> None:
@@ -317,7 +321,7 @@ def test_a_counter_that_leaps_is_no_hand() -> None:
     rig.select()
     rig.sim.machine.turn_handwheel(4000)
     rig.run(0.05)
-    ended(rig, "its counts leap: check its cable")
+    ended(rig, text("executor.counts-leap"))
 
 
 def test_a_key_while_it_turns_stops_both() -> None:
@@ -330,7 +334,7 @@ def test_a_key_while_it_turns_stops_both() -> None:
         rig.tick()
     at = rig.shot.demand
     assert rig.state is State.IDLE
-    assert rig.shot.wheel_ended == "a key or finger came while it was turned"
+    assert rig.shot.wheel_ended == text("executor.key-while-turned")
     rig.run(0.6)
     assert rig.shot.demand == at
     rig.post(Jog("Z", 10.0, 0.2))
@@ -346,8 +350,8 @@ def test_the_wheel_while_a_key_is_held_stops_both() -> None:
             rig.sim.machine.turn_handwheel(1)
         rig.tick()
     assert rig.state is State.IDLE
-    assert rig.shot.wheel_ended == "it was turned while a key or finger was held"
-    assert "jog: key and handwheel at once move nothing" in rig.said("refused")
+    assert rig.shot.wheel_ended == text("executor.turned-while-held")
+    assert text("executor.jog", why=text("executor.key-and-wheel")) in rig.said("refused")
 
 
 def test_a_step_while_it_turns_stops_it_and_is_not_done() -> None:
@@ -380,26 +384,26 @@ def test_a_cycle_takes_it_away() -> None:
     assert rig.shot.wheel == ""
     rig.until(State.IDLE)
     assert rig.shot.demand[0] == pytest.approx(0.1 * INCH)
-    ended(rig, "it moves nothing in state RUNNING")
+    ended(rig, text("executor.moves-nothing", state="RUNNING"))
 
 
 @pytest.mark.parametrize(
     ("wheel", "why"),
     [
-        (Wheel("B", THOU, LEASE), "no axis B"),
-        (Wheel("X", 0.0, LEASE), "longer than 0"),
-        (Wheel("X", 2.54, LEASE), "no longer than 0.254"),
-        (Wheel("X", math.nan, LEASE), "longer than 0"),
-        (Wheel("C", 1.0, LEASE), "no longer than 0.5"),
-        (Wheel("X", THOU, 0.0), "a lease above 0"),
-        (Wheel("X", THOU, math.nan), "a lease above 0"),
+        (Wheel("B", THOU, LEASE), pattern("executor.no-jog-axis", axis="B")),
+        (Wheel("X", 0.0, LEASE), pattern("executor.click-length", limit="0.254")),
+        (Wheel("X", 2.54, LEASE), pattern("executor.click-length", limit="0.254", length="2.54")),
+        (Wheel("X", math.nan, LEASE), pattern("executor.click-length", limit="0.254")),
+        (Wheel("C", 1.0, LEASE), pattern("executor.click-length", limit="0.5")),
+        (Wheel("X", THOU, 0.0), pattern("executor.wheel-lease")),
+        (Wheel("X", THOU, math.nan), pattern("executor.wheel-lease")),
     ],
 )
 def test_what_makes_no_sense_is_refused(wheel: Wheel, why: str) -> None:
     rig = ready()
     rig.page = wheel
     rig.run(0.2)
-    assert why in rig.shot.wheel_ended
+    assert re.search(why, rig.shot.wheel_ended)
     rig.spin(5)
     assert rig.shot.demand == (0.0, 0.0, 0.0)
 
@@ -408,14 +412,14 @@ def test_with_the_drives_off_it_is_refused() -> None:
     rig = WheelRig(wheeled())
     rig.page = Wheel("X", THOU, LEASE)
     rig.run(0.2)
-    assert rig.shot.wheel_ended == "it moves nothing in state DRIVES OFF"
+    assert rig.shot.wheel_ended == text("executor.moves-nothing", state="DRIVES OFF")
 
 
 def test_a_machine_without_one_says_so() -> None:
     rig = WheelRig()
     rig.ready()
     rig.post(Wheel("X", THOU, LEASE))
-    assert rig.shot.wheel_ended == "this machine has none"
+    assert rig.shot.wheel_ended == text("executor.no-wheel")
 
 
 def test_c_does_not_turn_by_it_while_the_spindle_turns() -> None:
@@ -429,7 +433,7 @@ def test_c_does_not_turn_by_it_while_the_spindle_turns() -> None:
     rig.until(State.IDLE)
     rig.page = Wheel("C", 0.02, LEASE)
     rig.run(0.2)
-    assert "the spindle turns" in rig.shot.wheel_ended
+    assert text("executor.c-is-spindle") in rig.shot.wheel_ended
 
 
 # --- switches of the station ------------------------------------------------------------------------------
@@ -439,14 +443,14 @@ def test_the_enabling_switch_must_be_held() -> None:
     rig = ready("wheel_enable")
     rig.page = Wheel("X", THOU, LEASE)
     rig.run(0.2)
-    assert rig.shot.wheel_ended == "its enabling switch is not held"
+    assert rig.shot.wheel_ended == text("executor.wheel-switch")
     rig.drop()
     rig.sim.machine.set_input("wheel_enable", True)
     rig.select("Z", 0.01 * INCH)
     rig.spin(20)
     rig.sim.machine.set_input("wheel_enable", False)
     rig.run(0.05)
-    ended(rig, "its enabling switch is not held")
+    ended(rig, text("executor.wheel-switch"))
 
 
 def test_the_axis_is_the_one_that_the_switch_selects() -> None:
@@ -454,13 +458,13 @@ def test_the_axis_is_the_one_that_the_switch_selects() -> None:
     rig.sim.machine.set_input("wheel_z", True)
     rig.page = Wheel("X", THOU, LEASE)
     rig.run(0.1)
-    assert rig.shot.wheel_ended == "the station's switch does not select X"
+    assert rig.shot.wheel_ended == text("executor.wheel-axis", axis="X")
     rig.drop()
     rig.select("Z")
     rig.spin(5)
     rig.sim.machine.set_input("wheel_z", False)
     rig.run(0.05)
-    ended(rig, "the station's switch does not select Z")
+    ended(rig, text("executor.wheel-axis", axis="Z"))
 
 
 # --- counts -----------------------------------------------------------------------------------------------

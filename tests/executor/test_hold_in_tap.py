@@ -16,6 +16,7 @@ from core.interpreter.elementary_blocks import Block
 from core.interpreter.job_setup import ToolOffset
 from core.language.source import Source
 from tests.executor.rig import Rig
+from tests.texts import text
 
 MILL = shipped_machine("ac-table-mill")
 Z = [axis.name for axis in MILL.axes].index("Z")
@@ -58,7 +59,7 @@ def test_a_hold_waits_until_the_tap_is_out(cycle: str, z: float) -> None:
     rig = tapping(cycle)
     deep(rig, z)
     rig.post(FeedHold())
-    assert rig.shot.waiting_for == "FEED HOLD BEHIND THE TAP"
+    assert rig.shot.waiting_for == text("executor.hold-after-tap")
     rig.until(State.HOLD)
     assert height(rig) >= CLEAR - 0.01
     rig.post(CycleStart())
@@ -91,7 +92,7 @@ def test_a_second_press_changes_nothing() -> None:
     rig.post(FeedHold())
     rig.until(State.HOLD)
     assert height(rig) >= CLEAR - 0.01
-    assert rig.said("stop") == ["702 FEED HOLD: feed hold was pressed"]
+    assert rig.numbers("stop") == [702]
 
 
 def test_a_hold_before_the_tap_is_at_once() -> None:

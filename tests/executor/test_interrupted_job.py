@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from dataclasses import replace
 
 import pytest
@@ -24,6 +25,7 @@ from tests.executor.lines import TOOLS, mdi, press
 from tests.executor.rig import INCH, Rig
 from tests.executor.test_restart import PART, broken_off, restart
 from tests.interrupted import broken_off as made
+from tests.texts import pattern, text
 
 pytestmark = pytest.mark.long
 
@@ -56,7 +58,9 @@ def test_an_estop_in_the_cut_leaves_the_job_with_line_tool_part_and_place() -> N
     assert found.axes == ("X", "Z", "C")
     assert found.where == pytest.approx(rig.shot.actual, abs=1e-3)  # not where the braking began
     assert found.job == rig.shot.job
-    assert rig.said("interrupted") == ["PART line 8, T1, part 12: E-STOP"]
+    assert rig.said("interrupted") == [
+        text("executor.interrupted-job", program="PART", line=8, tool="T1", part=12, why="E-STOP")
+    ]
 
 
 def test_where_the_tool_stands_is_where_it_came_to_rest_and_not_where_the_stop_was_seen() -> None:
@@ -91,7 +95,9 @@ def test_an_alarm_names_itself_as_the_cause() -> None:
     rig.sim.machine.jam("Z")
     rig.until(State.FAULT)
     assert rig.shot.interrupted is not None
-    assert rig.shot.interrupted.why == f"ALARM {rig.shot.alarms[0].number}: {rig.shot.alarms[0].text}"
+    assert rig.shot.interrupted.why == text(
+        "executor.alarm-number", number=rig.shot.alarms[0].number, text=rig.shot.alarms[0].text
+    )
 
 
 def test_closing_the_control_in_the_cut() -> None:
@@ -134,8 +140,8 @@ def test_both_palms_do_not_begin_at_the_first_line_unasked() -> None:
     stood = rig.shot.demand
     for _ in range(3):
         assert not begins(rig)
-        assert rig.shot.start_refused.startswith(
-            "line 8 of PART was interrupted and T1 may stand in the part"
+        assert re.fullmatch(
+            pattern("executor.interrupted-in-part", line=8, program="PART", tool="T1"), rig.shot.start_refused
         )
     rig.run(2.0)
     assert rig.shot.demand == stood
@@ -149,7 +155,7 @@ def test_a_confirmed_start_begins_once_and_the_next_break_asks_again() -> None:
     assert begins(rig)
     rig.until_true(lambda shot: shot.line == 8)
     assert not rig.shot.confirmed
-    assert [text for text in rig.said("cleared") if "the program begins anew" in text]
+    assert [said for said in rig.said("cleared") if re.fullmatch(pattern("executor.begins-anew"), said)]
     rig.post(Reset())
     rig.until(State.IDLE)
     assert not begins(rig)
@@ -160,7 +166,7 @@ def test_an_answer_to_another_question_does_not_count() -> None:
     broken_off(rig)
     rig.post(ConfirmStart("2020-01-01T00:00:00Z"))
     assert not rig.shot.confirmed
-    assert rig.said("refused")[-1] == "there is no interrupted job to be answered for now"
+    assert rig.said("refused")[-1] == text("executor.no-interrupted-job")
     assert not begins(rig)
 
 
@@ -246,7 +252,13 @@ def test_the_same_program_read_again_keeps_it_and_another_clears_it_in_the_log()
     rig.load("G90G94F300\nX1\nM30\n", name="OTHER")
     assert rig.shot.interrupted is None
     assert rig.notes[-1] is None
-    assert rig.said("cleared") == ["PART line 8, T1, part 1: E-STOP; OTHER was loaded in its place"]
+    assert rig.said("cleared") == [
+        text(
+            "executor.loaded-in-place",
+            job=text("executor.interrupted-job", program="PART", line=8, tool="T1", part=1, why="E-STOP"),
+            program="OTHER",
+        )
+    ]
     assert begins(rig)
 
 
@@ -402,5 +414,7 @@ def test_what_cannot_be_understood_is_no_job(change: dict[str, object]) -> None:
 
 
 def test_the_log_says_which_job() -> None:
-    assert made().words == "PIN.NC line 8, T3, part 5: E-STOP"
+    assert made().words == text(
+        "executor.interrupted-job", program="PIN.NC", line=8, tool="T3", part=5, why="E-STOP"
+    )
     assert replace(made(), line=9) == made(line=9)

@@ -9,6 +9,7 @@ import pytest
 from core.executor.commands import CycleStart, EnableDrives, FeedHold, Home, Jog, JogStep, JogStop, Reset
 from core.executor.snapshot import State
 from tests.executor.rig import INCH, TICK, Rig, unhomed_machine
+from tests.texts import text
 
 AMAX = 120 * INCH
 FAST = 100 * INCH / 60  # manual rapid
@@ -101,11 +102,11 @@ def test_jog_is_never_faster_than_the_manual_rapid() -> None:
 @pytest.mark.parametrize(
     ("jog", "why"),
     [
-        (Jog("B", 1.0, 0.2), "no axis B"),
-        (Jog("X", 1.0, 0.0), "lease above 0"),
-        (Jog("X", 1.0, -1.0), "lease above 0"),
-        (Jog("X", math.nan, 0.2), "lease above 0"),
-        (Jog("X", 1.0, math.inf), "lease above 0"),
+        (Jog("B", 1.0, 0.2), text("executor.no-jog-axis", axis="B")),
+        (Jog("X", 1.0, 0.0), text("executor.jog-lease")),
+        (Jog("X", 1.0, -1.0), text("executor.jog-lease")),
+        (Jog("X", math.nan, 0.2), text("executor.jog-lease")),
+        (Jog("X", 1.0, math.inf), text("executor.jog-lease")),
     ],
 )
 def test_jogs_without_sense_are_refused(jog: Jog, why: str) -> None:
@@ -144,7 +145,7 @@ def test_another_axis_ends_the_jog() -> None:
     rig.post(Jog("Z", 10.0, 1.0))
     assert rig.until(State.IDLE) < 0.1
     assert rig.shot.demand[1] == 0.0
-    assert "still being jogged" in rig.said("refused")[0]
+    assert text("executor.being-jogged", axis="X") in rig.said("refused")[0]
 
 
 @pytest.mark.parametrize("stopper", [FeedHold(), Reset(), JogStop()])
@@ -172,7 +173,7 @@ def test_cycle_start_while_jogging_is_refused() -> None:
     rig.post(Jog("X", 1.0, 1.0))
     rig.post(CycleStart())
     assert rig.state is State.JOG
-    assert rig.shot.start_refused == "the machine is being jogged"
+    assert rig.shot.start_refused == text("executor.machine-jogged")
 
 
 def test_estop_ends_a_jog() -> None:
@@ -210,8 +211,8 @@ def test_homing_that_makes_no_sense_is_refused() -> None:
     assert rig.state is State.IDLE
     assert [text.split(": ")[1] for text in rig.said("refused")] == [
         "state DRIVES OFF",
-        "this machine has no axis B to home",
-        "every axis knows its position",
+        text("executor.no-home-axis", axis="B"),
+        text("executor.all-homed"),
     ]
 
 

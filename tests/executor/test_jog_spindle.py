@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -12,6 +13,7 @@ from core.executor.snapshot import State
 from core.machine.machine_model import Machine
 from tests.executor.lines import mdi
 from tests.executor.rig import Rig
+from tests.texts import pattern
 
 SPEED, LEASE = 2.0, 0.2  # mm/s, s
 
@@ -57,7 +59,7 @@ def test_what_stops_the_spindle_ends_the_jog_and_a_held_key_begins_no_other(
     held(rig, 1.0)
     assert rig.state is State.IDLE
     assert at - rig.shot.demand[1] < SPEED * 0.3  # it braked, and stood
-    assert any("the spindle has stopped" in each for each in rig.said("refused"))
+    assert any(re.search(pattern("executor.spindle-has-stopped"), each) for each in rig.said("refused"))
     rig.post(JogStop())  # the key comes up, and is pressed anew: away from the part
     stood = rig.shot.demand[1]
     rig.post(Jog("Z", SPEED, LEASE))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+import re
 
 import pytest
 
@@ -21,6 +22,7 @@ from core.executor.commands import (
 from core.executor.snapshot import State
 from core.machine.machine_model import Machine
 from tests.executor.rig import INCH, TICK, Rig, unhomed_machine
+from tests.texts import pattern, text
 
 AMAX = 120 * INCH
 SPEED = 20 * INCH / 60
@@ -82,7 +84,7 @@ def test_a_step_under_way_refuses_the_next_and_goes_on() -> None:
     rig.post(JogStep("X", 2.54, SPEED))
     rig.run(0.1)
     rig.post(JogStep("X", 2.54, SPEED))
-    assert "wait for the end of its step" in rig.said("refused")[0]
+    assert text("executor.step-not-over", axis="X") in rig.said("refused")[0]
     rig.until(State.IDLE)
     assert rig.shot.demand[0] == pytest.approx(2.54, abs=1e-9)
 
@@ -90,20 +92,20 @@ def test_a_step_under_way_refuses_the_next_and_goes_on() -> None:
 @pytest.mark.parametrize(
     ("step", "why"),
     [
-        (JogStep("B", 0.1, SPEED), "no axis B"),
-        (JogStep("X", 0.0, SPEED), "longer than 0"),
-        (JogStep("X", 2.6, SPEED), "no longer than 2.54"),
-        (JogStep("X", math.nan, SPEED), "longer than 0"),
-        (JogStep("X", math.inf, SPEED), "longer than 0"),
-        (JogStep("X", 0.1, 0.0), "speed above 0"),
-        (JogStep("X", 0.1, math.nan), "speed above 0"),
+        (JogStep("B", 0.1, SPEED), pattern("executor.no-jog-axis", axis="B")),
+        (JogStep("X", 0.0, SPEED), pattern("executor.step-length", limit="2.54")),
+        (JogStep("X", 2.6, SPEED), pattern("executor.step-length", limit="2.54", length="2.6")),
+        (JogStep("X", math.nan, SPEED), pattern("executor.step-length", limit="2.54")),
+        (JogStep("X", math.inf, SPEED), pattern("executor.step-length", limit="2.54")),
+        (JogStep("X", 0.1, 0.0), pattern("executor.step-speed")),
+        (JogStep("X", 0.1, math.nan), pattern("executor.step-speed")),
     ],
 )
 def test_steps_without_sense_are_refused(step: JogStep, why: str) -> None:
     rig = ready()
     rig.post(step)
     rig.run(0.3)
-    assert why in rig.said("refused")[0]
+    assert re.search(why, rig.said("refused")[0])
     assert rig.shot.demand == (0.0, 0.0, 0.0)
 
 
@@ -115,7 +117,9 @@ def test_a_step_that_would_leave_the_travel_is_refused_whole() -> None:
     before = rig.shot.demand[0]
     rig.post(JogStep("X", 0.0254, SPEED))
     assert rig.state is State.IDLE
-    assert rig.said("refused")[-1] == "jog: X is at the end of its travel in +"
+    assert rig.said("refused")[-1] == text(
+        "executor.jog", why=text("executor.travel-end", axis="X", sign="+")
+    )
     assert rig.shot.demand[0] == before
     rig.post(JogStep("X", -0.0254, SPEED))
     rig.until(State.IDLE)
@@ -127,7 +131,9 @@ def test_a_jog_against_the_end_of_the_travel_is_told() -> None:
     for _ in range(600):
         rig.executor.post(Jog("Z", -500.0, 0.2))
         rig.tick()
-    assert set(rig.said("refused")) == {"jog: Z is at the end of its travel in −"}
+    assert set(rig.said("refused")) == {
+        text("executor.jog", why=text("executor.travel-end", axis="Z", sign="−"))
+    }
 
 
 @pytest.mark.parametrize("stopper", [JogStop(), FeedHold(), Reset()])
@@ -138,7 +144,7 @@ def test_a_step_that_is_stopped_says_that_it_is_short(stopper: JogStop | FeedHol
     rig.post(stopper)
     assert rig.until(State.IDLE) < 0.03 + SPEED / AMAX + 2 * TICK + 0.001
     assert 0.0 < rig.shot.demand[0] < 2.5
-    assert rig.said("refused") == ["X was stopped before the end of its step"]
+    assert rig.said("refused") == [text("executor.step-cut-short", axis="X")]
 
 
 def test_a_step_whose_host_dies_ends_at_its_end() -> None:
@@ -159,7 +165,7 @@ def test_a_step_while_a_jog_is_held_ends_both() -> None:
     rig.run(0.1)
     rig.post(JogStep("X", 0.1, SPEED))
     assert rig.until(State.IDLE) < 0.1
-    assert "still moving" in rig.said("refused")[0]
+    assert text("executor.moving", what="X") in rig.said("refused")[0]
 
 
 def test_a_held_jog_during_a_step_ends_the_step() -> None:
@@ -171,8 +177,8 @@ def test_a_held_jog_during_a_step_ends_the_step() -> None:
     assert rig.shot.demand[0] < 2.5
     assert rig.shot.demand[1] == 0.0
     assert rig.said("refused") == [
-        "jog: X is still on its step",
-        "X was stopped before the end of its step",
+        text("executor.jog", why=text("executor.on-step", axis="X")),
+        text("executor.step-cut-short", axis="X"),
     ]
 
 
@@ -197,7 +203,7 @@ def test_a_late_step_is_refused() -> None:
     rig.executor.tick()
     rig.run(0.2)
     assert rig.shot.demand[0] == 0.0
-    assert "JogStep came too late" in rig.said("refused")[0]
+    assert text("executor.came-too-late", command="JogStep") in rig.said("refused")[0]
 
 
 @pytest.mark.parametrize("command", [Jog("X", 10.0, 0.2), JogStep("X", 0.1, SPEED)])
@@ -206,7 +212,7 @@ def test_nothing_is_jogged_while_a_program_is_under_way(command: Jog | JogStep) 
     rig.start("G90G94F300\nG01F60Z-1\nM00\nM30\n")
     rig.run(0.2)
     rig.post(command)
-    assert rig.said("refused") == ["no jog in state RUNNING"]
+    assert rig.said("refused") == [text("executor.no-jog", state="RUNNING")]
     rig.until(State.PROGRAM_STOP)
     rig.post(command)
     rig.run(0.3)
@@ -220,7 +226,7 @@ def test_c_is_not_jogged_while_the_spindle_turns() -> None:
     rig.run(0.5)
     assert rig.shot.rpm_actual > 100
     rig.post(Jog("C", 90.0, 0.2))
-    assert rig.said("refused") == ["jog: C is the spindle, and the spindle turns; stop it first"]
+    assert rig.said("refused") == [text("executor.jog", why=text("executor.c-is-spindle"))]
     assert rig.shot.alarms == ()
     rig.post(JogStep("X", 0.254, SPEED))  # touching off on a turning part
     rig.until(State.IDLE)
@@ -240,7 +246,7 @@ def test_unhomed_only_slow_jogs_and_no_program() -> None:
     rig.load("G90G94F300\nX1Z1\nM30\n")
     rig.run(0.4)
     rig.post(CycleStart())
-    assert rig.shot.start_refused == "X, Z must be homed first"
+    assert rig.shot.start_refused == text("executor.not-homed", axes="X, Z")
 
 
 def test_home_takes_the_axes_in_their_order() -> None:

@@ -12,6 +12,7 @@ from core.interpreter.job_setup import ToolOffset
 from core.proving.prove_program import prove
 from tests.executor.lines import errors, line_job, mdi, press
 from tests.executor.rig import INCH, Rig
+from tests.texts import text
 
 
 def test_modes_feed_and_tool_are_inherited_from_line_to_line() -> None:
@@ -51,43 +52,45 @@ def test_the_first_move_after_a_tool_needs_both_axes_in_mdi_too() -> None:
     rig = Rig()
     mdi(rig, "G90F100", "T1")
     assert rig.shot.tool_open
-    assert errors(rig, "X1") == ["The first move after the T lacks Z."]
+    (found,) = errors(rig, "X1")
+    assert found.code == "tool-first-move"
+    assert "Z" in found.message
     mdi(rig, "X1Z1")
     assert not rig.shot.tool_open
     assert errors(rig, "X.9") == []
 
 
 @pytest.mark.parametrize(
-    ("line", "message"),
+    ("line", "code", "named"),
     [
-        ("X5F100", "beyond the travel limit"),
-        ("X1", "The move has no feed."),
-        ("G95F.01X1", "The spindle stands"),
-        ("M03S9000", "over the spindle's 3500 rpm"),
-        ("M03", "no S has said how fast"),
-        ("LS3", "begins a loop"),
-        ("M98P1", "calls a subroutine"),
-        ("P1", "calls a subroutine"),
-        ("M99", "ends a subroutine"),
-        ("}1", "begins a subroutine"),
-        ("G75I.1U.01", "its lines would have to follow"),
-        ("G78U.01", "its lines would have to follow"),
-        ("G41", "looks at the lines that follow"),
-        ("G40", "looks at the lines around it"),
-        ("G35", "needs a G92 on the next line"),
-        ("(~PLXC)", "plane switching"),
-        ("X1R.05F100", "rounds the corner with the next move"),
-        ("X1C.05F100", "corner"),
-        ("/X1", "leaves a line of a program out"),
-        ("G2X1", "two digits"),
-        ("X1X2", "holds X twice"),
+        ("X5F100", "soft-limit", "X"),
+        ("X1", "feed-missing", ""),
+        ("G95F.01X1", "spindle-stopped", ""),
+        ("M03S9000", "speed-range", "3500 rpm"),
+        ("M03", "speed-missing", "M03"),
+        ("LS3", "not-alone-mdi", "LS"),
+        ("M98P1", "not-alone-mdi", "M98"),
+        ("P1", "not-alone-mdi", "P"),
+        ("M99", "not-alone-mdi", "M99"),
+        ("}1", "not-alone-mdi", "}"),
+        ("G75I.1U.01", "not-alone-mdi", "G75"),
+        ("G78U.01", "not-alone-mdi", "G78"),
+        ("G41", "not-alone-mdi", "G41"),
+        ("G40", "not-alone-mdi", "G40"),
+        ("G35", "not-alone-mdi", "G92"),
+        ("(~PLXC)", "not-alone-mdi", "(~PLXC)"),
+        ("X1R.05F100", "not-alone-mdi", "R.05"),
+        ("X1C.05F100", "corner-next", "C"),
+        ("/X1", "not-alone-mdi", "/"),
+        ("G2X1", "g-digits", "G2"),
+        ("X1X2", "word-twice", "X"),
     ],
 )
-def test_what_means_nothing_alone_or_cannot_be_done_is_refused(line: str, message: str) -> None:
+def test_what_means_nothing_alone_or_cannot_be_done_is_refused(line: str, code: str, named: str) -> None:
     rig = Rig()
     mdi(rig, "G90")
     found = errors(rig, line)
-    assert any(message in each for each in found), found
+    assert any(each.code == code and named in each.message for each in found), found
 
 
 def test_nothing_starts_in_mdi_without_a_line_and_the_program_does_not_either() -> None:
@@ -96,7 +99,7 @@ def test_nothing_starts_in_mdi_without_a_line_and_the_program_does_not_either() 
     rig.load("G90G94F300\nX1\nM30\n")
     rig.post(Prepare(Starts.LINE))
     rig.post(CycleStart())
-    assert rig.shot.start_refused == "no line is ready"
+    assert rig.shot.start_refused == text("executor.no-line")
     assert rig.state is State.IDLE
 
 
@@ -105,7 +108,7 @@ def test_a_line_runs_once() -> None:
     mdi(rig, "G91", "X.1F100")
     rig.run(0.4)
     rig.post(CycleStart())
-    assert rig.shot.start_refused.startswith("no line is ready")
+    assert rig.shot.start_refused.startswith(text("executor.no-line"))
     assert rig.shot.actual[0] == pytest.approx(0.1 * INCH, abs=0.006)
 
 
@@ -118,14 +121,14 @@ def test_a_line_proved_elsewhere_or_under_another_state_does_not_start() -> None
     rig.run(0.4)
     rig.post(Prepare(Starts.LINE, old, proof))
     rig.post(CycleStart())
-    assert rig.shot.start_refused.startswith("the slides have moved since")
+    assert rig.shot.start_refused == text("executor.moved-since", remedy=text("executor.ask-again"))
     fresh = line_job(rig, "X.1")
     proof = proof_of(fresh, prove(fresh.source, fresh.setup, rig.machine))
     mdi(rig, "G90")
     rig.run(0.4)
     rig.post(Prepare(Starts.LINE, fresh, proof))
     rig.post(CycleStart())
-    assert rig.shot.start_refused.startswith("the state has changed")
+    assert rig.shot.start_refused == text("executor.state-changed", remedy=text("executor.ask-again"))
 
 
 def test_a_tool_that_nobody_has_set_is_not_called() -> None:
@@ -135,7 +138,7 @@ def test_a_tool_that_nobody_has_set_is_not_called() -> None:
     rig.run(0.4)
     rig.post(Prepare(Starts.LINE, job, proof_of(job, prove(job.source, job.setup, rig.machine))))
     rig.post(CycleStart())
-    assert rig.shot.start_refused == "tool offset T9 has never been set"
+    assert rig.shot.start_refused == text("executor.tool-offset-unset", tools="T9")
 
 
 def test_hold_go_on_and_reset_keep_the_modes() -> None:
@@ -153,7 +156,7 @@ def test_hold_go_on_and_reset_keep_the_modes() -> None:
     rig.tick()
     assert (rig.shot.modal.absolute, rig.shot.modal.diameter, rig.shot.modal.coolant) == (True, True, False)
     assert 0.0 < rig.shot.actual[0] < 0.5 * INCH
-    assert "the line was given up by reset" in rig.said("mdi")
+    assert text("executor.line-given-up") in rig.said("mdi")
 
 
 def test_single_block_and_optional_stop_work_in_mdi() -> None:
@@ -210,7 +213,7 @@ def test_after_a_line_the_program_starts_from_its_first_line_with_its_own_modes(
 def test_nothing_moves_before_g90_or_g91_has_been_said(line: str) -> None:
     rig = Rig()
     rig.ready()
-    assert errors(rig, line)[0] == "Neither G90 (absolute) nor G91 (incremental) is in force."
+    assert errors(rig, line)[0].code == "first-line"
     assert errors(rig, "M08") == []
     assert errors(rig, "T1") == []
     mdi(rig, "G91" + line if not line.startswith("G92") else "G90" + line)

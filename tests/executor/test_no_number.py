@@ -10,6 +10,7 @@ import pytest
 from core.executor.snapshot import State
 from core.ports import AxisSample, StationState
 from tests.executor.rig import Rig
+from tests.texts import text
 
 CUT = "G90G94F300\nM03S600\nM08\nX.1\nG01F20Z-2\nM30\n"
 ODD = pytest.mark.parametrize("odd", [math.nan, math.inf, -math.inf])
@@ -44,7 +45,7 @@ def test_a_position_that_is_no_number_stops_the_machine(
     monkeypatch.setattr(rig.sim.ports.axes, "sample", told)
     rig.tick()
     assert rig.state is State.FAULT
-    assert "Z: its drive tells a position that is no number" in rig.shot.alarms[0].cause
+    assert text("executor.has-no-number", axis="Z") in rig.shot.alarms[0].cause
     monkeypatch.setattr(rig.sim.ports.axes, "sample", sample)
     rig.run(0.5)
     assert not rig.sim.ports.axes.sample().enabled
@@ -79,6 +80,6 @@ def test_a_pot_that_is_no_number_is_a_silent_station(
 
     monkeypatch.setattr(rig.sim.ports.station, "snapshot", told)
     rig.until(State.HOLD, limit=0.5)
-    assert rig.shot.waiting_for == "OPERATOR STATION SILENT"
+    assert rig.shot.waiting_for == text("executor.station-silent")
     assert rig.shot.feed_override == 1.0
     assert rig.shot.alarms == ()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 
 import pytest
@@ -19,6 +20,7 @@ from core.interpreter.machine_requirements import ORIENT, first_needs, needs_of
 from core.language.source import Source
 from core.proving.prove_program import prove
 from tests.executor.rig import Rig
+from tests.texts import pattern, text
 
 MILL = shipped_machine("ac-table-mill")
 ANGLE = 90.0
@@ -149,7 +151,7 @@ def test_the_spindle_switch_keeps_it_from_turning_to_an_angle() -> None:
     turns = rig.sim.machine.spindle_turns()
     rig.run(10.0)
     assert rig.sim.machine.spindle_turns() == turns
-    assert rig.shot.waiting_for == "SPINDLE SWITCH OFF"
+    assert rig.shot.waiting_for == text("executor.spindle-switch-off")
     rig.sim.machine.set_spindle_auto(True)
     rig.until_true(lambda shot: shot.actual[Z] < -352.0)
     assert held(rig)
@@ -176,7 +178,7 @@ def test_a_driver_that_cannot_is_refused_before_the_start() -> None:
     assert ORIENT in {need.what for need in needs}
     rig = Rig(machine=replace(MILL, spindle=replace(MILL.spindle, oriented=False)))
     context = rig.executor._context
-    assert "cannot stop it at an angle" in lacking(context, Proof("x", (), needs=needs))
+    assert re.fullmatch(pattern("executor.no-orient"), lacking(context, Proof("x", (), needs=needs)))
     able = Rig(machine=MILL).executor._context
     assert lacking(able, Proof("x", (), needs=needs)) == ""
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import logging
 import math
+import re
 
 import pytest
 
@@ -28,8 +29,10 @@ from core.interpreter.machine_requirements import ARC, THREAD, Need
 from core.interpreter.modal_state import Modal
 from core.language.source import Source
 from core.motion.axis_limits import MotionLimits
+from tests.coded import raises_code
 from tests.executor.made import Maker
 from tests.executor.played_controller import PlayedController, context_of
+from tests.texts import pattern, text
 
 # --- before a start -----------------------------------------------------------------------------------------
 
@@ -42,14 +45,14 @@ def test_a_controller_that_may_not_begin_says_why() -> None:
 def test_what_a_controller_cannot_do_is_named_with_its_line() -> None:
     context = context_of(PlayedController(caps=frozenset({ARC})))
     proof = Proof("", (), needs=(Need(ARC, 3), Need(THREAD, 5)))
-    assert lacking(context, proof).startswith("line 5: this controller cannot do ")
+    assert re.fullmatch(pattern("executor.controller-cannot", line=5), lacking(context, proof))
 
 
 def test_what_the_machine_has_not_is_named_with_its_line() -> None:
     context = context_of(None)
     context.machine = dataclasses.replace(context.machine, absent=frozenset({"catcher"}))
     proof = Proof("", (), needs=(Need("output catcher", 4),))
-    assert lacking(context, proof).startswith("line 4: this machine has no ")
+    assert re.fullmatch(pattern("executor.no-such-for-line", line=4), lacking(context, proof))
 
 
 def job_of(text: str, **changes: object) -> Job:
@@ -60,8 +63,8 @@ def test_a_job_that_was_proved_with_another_unit_or_rapid_rate_is_outdated() -> 
     job = job_of("G90G94\nX1\nM30\n", last_rapid=50.0)
     left = Modal(rapid_rate=50.0)
     assert outdated(job, left) == ""
-    assert outdated(job, Modal(rapid_rate=50.0, metric=True)) == "the control counts in mm now"
-    assert outdated(job, Modal(rapid_rate=60.0)) == "the rapid rate is another one now"
+    assert outdated(job, Modal(rapid_rate=50.0, metric=True)) == text("executor.counts-in", unit="mm")
+    assert outdated(job, Modal(rapid_rate=60.0)) == text("executor.other-rapid-rate")
 
 
 def test_nothing_asked_for_bars_no_next_part() -> None:
@@ -70,7 +73,11 @@ def test_nothing_asked_for_bars_no_next_part() -> None:
 
 @pytest.mark.parametrize(
     ("held", "guard", "why"),
-    [(True, False, "feed hold is pressed"), (False, True, "the guard is open"), (False, False, "")],
+    [
+        (True, False, text("executor.hold-pressed")),
+        (False, True, text("executor.guard-open-held")),
+        (False, False, ""),
+    ],
 )
 def test_no_drive_test_under_feed_hold_or_with_the_guard_open(held: bool, guard: bool, why: str) -> None:
     context = context_of(None)
@@ -102,18 +109,16 @@ def test_an_input_goes_by_its_name_and_by_its_terminal_and_no_other_is_on() -> N
 
 def test_a_feed_by_the_turn_of_a_spindle_that_stands_is_refused() -> None:
     (block,) = Maker().thread(0.0, -1.0, 0.5).blocks
-    with pytest.raises(AlarmError, match="feeds by the revolution") as told:
+    with raises_code(AlarmError, "spindle-still", text("executor.line-feeds-by-rev", line=1)):
         check_block(block, load_machine())
-    assert told.value.code == "spindle-still"
 
 
 def test_c_does_not_move_while_it_turns_as_the_spindle() -> None:
     machine = dataclasses.replace(load_machine(), c_own_drive=False)
     (block,) = Maker().feed(0.0, -1.0, 0.5).blocks
     block = dataclasses.replace(block, c=90.0, modal=Modal(spindle=1), kind=Kind.ROTATE)
-    with pytest.raises(AlarmError, match="moves C while the spindle turns") as told:
+    with raises_code(AlarmError, "c-is-spindle", text("executor.line-moves-c", line=1)):
         check_block(block, machine)
-    assert told.value.code == "c-is-spindle"
 
 
 def test_a_section_forgets_no_block_that_it_does_not_hold() -> None:
@@ -169,15 +174,15 @@ def test_a_hold_ends_a_change_over_that_is_under_way() -> None:
 
 def test_why_a_spindle_is_not_started_is_told_in_the_order_of_what_hurts() -> None:
     spindle, _ = locked()
-    assert (spindle.start_barred, spindle.why_slow) == ("", "SPINDLE STOPPED")
+    assert (spindle.start_barred, spindle.why_slow) == ("", text("executor.spindle-stopped"))
     spindle.ask(SpindleDemand(600.0))
     assert spindle.why_slow == ""
     spindle.override = 0.0
-    assert spindle.why_slow == "SPINDLE OVERRIDE AT 0"
+    assert spindle.why_slow == text("executor.spindle-override-0")
     spindle.auto = False
-    assert spindle.why_slow == "SPINDLE SWITCH OFF"
+    assert spindle.why_slow == text("executor.spindle-switch-off")
     spindle.guard_open = True
-    assert spindle.why_slow == "GUARD OPEN"
+    assert spindle.why_slow == text("executor.guard-open")
     spindle.dropped("THE FEEDER HAS SWITCHED OFF")
     assert spindle.would_turn == 0.0  # at an override of 0
     spindle.permit()
@@ -186,12 +191,12 @@ def test_why_a_spindle_is_not_started_is_told_in_the_order_of_what_hurts() -> No
 
 def test_an_encoder_that_counts_nothing_or_stands_carries_no_thread() -> None:
     angle = SpindleAngle()
-    with pytest.raises(AlarmError, match="counts nothing"):
+    with raises_code(AlarmError, "thread-no-encoder", text("executor.counts-nothing")):
         angle.turning_at(1.0)
     assert math.isnan(angle.turns)
     for k in range(10):
         angle.note((0.01 * k, 2.5))
-    with pytest.raises(AlarmError, match="does not turn"):
+    with raises_code(AlarmError, "thread-no-encoder", text("executor.does-not-turn")):
         angle.turning_at(0.1)
     angle.note((0.09, 9.0))  # not later than the last one
     assert angle.turns == 2.5

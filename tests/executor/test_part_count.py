@@ -9,6 +9,7 @@ from core.executor.snapshot import Snapshot, Starts, State
 from tests.executor.lines import TOOLS, mdi
 from tests.executor.rig import Rig
 from tests.executor.test_restart import PART, broken_off, prepare, restart, restart_job
+from tests.texts import text
 
 SHORT = "G90G94F300\nX.5\nX0\nM30\n"
 
@@ -27,7 +28,7 @@ def test_a_dry_run_is_no_part() -> None:
     rig.until(State.IDLE)
     assert counted(rig) == (0, 0)
     assert rig.shot.ends == 1
-    assert rig.said("uncounted")[0].startswith("NO COUNT is on")
+    assert rig.said("uncounted")[0].startswith(text("executor.no-count"))
 
 
 @pytest.mark.parametrize("at_the_end", [True, False])
@@ -100,7 +101,7 @@ def test_a_restart_that_leaves_something_out_makes_none() -> None:
     assert not rig.shot.counts
     rig.until(State.IDLE)
     assert counted(rig) == (0, 0)
-    assert "a restart left something of it out" in rig.said("uncounted")[0]
+    assert text("executor.left-out") in rig.said("uncounted")[0]
 
 
 def test_a_restart_in_a_piece_that_was_never_begun_makes_none() -> None:

@@ -13,6 +13,7 @@ from core.machine.hardware_model import AnalogModel
 from core.machine.machine_model import InputModel, Machine
 from core.ports import StationState
 from tests.executor.rig import Rig
+from tests.texts import text
 
 AWAY = "the pendant Knob is not plugged in"
 CUT = "G90G94F300\nG71G72\nG01Z-50F300\nM30\n"
@@ -111,7 +112,7 @@ def test_start_inhibit_bars_every_start_and_going_on() -> None:
     rig.post(CycleStart())
     rig.run(0.1)
     assert rig.state is State.HOLD
-    assert rig.shot.start_refused == "the start inhibit switch is on"
+    assert rig.shot.start_refused == text("executor.inhibit-switch")
     rig.sim.machine.set_input("start_inhibit", False)
     rig.run(0.5)
     rig.post(CycleStart())

@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import errno
 import os
+import re
 from pathlib import Path
 
 import numpy as np
@@ -21,6 +22,7 @@ from core.records.record_errors import RecordError
 from core.records.record_file import open_record
 from core.records.ring_file import NOW, read_ring
 from tests.executor.rig import INCH, Rig
+from tests.texts import pattern
 
 PART = "G90G94\nM03S600\nM08\nG01X.2Z-.2F20\nX0Z0\nM30\n"
 
@@ -217,14 +219,14 @@ def test_a_record_that_is_not_there_is_told(tmp_path: Path) -> None:
     it.run(0.05)
     it.recorder.drain()
     (name,) = {event.record for event in it.events if event.kind == "alarm"}
-    with pytest.raises(RecordError, match="is being written: look again in two seconds"):
+    with pytest.raises(RecordError, match=pattern("executor.record-being-written")):
         it.recorder.alarm_record(name)
     it.recorder.close()
     assert it.recorder.alarm_record(name).times.size
     for gone in ("20250101T000000-alarm507.scope", f"../{tmp_path.name}/{name}", "now.ring/"):
-        with pytest.raises(RecordError, match="no longer kept; the newest 50 are"):
+        with pytest.raises(RecordError, match=pattern("executor.record-gone", number=50)):
             it.recorder.alarm_record(gone)
-    with pytest.raises(RecordError, match="no longer kept"):
+    with pytest.raises(RecordError, match=pattern("executor.record-gone")):
         rig().recorder.alarm_record(name)
 
 
@@ -268,8 +270,9 @@ def test_a_full_disk_is_told_and_the_record_goes_on_in_memory(
 
     monkeypatch.setattr(os, "posix_fallocate", full)
     it = rig(tmp_path)
-    assert it.recorder.trouble.startswith("the record is kept in memory alone: ")
-    assert it.recorder.trouble.endswith("now.ring: the disk is full; make room on it")
+    full_disk = pattern("executor.disk-full", path="now.ring")
+    assert re.search(full_disk, it.recorder.trouble)
+    assert re.fullmatch(pattern("executor.record-in-memory"), it.recorder.trouble)
     it.make_part()
     it.recorder.drain()
     assert it.recorder.between(-np.inf, np.inf).columns["X demand"].max() > 5.0

@@ -20,6 +20,7 @@ from core.proving.prove_program import prove
 from tests.executor import lines
 from tests.executor.lines import TOOLS, mdi
 from tests.executor.rig import INCH, Rig
+from tests.texts import text
 
 pytestmark = pytest.mark.long
 
@@ -167,7 +168,7 @@ def test_no_start_from_another_place_than_was_proved() -> None:
     job = restart_job(rig, 8)
     mdi(rig, "G91", "Z.01F50")
     prepare(rig, job)
-    assert refused(rig) == "the slides have moved since this was proved: search for the line again"
+    assert refused(rig) == text("executor.moved-since", remedy=text("executor.search-again"))
 
 
 def test_no_start_with_the_collet_otherwise() -> None:
@@ -175,7 +176,7 @@ def test_no_start_with_the_collet_otherwise() -> None:
     broken_off(rig)
     mdi(rig, "M13")
     prepare(rig, restart_job(rig, 8))
-    assert refused(rig) == "the collet is open and must be closed at line 8: use MDI"
+    assert refused(rig) == text("executor.must-be", now="open", needed="closed", line=8)
 
 
 def test_no_start_of_a_program_that_was_loaded_anew() -> None:
@@ -184,7 +185,7 @@ def test_no_start_of_a_program_that_was_loaded_anew() -> None:
     job = restart_job(rig, 8)
     rig.load(PART + "(OTHER)\n", TOOLS)
     prepare(rig, job)
-    assert refused(rig) == "the program was loaded anew: search for the line again"
+    assert refused(rig) == text("executor.loaded-anew")
 
 
 def test_loading_a_program_takes_a_prepared_restart_back() -> None:
@@ -194,7 +195,7 @@ def test_loading_a_program_takes_a_prepared_restart_back() -> None:
     assert rig.shot.starts is Starts.RESTART
     rig.load(PART, TOOLS)
     assert (rig.shot.starts, rig.shot.prepared) == (Starts.RESTART, "")
-    assert refused(rig) == "no restart is ready: search a line and confirm it"
+    assert refused(rig) == text("executor.no-restart")
 
 
 @pytest.mark.parametrize(("seconds", "starts"), [(0.3, False), (0.9, True)])
@@ -209,7 +210,7 @@ def test_palms_in_one_slap_with_the_answer_start_no_restart(seconds: float, star
     rig.sim.machine.press_start()
     rig.run(0.1)
     assert (rig.state is not State.IDLE) is starts
-    assert ("that was meant just now" in rig.shot.start_refused) is not starts
+    assert (text("executor.meant-just-now") in rig.shot.start_refused) is not starts
 
 
 def test_a_restart_that_is_taken_back_asks_for_no_second_look() -> None:
@@ -222,7 +223,7 @@ def test_a_restart_that_is_taken_back_asks_for_no_second_look() -> None:
     rig.sim.machine.press_start()
     rig.run(0.1)
     assert rig.state is State.IDLE
-    assert rig.shot.start_refused == "no restart is ready: search a line and confirm it"
+    assert rig.shot.start_refused == text("executor.no-restart")
 
 
 def test_a_way_beyond_the_travel_is_found_by_the_proof() -> None:
@@ -237,7 +238,7 @@ def test_a_way_beyond_the_travel_is_found_by_the_proof() -> None:
     )
     setup = replace(job.setup, begin=begin._replace(approach=far))
     report = prove(job.source, setup, rig.machine)
-    assert any("beyond the travel limit" in each.message for each in report.errors)
+    assert any(each.code == "soft-limit" for each in report.errors)
 
 
 def test_an_unproved_restart_does_not_start() -> None:
@@ -245,9 +246,9 @@ def test_an_unproved_restart_does_not_start() -> None:
     broken_off(rig)
     job = restart_job(rig, 8)
     rig.post(Prepare(Starts.RESTART, job))
-    assert refused(rig) == "the program is not proved yet"
+    assert refused(rig) == text("executor.not-proved")
     rig.post(Prepare(Starts.RESTART, job, Proof("another", ())))
-    assert refused(rig).startswith("the proof belongs to another program")
+    assert refused(rig).startswith(text("executor.other-proof"))
 
 
 def test_nothing_is_prepared_while_a_program_is_under_way() -> None:
@@ -256,7 +257,7 @@ def test_nothing_is_prepared_while_a_program_is_under_way() -> None:
     job = rig.executor._control.status.job
     assert job is not None
     rig.post(Prepare(Starts.RESTART, job))
-    assert "is under way" in rig.said("refused")[-1]
+    assert text("executor.program-keeps-others-out") in rig.said("refused")[-1]
     rig.post(LoadJob(job))
     assert rig.shot.starts is Starts.PROGRAM
 
@@ -288,7 +289,7 @@ def test_no_restart_of_a_program_with_a_tool_that_nobody_has_set() -> None:
     bare = replace(whole, tools_set=frozenset())
     rig.post(LoadJob(bare, Proof(bare.digest, (), tools=(1,))))
     prepare(rig, job)
-    assert refused(rig) == "tool offset T1 has never been set"
+    assert refused(rig) == text("executor.tool-offset-unset", tools="T1")
 
 
 GROOVE = (
@@ -463,4 +464,4 @@ def test_a_way_out_does_not_start_from_another_place_than_was_proved() -> None:
     report = prove(job.reading, job.setup, rig.machine)
     mdi(rig, "G91", "X.01F5")
     rig.post(Prepare(Starts.LINE, job, proof_of(job, report)))
-    assert refused(rig) == "the slides have moved since this was proved: ask for the way out again"
+    assert refused(rig) == text("executor.moved-since", remedy=text("executor.ask-way-out-again"))

@@ -14,6 +14,7 @@ from core.machine.machine_model import Machine
 from core.ports import DriverError, Unknown
 from core.table_schema import MachineFileError
 from tests.executor.rig import Rig
+from tests.texts import text
 
 PART = "G90G94F300\nX1Z.1\nG01F30Z-1\nG00Z.1\nM30\n"
 STOPPED = PART.replace("M30", "M00\nM30")
@@ -174,8 +175,8 @@ def test_a_lamp_that_is_refused_is_told_once_and_stops_nothing(rig: Rig, error: 
     rig.run(1.0)
     assert rig.state is State.RUN
     assert broken.tried <= 8  # four lamps, and no more for five seconds
-    assert [text for text in rig.said("disturbed") if "LAMP_GREEN" in text] == [
-        f"LAMP_GREEN CANNOT BE SWITCHED: {error}"
+    assert [said for said in rig.said("disturbed") if "LAMP_GREEN" in said] == [
+        text("executor.lamp-not-switched", lamp="LAMP_GREEN", why=error)
     ]
 
 
@@ -201,7 +202,7 @@ def test_the_lamps_are_tested_by_hand_at_rest_alone(rig: Rig) -> None:
     rig.post(ForceOutput("lamp_red", True))
     rig.run(0.1)
     assert tower(rig) == {"green"}
-    assert "only at rest" in rig.said("refused")[-1]
+    assert text("executor.output-not-now", output="lamp_red", state="RUNNING") in rig.said("refused")[-1]
 
 
 def test_a_machine_at_rest_sleeps_with_a_lamp_on(rig: Rig) -> None:

@@ -30,9 +30,11 @@ from core.executor.spindle_orientation import Orientation
 from core.executor.standstill import at_speed
 from core.executor.thread_path import ThreadPath
 from core.ports import AxisSample, Stop
+from tests.coded import raises_code
 from tests.executor.played_controller import context_of
 from tests.executor.rig import Rig
 from tests.executor.test_thread_curve import LIMITS, OUT, place, thread
+from tests.texts import text
 
 # --- what is asked for and not done -------------------------------------------------------------------------
 
@@ -40,15 +42,15 @@ from tests.executor.test_thread_curve import LIMITS, OUT, place, thread
 @pytest.mark.parametrize(
     ("asked", "why"),
     [
-        (EnableDrives(), "drives cannot be switched on in state READY"),
-        (SetSwitch("no such", True), "there is no switch 'no such'"),
-        (FeedOverride(1.51), "feed override 1.51 is not between 0 and 1.5"),
-        (FeedOverride(-0.01), "feed override -0.01 is not between 0 and 1.5"),
-        (SpindleLimit(0.0), "spindle limit 0 is not between 0 and "),
-        (SpindleLimit(1e5), "spindle limit 100000 is not between 0 and "),
-        (ConfirmStart("12:00"), "there is no interrupted job to be answered for now"),
-        (Home("Q"), "homing: this machine has no axis Q to home"),
-        (ForceOutput("no such", True), "no such"),
+        (EnableDrives(), text("executor.no-drives-on", state="READY")),
+        (SetSwitch("no such", True), text("executor.no-switch", switch="'no such'")),
+        (FeedOverride(1.51), text("executor.feed-override-range", value="1.51")),
+        (FeedOverride(-0.01), text("executor.feed-override-range", value="-0.01")),
+        (SpindleLimit(0.0), text("executor.spindle-limit-range", rpm=0, limit=3500)),
+        (SpindleLimit(1e5), text("executor.spindle-limit-range", rpm=100000, limit=3500)),
+        (ConfirmStart("12:00"), text("executor.no-interrupted-job")),
+        (Home("Q"), text("executor.homing", why=text("executor.no-home-axis", axis="Q"))),
+        (ForceOutput("no such", True), text("executor.no-output", output="no such")),
     ],
 )
 def test_what_cannot_be_is_refused_with_its_reason_and_changes_nothing(asked: Command, why: str) -> None:
@@ -68,7 +70,7 @@ def test_drives_stay_off_while_an_alarm_stands_and_no_jog_begins() -> None:
     rig.sim.machine.press_estop()
     rig.run(0.1)
     rig.post(Jog("X", 1.0, 0.2))
-    assert rig.said("refused")[-1].startswith("no jog in state ")
+    assert rig.said("refused")[-1] == text("executor.no-jog", state="E-STOP")
     rig.post(EnableDrives())
     assert "drives" in rig.said("refused")[-1]
     assert not rig.sim.ports.axes.sample().enabled
@@ -78,7 +80,10 @@ def test_a_bar_for_the_next_part_is_told_once_and_taken_back_once() -> None:
     rig = Rig()
     for why in ("the insert is worn", "the insert is worn", "", ""):
         rig.post(BarNextPart(why))
-    assert rig.said("switch") == ["no other part: the insert is worn", "parts may go on"]
+    assert rig.said("switch") == [
+        text("executor.no-other-part", why="the insert is worn"),
+        text("executor.parts-may-go-on"),
+    ]
 
 
 # --- drive tests --------------------------------------------------------------------------------------------
@@ -214,7 +219,7 @@ def test_a_wait_for_the_speed_says_what_keeps_the_spindle() -> None:
     wait = at_speed(context)
     assert wait.label() == "AT SPEED"
     context.spindle.override = 0.0
-    assert wait.label() == "SPINDLE OVERRIDE AT 0"
+    assert wait.label() == text("executor.spindle-override-0")
 
 
 def test_the_time_limit_for_the_speed_counts_from_when_the_operator_lets_it_turn() -> None:
@@ -277,10 +282,10 @@ def test_an_angle_that_the_drive_lets_slip_is_an_alarm_once() -> None:
     held.bring(45.0, 0)
     held.look()
     port.there = False
-    with pytest.raises(AlarmError, match="the drive no longer holds it at 45 degrees"):
+    with raises_code(AlarmError, "spindle-orient", text("executor.not-held-at", angle=45)):
         held.look()
     held.look()
-    with pytest.raises(AlarmError, match="nothing at this machine stops the spindle at an angle"):
+    with raises_code(AlarmError, "spindle-orient", text("executor.nothing-orients")):
         Orientation(None, 100.0).bring(0.0, 0)
 
 
@@ -337,9 +342,9 @@ def test_homing_of_what_is_not_lost_or_not_there_does_not_begin_and_given_up_it_
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     order, context, asked = homing(monkeypatch)
-    assert order.begin("Q") == "this machine has no axis Q to home"
+    assert order.begin("Q") == text("executor.no-home-axis", axis="Q")
     context.sample = sample(context, FOUND)
-    assert order.begin("") == "every axis knows its position"
+    assert order.begin("") == text("executor.all-homed")
     context.sample = sample(context, LOST)
     order.begin("X")
     order.step()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import re
 
 import pytest
 
@@ -12,15 +13,17 @@ from core.executor.job import Proof
 from core.executor.snapshot import Starts, State
 from core.executor.start_conditions import TIME_TO_READ
 from tests.executor.rig import TICK, Rig
+from tests.texts import pattern, text
 
 CUT = "G90G94F300\nM03S1500\nG01F10Z-1\nM30\n"
-SAID = "THE SPINDLE STARTS AT 1500 RPM FORWARD"
+WARNED = "LINE 3: RAPID-INTO-STOCK"
+SAID = text("executor.spindle-starts", rpm=1500, direction="FORWARD")
 
 
-def held(text: str = CUT) -> Rig:
+def held(program: str = CUT) -> Rig:
     """In feed hold in the middle of a cut, at rest, the spindle turning."""
     rig = Rig()
-    rig.start(text)
+    rig.start(program)
     rig.until_true(lambda shot: shot.actual[1] < -0.5)
     rig.post(FeedHold())
     rig.until(State.HOLD)
@@ -63,7 +66,7 @@ def test_the_announcement_names_the_way_it_turns(code: str, way: str) -> None:
     switched_off(rig)
     rig.sim.machine.set_spindle_auto(True)
     rig.run(0.1)
-    assert rig.shot.announced == (f"THE SPINDLE STARTS AT 1500 RPM {way}",)
+    assert rig.shot.announced == (text("executor.spindle-starts", rpm=1500, direction=way),)
 
 
 def test_a_start_that_came_before_the_announcement_could_be_read_is_refused() -> None:
@@ -74,7 +77,7 @@ def test_a_start_that_came_before_the_announcement_could_be_read_is_refused() ->
     rig.run(TIME_TO_READ - 2 * TICK)
     rig.post(CycleStart())
     assert rig.state is State.HOLD
-    assert rig.shot.start_refused == f"look first: {SAID}; then start again"
+    assert rig.shot.start_refused == text("executor.look-first", what=SAID)
     never_turns(rig, 1.0)
     rig.post(CycleStart())
     assert (rig.state, rig.shot.start_refused) == (State.WAIT, "")
@@ -96,11 +99,11 @@ def test_a_pot_turned_up_meanwhile_is_another_announcement() -> None:
     rig.until_true(lambda shot: shot.rpm_actual == 0.0)
     rig.sim.machine.set_spindle_pot(0.1)
     never_turns(rig)
-    assert rig.shot.announced == ("THE SPINDLE STARTS AT 150 RPM FORWARD",)
+    assert rig.shot.announced == (text("executor.spindle-starts", rpm=150, direction="FORWARD"),)
     rig.sim.machine.set_spindle_pot(1.0)
     rig.until_true(lambda shot: shot.announced == (SAID,))
     rig.post(CycleStart())
-    assert rig.shot.start_refused == f"look first: {SAID}; then start again"
+    assert rig.shot.start_refused == text("executor.look-first", what=SAID)
     never_turns(rig, 1.0)
 
 
@@ -110,10 +113,10 @@ def test_a_pot_at_0_stops_and_more_turns_nothing_before_the_palms() -> None:
     rig.until_true(lambda shot: shot.actual[1] < -0.5)
     rig.sim.machine.set_spindle_pot(0.0)
     rig.until(State.HOLD)
-    assert rig.shot.waiting_for == "SPINDLE OVERRIDE AT 0"
+    assert rig.shot.waiting_for == text("executor.spindle-override-0")
     rig.until_true(lambda shot: shot.rpm_actual == 0.0)
     rig.post(CycleStart())
-    assert rig.shot.start_refused == "spindle override at 0"
+    assert rig.shot.start_refused == text("executor.spindle-override-0-refused")
     rig.sim.machine.set_spindle_pot(1.0)
     never_turns(rig)
     assert rig.shot.announced == (SAID,)
@@ -191,7 +194,7 @@ def test_the_collet_must_be_closed_before_a_spindle_that_waits_starts() -> None:
     rig.sim.machine.set_spindle_auto(True)
     rig.run(1.0)
     rig.post(CycleStart())
-    assert rig.shot.start_refused == "the spindle is not started with the collet open: close it first"
+    assert rig.shot.start_refused == text("executor.collet-open")
     never_turns(rig)
 
 
@@ -206,18 +209,17 @@ def test_a_collet_that_the_program_has_opened_is_closed_behind_a_reset() -> None
     stop = rig.shot.stop
     assert stop is not None
     assert stop.number == 223
-    assert "with the collet open: Reset" in stop.remedy
     rig.post(CycleStart())
-    assert rig.shot.start_refused == (
-        "the program has opened the collet, so the spindle does not start: Reset, close it, start again"
-    )
+    assert rig.shot.start_refused == text("executor.collet-opened-by-program")
     never_turns(rig)
     rig.post(Reset())
     rig.until(State.IDLE)
     rig.post(ForceOutput("collet", True))
     rig.run(1.0)
     rig.post(CycleStart())
-    assert rig.shot.start_refused.startswith("line 4 of PART was interrupted")  # the collet is no reason
+    assert re.fullmatch(
+        pattern("executor.interrupted-in-part", line=4, program="PART"), rig.shot.start_refused
+    )  # the collet is no reason
 
 
 # --- between programs: M03 in MDI, then the switch, as the manual has it
@@ -237,7 +239,7 @@ def left_turning() -> Rig:
 def test_between_programs_the_switch_stops_it_and_starts_it_again() -> None:
     rig = left_turning()
     switched_off(rig)
-    assert rig.shot.announced == (f"SWITCH TO AUTO: {SAID}",)
+    assert rig.shot.announced == (text("executor.switch-to-auto", what=SAID),)
     rig.sim.machine.set_spindle_auto(True)
     rig.until_true(lambda shot: shot.rpm_actual == pytest.approx(1500.0))
     assert rig.shot.announced == ()
@@ -250,7 +252,7 @@ def test_a_switch_that_only_flickered_does_not_start_it() -> None:
     rig.sim.machine.set_spindle_auto(True)
     rig.until_true(lambda shot: shot.rpm_actual == 0.0)
     never_turns(rig)
-    assert any(SAID in text for text in rig.said("refused"))
+    assert any(SAID in said for said in rig.said("refused"))
 
 
 def test_a_pot_raised_from_0_between_programs_turns_nothing() -> None:
@@ -294,7 +296,7 @@ def test_the_switch_does_not_start_it_with_the_collet_open() -> None:
     rig.sim.machine.set_input("collet_closed", False)
     rig.sim.machine.set_spindle_auto(True)
     never_turns(rig)
-    assert "the spindle is not started with the collet open: close it first" in rig.said("refused")
+    assert text("executor.collet-open") in rig.said("refused")
 
 
 def test_a_limit_is_not_raised_under_a_spindle_that_turns() -> None:
@@ -305,12 +307,12 @@ def test_a_limit_is_not_raised_under_a_spindle_that_turns() -> None:
     rig.post(SpindleLimit(3000.0))
     rig.run(2.0)
     assert rig.shot.rpm_actual == pytest.approx(500.0)
-    assert any("while the spindle stands" in text for text in rig.said("refused"))
+    assert any(text("executor.limit-while-still") in said for said in rig.said("refused"))
     rig.post(SpindleLimit(300.0))
     rig.until_true(lambda shot: shot.rpm_actual == pytest.approx(300.0))
 
 
-def guarded(text: str = CUT) -> Rig:
+def guarded(program: str = CUT) -> Rig:
     """A lathe whose file says that its guard stops it; the guard is closed, the tool in the cut."""
     machine = load_machine()
     rig = Rig(
@@ -319,7 +321,7 @@ def guarded(text: str = CUT) -> Rig:
         )
     )
     rig.sim.machine.set_input("guard", True)
-    rig.start(text)
+    rig.start(program)
     rig.until_true(lambda shot: shot.actual[1] < -0.5)
     return rig
 
@@ -333,7 +335,7 @@ def test_an_opened_guard_stops_feed_and_spindle_and_closing_it_starts_nothing() 
     assert (rig.shot.stop.code, rig.shot.stop.number) == ("guard-open", 604)
     rig.post(CycleStart())
     rig.run(0.1)
-    assert rig.shot.start_refused == "the guard is open: close it"
+    assert rig.shot.start_refused == text("executor.guard-close")
     rig.sim.machine.set_input("guard", True)
     never_turns(rig)
     assert rig.state is State.HOLD
@@ -358,7 +360,7 @@ def test_no_start_with_the_guard_open_and_none_by_closing_it() -> None:
     rig.sim.machine.set_input("guard", False)
     rig.start(CUT)
     rig.run(0.2)
-    assert (rig.state, rig.shot.start_refused) == (State.IDLE, "the guard is open: close it")
+    assert (rig.state, rig.shot.start_refused) == (State.IDLE, text("executor.guard-close"))
     rig.sim.machine.set_input("guard", True)
     never_turns(rig, 1.0)
     assert rig.state is State.IDLE
@@ -370,7 +372,7 @@ def test_a_refusal_ends_with_its_cause() -> None:
     rig.until(State.HOLD)
     rig.post(CycleStart())
     rig.run(0.5)
-    assert rig.shot.start_refused == "the guard is open: close it"
+    assert rig.shot.start_refused == text("executor.guard-close")
     rig.sim.machine.set_input("guard", True)
     rig.run(0.1)
     assert rig.shot.start_refused == ""
@@ -390,11 +392,11 @@ def warned(*what: str) -> Rig:
 
 
 def test_what_was_warned_of_is_read_before_the_first_start() -> None:
-    rig = warned("LINE 3: RAPID-INTO-STOCK", "LINE 4: CUTS-AIR")
-    said = "WARNING: LINE 3: RAPID-INTO-STOCK (1 MORE)"
+    rig = warned(WARNED, "LINE 4: CUTS-AIR")
+    said = text("executor.warning", what=text("executor.more-warnings", what=WARNED, count=1))
     rig.post(CycleStart())
     assert rig.state is State.IDLE
-    assert rig.shot.start_refused == f"look first: {said}; then start again"
+    assert rig.shot.start_refused == text("executor.look-first", what=said)
     assert rig.shot.announced == (said,)
     rig.run(TIME_TO_READ)
     rig.post(CycleStart())
@@ -405,9 +407,9 @@ def test_what_was_warned_of_is_read_before_the_first_start() -> None:
 def test_it_is_read_while_the_drives_are_off_too() -> None:
     rig = Rig()
     job = rig.load(CUT)
-    rig.post(GiveProof(Proof(job.digest, (), warned=("LINE 3: RAPID-INTO-STOCK",))))
+    rig.post(GiveProof(Proof(job.digest, (), warned=(WARNED,))))
     assert rig.state is State.DISABLED
-    assert rig.shot.announced == ("WARNING: LINE 3: RAPID-INTO-STOCK",)
+    assert rig.shot.announced == (text("executor.warning", what=WARNED),)
     rig.run(1.0)
     rig.ready()
     rig.post(CycleStart())
@@ -415,18 +417,18 @@ def test_it_is_read_while_the_drives_are_off_too() -> None:
 
 
 def test_it_stands_again_between_two_parts_and_keeps_nobody_from_the_next() -> None:
-    rig = warned("LINE 3: RAPID-INTO-STOCK")
+    rig = warned(WARNED)
     rig.run(TIME_TO_READ)
     rig.post(CycleStart())
     rig.until(State.IDLE)
     rig.run(TIME_TO_READ + TICK)
-    assert rig.shot.announced == ("WARNING: LINE 3: RAPID-INTO-STOCK",)
+    assert rig.shot.announced == (text("executor.warning", what=WARNED),)
     rig.post(CycleStart())
     assert rig.state in {State.RUN, State.WAIT}
 
 
 def test_it_is_no_matter_of_a_line_of_mdi_nor_of_another_program() -> None:
-    rig = warned("LINE 3: RAPID-INTO-STOCK")
+    rig = warned(WARNED)
     rig.post(Prepare(Starts.LINE))
     assert rig.shot.announced == ()
     rig.post(Prepare(Starts.PROGRAM))
@@ -436,7 +438,7 @@ def test_it_is_no_matter_of_a_line_of_mdi_nor_of_another_program() -> None:
 
 
 def test_going_on_after_a_hold_announces_nothing_of_it() -> None:
-    rig = warned("LINE 3: RAPID-INTO-STOCK")
+    rig = warned(WARNED)
     rig.run(TIME_TO_READ)
     rig.post(CycleStart())
     rig.until_true(lambda shot: shot.actual[1] < -0.5)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import re
 
 import pytest
 
@@ -25,6 +26,7 @@ from core.interpreter.job_setup import Setup, ToolOffset
 from core.interpreter.machine_requirements import THREAD, Need
 from core.language.source import Dialect, Source
 from tests.executor.rig import Rig, unhomed_machine
+from tests.texts import pattern, text
 
 TEXT = "G90G94F300\nX1\nM30\n"
 
@@ -46,7 +48,7 @@ def refused(rig: Rig) -> str:
 def test_without_a_program() -> None:
     rig = Rig()
     rig.ready()
-    assert refused(rig) == "no program is loaded"
+    assert refused(rig) == text("executor.no-program")
 
 
 def test_without_a_proof_until_it_comes() -> None:
@@ -55,7 +57,7 @@ def test_without_a_proof_until_it_comes() -> None:
     job = make_job(Source("PART", TEXT), rig.load(TEXT).setup)
     rig.post(LoadJob(job))
     assert rig.shot.proof_wanted
-    assert "not proved" in refused(rig)
+    assert text("executor.not-proved") in refused(rig)
     rig.post(GiveProof(Proof(job.digest, ())))
     assert not rig.shot.proof_wanted
     rig.post(CycleStart())
@@ -68,7 +70,7 @@ def test_with_a_proof_of_another_program() -> None:
     job = rig.load(TEXT)
     other = make_job(Source("PART", TEXT.replace("X1", "X2")), job.setup)
     rig.post(LoadJob(other, Proof(job.digest, ())))
-    assert "another program" in refused(rig)
+    assert text("executor.other-proof") in refused(rig)
 
 
 def test_with_offsets_changed_since_the_proof() -> None:
@@ -78,7 +80,7 @@ def test_with_offsets_changed_since_the_proof() -> None:
     other = make_job(job.source, dataclasses.replace(job.setup, block_delete=True))
     assert other.digest != job.digest
     rig.post(LoadJob(other, Proof(job.digest, ())))
-    assert "other offsets" in refused(rig)
+    assert text("executor.other-proof") in refused(rig)
 
 
 def test_with_errors_in_the_proof() -> None:
@@ -86,7 +88,7 @@ def test_with_errors_in_the_proof() -> None:
     rig.ready()
     job = rig.load(TEXT)
     rig.post(GiveProof(Proof(job.digest, ("line 2: no",))))
-    assert refused(rig) == "the program has errors: line 2: no"
+    assert refused(rig) == text("executor.program-errors", errors="line 2: no")
 
 
 def test_with_a_tool_that_was_never_set() -> None:
@@ -94,7 +96,7 @@ def test_with_a_tool_that_was_never_set() -> None:
     rig.ready()
     job = rig.load(TEXT)
     rig.post(GiveProof(Proof(job.digest, (), tools=(3, 4))))
-    assert refused(rig) == "tool offset T3, T4 has never been set"
+    assert refused(rig) == text("executor.tool-offset-unset", tools="T3, T4")
 
 
 def test_a_tool_that_the_program_measures_itself_needs_no_offset() -> None:
@@ -102,13 +104,13 @@ def test_a_tool_that_the_program_measures_itself_needs_no_offset() -> None:
     rig.ready()
     job = rig.load(TEXT)
     rig.post(GiveProof(Proof(job.digest, (), tools=(3, 4), measured=(4,))))
-    assert refused(rig) == "tool offset T3 has never been set"
+    assert refused(rig) == text("executor.tool-offset-unset", tools="T3")
 
 
 def test_with_drives_off() -> None:
     rig = Rig()
     rig.load(TEXT)
-    assert "drives are off" in refused(rig)
+    assert text("executor.drives-off") in refused(rig)
 
 
 def test_in_estop_and_after_its_release() -> None:
@@ -122,7 +124,7 @@ def test_in_estop_and_after_its_release() -> None:
     rig.sim.machine.release_estop()
     rig.run(0.5)
     assert rig.state is State.DISABLED
-    assert "drives are off" in refused(rig)
+    assert text("executor.drives-off") in refused(rig)
     rig.post(EnableDrives())
     rig.post(CycleStart())
     assert rig.state is State.RUN
@@ -147,7 +149,7 @@ def test_with_an_axis_that_is_not_homed() -> None:
     rig = Rig(unhomed_machine())
     rig.ready()
     rig.load(TEXT)
-    assert refused(rig) == "Z must be homed first"
+    assert refused(rig) == text("executor.not-homed", axes="Z")
 
 
 def test_with_a_silent_station() -> None:
@@ -155,14 +157,14 @@ def test_with_a_silent_station() -> None:
     rig.ready()
     rig.load(TEXT)
     rig.sim.machine.station_silent()
-    assert refused(rig) == "operator station silent"
+    assert refused(rig) == text("executor.station-silent-refused")
 
 
 def test_one_button_is_not_two_hands_on_a_real_machine() -> None:
     rig = Rig(dataclasses.replace(load_machine(), backend="canopen"))
     rig.ready()
     rig.load(TEXT)
-    assert refused(rig) == "press both palm buttons"
+    assert refused(rig) == text("executor.press-palms")
     rig.sim.machine.press_start()
     rig.tick()
     assert rig.state is State.RUN
@@ -197,7 +199,7 @@ def test_another_program_during_a_cycle_is_refused() -> None:
     rig.start("G90G94F300\nX3\nM00\nM30\n")
     digest = rig.shot.program
     rig.load("G90G94F300\nX-3\nM30\n")
-    assert "under way" in rig.said("refused")[-1]
+    assert text("executor.program-keeps-others-out") in rig.said("refused")[-1]
     rig.until(State.PROGRAM_STOP)
     rig.load("G90G94F300\nX-3\nM30\n")
     rig.post(CycleStart())
@@ -226,7 +228,7 @@ def test_nothing_moves_in_dead_states(state: State, command: Command) -> None:
 def test_a_spindle_limit_out_of_range_is_refused(rpm: float) -> None:
     rig = Rig()
     rig.post(SpindleLimit(rpm))
-    assert "spindle limit" in rig.said("refused")[0]
+    assert text("executor.spindle-limit-range", rpm=f"{rpm:g}", limit=3500) in rig.said("refused")[0]
     rig.start("G90G94F300\nM03S3000\nG04F1\nM30\n")
     rig.run(0.5)
     assert rig.shot.rpm_command == 3000
@@ -252,7 +254,7 @@ def test_a_press_that_a_stalled_host_finds_too_late_moves_nothing(command: Comma
     rig.clock.advance(2.0)
     rig.tick()
     assert rig.state is State.IDLE
-    assert "too late" in rig.said("refused")[-1]
+    assert text("executor.came-too-late", command=type(command).__name__) in rig.said("refused")[-1]
     assert nothing_moved(rig)
 
 
@@ -276,7 +278,7 @@ def test_allowed_transitions(old: State, new: State) -> None:
 
 @pytest.mark.parametrize(("old", "new"), FORBIDDEN)
 def test_forbidden_transitions(old: State, new: State) -> None:
-    with pytest.raises(TransitionError, match=f"{old.value} cannot become {new.value}"):
+    with pytest.raises(TransitionError, match=f"{old.value} .* {new.value}$"):
         demand_allowed(old, new)
 
 
@@ -301,11 +303,11 @@ def test_a_forbidden_transition_inside_is_an_alarm(monkeypatch: pytest.MonkeyPat
 def test_a_thread_on_a_spindle_without_an_encoder(monkeypatch: pytest.MonkeyPatch) -> None:
     rig = Rig()
     rig.ready()
-    text = "G90G94F300\nT1\nM03S500\nX.5Z.2\nG33X.45Z-.5K.05\nM30\n"
-    job = make_job(Source("thread.nc", text), Setup(tools={1: ToolOffset(0.0, 0.0, 0.0)}))
+    program = "G90G94F300\nT1\nM03S500\nX.5Z.2\nG33X.45Z-.5K.05\nM30\n"
+    job = make_job(Source("thread.nc", program), Setup(tools={1: ToolOffset(0.0, 0.0, 0.0)}))
     monkeypatch.setattr(rig.sim.ports.spindle, "angle", lambda: None)
     rig.post(LoadJob(job, Proof(job.digest, (), tools=(1,), needs=(Need(THREAD, 5),))))
-    assert refused(rig) == "line 5: a thread needs an encoder on the spindle, and there is none"
+    assert refused(rig) == text("executor.thread-no-encoder", line=5)
 
 
 def test_an_m_function_that_nothing_answers_says_which_lines_bind_it() -> None:
@@ -314,8 +316,9 @@ def test_an_m_function_that_nothing_answers_says_which_lines_bind_it() -> None:
     job = make_job(Source("part.mpf", "M80\nG0 X30\nM30\n", Dialect.SINUMERIK), Setup())
     rig.post(LoadJob(job, Proof(job.digest, (), needs=(Need("M80", 1),))))
     said = refused(rig)
-    assert said.startswith("line 1: nothing on this machine answers M80; write 80 = { output =")
-    assert said.endswith("or 80 = { ignored = true } if it does nothing on this machine")
+    assert re.match(pattern("executor.no-m-code", line=1, code="M80"), said)
+    for written in ("80 = { output =", "80 = { ignored = true }", "[m_codes]"):
+        assert written in said
 
 
 def slapped(rig: Rig, seconds: float) -> None:

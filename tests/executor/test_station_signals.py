@@ -8,12 +8,13 @@ import pytest
 
 from core.executor.station_signals import StationWatch
 from core.ports import StationState
+from tests.texts import text
 
 
 @pytest.mark.parametrize("state", [StationState(age=1e3), StationState(feed_pot=math.nan)])
 def test_a_station_that_was_never_heard_is_silent_and_its_switch_unknown(state: StationState) -> None:
     told = StationWatch().read(state, 0.0)
-    assert (told.trouble, told.auto) == ("OPERATOR STATION SILENT", True)
+    assert (told.trouble, told.auto) == (text("executor.station-silent"), True)
     assert (told.start, told.turned_on) == (False, False)
 
 

@@ -16,7 +16,9 @@ from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.modal_state import Modal
 from core.motion.axis_limits import MotionLimits
 from core.ports import Segments
+from tests.coded import raises_code
 from tests.executor.played_controller import context_of
+from tests.texts import text
 
 A = 3048.0
 LIMITS = MotionLimits(vmax=(127.0, 127.0, 1200.0), amax=(A, A, 12000.0))
@@ -92,7 +94,7 @@ def test_a_lead_that_grows_is_followed_turn_by_turn() -> None:
 
 @pytest.mark.parametrize("block", [thread(1, -4.0, -4.0, 1.0), thread(1, 0.0, -4.0, 0.0)])
 def test_a_thread_without_way_or_lead_is_refused(block: Block) -> None:
-    with pytest.raises(AlarmError, match="no length or no lead"):
+    with raises_code(AlarmError, "program", text("executor.thread-nothing")):
         ThreadPath.of([block], LIMITS)
 
 
@@ -140,22 +142,23 @@ def retract(measured: float, behind: Sequence[Block], **words: object) -> Thread
 @pytest.mark.parametrize(
     ("measured", "why"),
     [
-        (-300.0, "the spindle turned the wrong way, at 300 rpm"),
-        (20.0, "the spindle fell to 20 of 600 rpm"),
+        (-300.0, text("executor.wrong-direction", rpm=300)),
+        (20.0, text("executor.spindle-fell", rpm=20, ordered=600)),
     ],
 )
 def test_why_a_thread_was_left_is_told(measured: float, why: str) -> None:
     lost = retract(measured, [OUT])
     lost.demand_left((8.0, -2.0, 0.0))  # not out yet
-    with pytest.raises(AlarmError, match=f"{why}: the tool left the thread at Z-2.000"):
+    with raises_code(AlarmError, "thread-lost", text("executor.left-thread", why=why, z="-2.000")):
         lost.demand_left((9.0, -2.0, 0.0))
 
 
 def test_a_thread_left_in_its_pull_out_is_told_so_and_inches_are_inches() -> None:
-    with pytest.raises(AlarmError, match="in the pull-out: the thread is cut"):
+    fell = text("executor.spindle-fell", rpm=20, ordered=600)
+    with raises_code(AlarmError, "thread-lost", text("executor.thread-cut", why=fell)):
         retract(20.0, []).demand_left((5.0, -4.0, 0.0))
     inch = retract(20.0, [OUT], modal=Modal(metric=False))
-    with pytest.raises(AlarmError, match=r"at Z-0\.1000, behind it"):
+    with raises_code(AlarmError, "thread-lost", text("executor.left-thread", why=fell, z="-0.1000")):
         inch.demand_left((9.0, -2.54, 0.0))
     way = inch.way_out((5.0, -2.54, 0.0))
     assert (way.x0, way.z0, way.x, way.z) == (5.0, -2.54, 9.0, -2.54)

@@ -6,6 +6,7 @@ of a pass, at any speed and lead, on a driver with a gear and on one without.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
@@ -20,6 +21,7 @@ from core.interpreter.job_setup import ToolOffset
 from core.ports import DriverError
 from drivers.clocks import StepClock
 from tests.executor.rig import INCH, CreepingClock, Rig
+from tests.texts import pattern, text
 
 pytestmark = pytest.mark.long
 
@@ -206,7 +208,7 @@ def test_the_alarm_tells_why_and_what_the_thread_is() -> None:
     rig.until(State.FAULT)
     left = slides.rows[-1][2] / INCH
     assert rig.shot.alarms[0].cause == (
-        f"spindle switch off: the tool left the thread at Z{left:.4f}, behind it this pass is not cut"
+        text("executor.left-thread", why=text("executor.switch-off-refused"), z=f"{left:.4f}")
     )
 
 
@@ -215,7 +217,7 @@ def test_in_the_pull_out_the_thread_is_told_as_cut() -> None:
     rig.until_true(lambda shot: shot.block_text.endswith("P"))
     rig.sim.machine.spindle_bog(0.1)
     rig.until(State.FAULT)
-    assert "in the pull-out: the thread is cut" in rig.shot.alarms[0].cause
+    assert re.fullmatch(pattern("executor.thread-cut"), rig.shot.alarms[0].cause)
 
 
 @pytest.mark.parametrize("gear", [True, False], ids=["gear", "time"])

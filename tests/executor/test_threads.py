@@ -17,6 +17,7 @@ from core.executor.spindle_control import SpindleAngle
 from core.interpreter.job_setup import ToolOffset
 from core.motion.axis_limits import FloatArray
 from tests.executor.rig import INCH, CreepingClock, Rig
+from tests.texts import text
 
 pytestmark = pytest.mark.long
 
@@ -249,7 +250,7 @@ def test_a_lost_thread_is_left_once(gear: bool, z: float) -> None:
     in_thread(rig, z)
     rig.sim.machine.spindle_bog(0.2)
     rig.until(State.FAULT)
-    assert rig.said("thread").count("spindle lost in a thread") == 1
+    assert rig.said("thread").count(text("executor.spindle-lost")) == 1
 
 
 def test_a_pass_that_waits_for_the_index_does_not_begin_after_hold(gear: bool) -> None:

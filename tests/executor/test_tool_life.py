@@ -17,11 +17,12 @@ from core.executor.snapshot import Starts, State
 from core.interpreter.job_setup import ToolOffset
 from tests.executor.lines import mdi
 from tests.executor.rig import Rig
+from tests.texts import text
 
 TOOLS = {1: ToolOffset(-12.7, -50.8), 2: ToolOffset(-12.7, -50.8)}
 # .4 in at 12 in/min is 2 s with T1, .2 in at 6 in/min 2 s with T2; the rest is rapid.
 PART = "G90G94F300G73\nT1\nG00X1Z.1\nG01G94F12Z-.3\nG00X1Z1\nT2\nG00X1Z.1\nG01F6Z-.1\nG00Z1\nM30\n"
-SPENT = "T1: its life is gone, 50 of 50 parts: change the insert"
+SPENT = "T1: " + text("executor.life-gone", used="50 of 50 parts")
 
 
 def cut(rig: Rig) -> list[float]:
@@ -89,7 +90,7 @@ def test_the_part_under_way_is_finished_and_no_other_begins() -> None:
     assert rig.state is State.RUN
     rig.until(State.IDLE)
     assert rig.shot.parts == 1
-    assert rig.said("refused") == [f"no repeat: {SPENT}"]
+    assert rig.said("refused") == [text("executor.no-repeat", why=SPENT)]
     rig.run(0.4)
     rig.post(CycleStart())
     assert rig.state is State.IDLE
@@ -140,7 +141,7 @@ def test_what_does_not_start_for_another_reason_says_that_one() -> None:
     rig.ready()
     rig.run(0.4)
     rig.post(CycleStart())
-    assert rig.shot.start_refused == "no program is loaded"
+    assert rig.shot.start_refused == text("executor.no-program")
 
 
 def test_the_same_bar_again_is_told_once() -> None:
@@ -148,7 +149,7 @@ def test_the_same_bar_again_is_told_once() -> None:
     rig.post(BarNextPart(SPENT))
     rig.post(BarNextPart(SPENT))
     rig.post(BarNextPart(""))
-    assert rig.said("switch") == [f"no other part: {SPENT}", "parts may go on"]
+    assert rig.said("switch") == [text("executor.no-other-part", why=SPENT), text("executor.parts-may-go-on")]
 
 
 # --- the load of the spindle ------------------------------------------------------------------------------

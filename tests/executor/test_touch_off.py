@@ -15,6 +15,7 @@ from core.machine.machine_model import InputModel, Machine
 from core.machine.setter_table import SetterModel, runs_on
 from drivers.simulated.simulated_table import SimulatedTable
 from tests.executor.rig import INCH, Rig
+from tests.texts import text
 
 LEASE = 0.25
 SETTER = SetterModel(
@@ -153,7 +154,7 @@ def test_letting_go_stops_in_every_phase(phase: TouchPhase) -> None:
     assert abs(rig.shot.actual[0] - before) < runs_on(8.0, 120 * INCH, 0.03)
     touched = rig.shot.touched
     assert touched is not None
-    assert (touched.place, touched.why) == (None, "it was let go")
+    assert (touched.place, touched.why) == (None, text("executor.let-go"))
 
 
 def test_a_screen_that_has_died_stops_it_within_the_lease() -> None:
@@ -188,7 +189,7 @@ def test_nothing_there_is_told_and_the_slide_goes_back() -> None:
     rig.hold()
     rig.until(State.IDLE)
     assert rig.shot.touched is not None
-    assert rig.shot.touched.why == "nothing was touched within 0.472 in"
+    assert rig.shot.touched.why == text("executor.not-touched", distance="0.472 in")
     assert rig.shot.touched.place is None
     assert rig.shot.actual[0] == pytest.approx(begin, abs=0.005)
     assert rig.shot.alarms == ()
@@ -201,7 +202,7 @@ def test_an_input_that_stays_on_while_backing_off_stops_there() -> None:
     rig.sim.machine.set_input("probe", True)
     rig.until(State.IDLE)
     assert rig.shot.touched is not None
-    assert "stays on 0.039 in off the touch" in rig.shot.touched.why
+    assert text("executor.input-stays", distance="0.039 in") in rig.shot.touched.why
     assert rig.shot.touched.place is None
 
 
@@ -213,14 +214,14 @@ def test_a_setter_that_gives_way_is_told() -> None:
     rig.sim.ports.axes._plant.terminals.setter = None  # type: ignore[attr-defined]
     rig.until(State.IDLE)
     assert rig.shot.touched is not None
-    assert "second touch did not come" in rig.shot.touched.why
+    assert text("executor.no-second-touch") in rig.shot.touched.why
 
 
 def test_feed_hold_e_stop_and_another_key_end_it() -> None:
     acts: tuple[tuple[Callable[[TouchRig], None], str], ...] = (
         (lambda rig: rig.sim.machine.press_hold(), "feed hold"),
         (lambda rig: rig.post(Reset()), "reset"),
-        (lambda rig: rig.post(Jog("Z", 1.0, LEASE)), "something else was asked for"),
+        (lambda rig: rig.post(Jog("Z", 1.0, LEASE)), text("executor.something-else")),
         (lambda rig: rig.sim.machine.press_estop(), "E-STOP"),
     )
     for act, why in acts:
@@ -254,7 +255,7 @@ def test_a_jog_into_the_setter_stops_and_the_next_leads_away() -> None:
     jog = Jog("X", -8.0, LEASE)
     while not rig.said("refused"):
         rig.post(jog)
-    assert "tool setter is touched" in rig.said("refused")[0]
+    assert text("executor.setter-touched") in rig.said("refused")[0]
     rig.until(State.IDLE)
     assert rig.deepest < 8.0 * 0.05 + 0.1  # a tick, what is committed, the braking
     for _ in range(30):
@@ -273,7 +274,7 @@ def test_the_handwheel_is_taken_away_at_the_setter() -> None:
         rig.sim.machine.turn_handwheel(-1)
         rig.post(wheel)
     rig.run(0.3)
-    assert "tool setter is touched" in rig.shot.wheel_ended
+    assert text("executor.setter-touched") in rig.shot.wheel_ended
     assert rig.deepest < 0.5
 
 
@@ -286,7 +287,7 @@ def test_the_input_is_on_already() -> None:
     rig.run(0.05)
     rig.hold()
     assert rig.state is State.IDLE
-    assert any("on already" in said for said in rig.said("refused"))
+    assert any(text("executor.setter-on") in said for said in rig.said("refused"))
 
 
 def test_no_input_and_no_setter() -> None:
@@ -294,7 +295,7 @@ def test_no_input_and_no_setter() -> None:
     rig.ready()
     rig.hold()
     assert rig.state is State.IDLE
-    assert any("no tool setter" in said for said in rig.said("refused"))
+    assert any(text("executor.no-setter") in said for said in rig.said("refused"))
 
 
 def test_the_spindle_turns() -> None:
@@ -303,7 +304,7 @@ def test_the_spindle_turns() -> None:
     rig.until(State.IDLE)
     rig.hold()
     assert rig.state is State.IDLE
-    assert any("spindle turns" in said for said in rig.said("refused"))
+    assert any(text("executor.spindle-turns-touch") in said for said in rig.said("refused"))
 
 
 def test_an_axis_that_is_not_homed() -> None:
@@ -313,7 +314,7 @@ def test_an_axis_that_is_not_homed() -> None:
     rig.post(EnableDrives())
     rig.hold()
     assert rig.state is State.IDLE
-    assert any("not homed" in said for said in rig.said("refused"))
+    assert any(text("executor.position-means-nothing", axis="X") in said for said in rig.said("refused"))
 
 
 def test_a_search_that_would_leave_the_travel() -> None:
@@ -321,7 +322,10 @@ def test_a_search_that_would_leave_the_travel() -> None:
     rig.put(-TIP[0] - 4.0 * INCH + 10.0, 60.0)  # 10 mm from the end, and it looks 12 mm far
     rig.hold()
     assert rig.state is State.IDLE
-    assert any("would leave the travel of X by 0.197 in" in said for said in rig.said("refused"))
+    assert any(
+        text("executor.search-leaves-travel", axis="X", distance="0.197 in") in said
+        for said in rig.said("refused")
+    )
 
 
 @pytest.mark.parametrize(("axis", "sign"), [("C", 1), ("", 1), ("X", 0), ("X", 3)])
@@ -329,7 +333,7 @@ def test_no_direction_at_all(axis: str, sign: int) -> None:
     rig = ready()
     rig.hold(axis, sign)
     assert rig.state is State.IDLE
-    assert any("not touched off along" in said for said in rig.said("refused"))
+    assert any(text("executor.not-along", axis=axis or "no axis") in said for said in rig.said("refused"))
 
 
 def test_drives_off_and_feed_hold() -> None:
@@ -341,11 +345,11 @@ def test_drives_off_and_feed_hold() -> None:
     rig.tick()
     rig.hold()
     assert rig.state is State.IDLE
-    assert any("feed hold is pressed" in said for said in rig.said("refused"))
+    assert any(text("executor.hold-pressed") in said for said in rig.said("refused"))
 
 
 def test_the_handwheel_is_selected() -> None:
     rig = ready()
     rig.executor._control.wheel.axis = "X"
     rig.executor._control.touch.asked(Touch("X", -1, LEASE, 9), State.IDLE, "X")
-    assert any("handwheel is selected" in said for said in rig.said("refused"))
+    assert any(text("executor.wheel-selected") in said for said in rig.said("refused"))

@@ -1,0 +1,20 @@
+"""Expectations on errors by their code: wording may change, the kind of fault may not."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import pytest
+
+
+@contextmanager
+def raises_code(kind: type[Exception], code: str, *values: object) -> Iterator[pytest.ExceptionInfo[Any]]:
+    """Expect an error of this kind and code whose text names each of ``values``."""
+    with pytest.raises(kind) as raised:
+        yield raised
+    error: Any = raised.value
+    assert error.code == code, f"{error.code}: {error}"
+    for value in values:
+        assert str(value) in str(error)
