@@ -86,12 +86,14 @@ class DriverError(Exception):
     """A driver cannot do what it was asked; the sentence says what, where and what to do.
 
     ``code`` is the alarm that it becomes when nobody deals with it. The code of a ``Fault`` that is handed
-    on goes with it.
+    on goes with it. ``reason`` tells causes with the same code apart, in lower case and with hyphens; it is
+    empty where the code is enough.
     """
 
-    def __init__(self, text: str = "", code: FaultCode | None = None) -> None:
+    def __init__(self, text: str = "", code: FaultCode | None = None, *, reason: str = "") -> None:
         super().__init__(text)
         self.code: FaultCode = code or code_of(text, "driver")
+        self.reason = reason
 
     @property
     def fault(self) -> Fault:

@@ -86,7 +86,7 @@ class SerialWire:
         try:
             self._port = _opened(settings)
         except _NOT_OPENED as error:
-            raise WireError(f"{settings.port} cannot be opened: {why(error)}") from error
+            raise WireError(f"{settings.port} cannot be opened: {why(error)}", reason="not-opened") from error
         try:
             self._set_up(settings)
         except _NOT_OPENED as error:
@@ -203,7 +203,7 @@ class SerialWire:
         return data if self._parities is None else data.translate(self._parities)
 
     def _cut(self, error: Exception) -> WireError:
-        return WireError(f"{self.settings.port} has failed: {why(error)}")
+        return WireError(f"{self.settings.port} has failed: {why(error)}", reason="failed")
 
 
 def _opened(settings: LineSettings) -> serial.Serial:

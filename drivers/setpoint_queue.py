@@ -30,12 +30,14 @@ def pieces_of(segments: Segments, axes: int, give_way: Callable[[], None] = _not
     count = len(segments.t)
     shapes = {segments.p.shape, segments.v.shape, segments.a.shape}
     if count == 0 or shapes != {(count, axes)} or segments.dt.shape != (count,):
-        raise DriverError(f"setpoints need one row each of t, dt, p, v, a for {axes} axes", "broken-path")
+        raise DriverError(
+            f"setpoints need one row each of t, dt, p, v, a for {axes} axes", "broken-path", reason="shape"
+        )
     for part in segments:
         if not np.isfinite(part).all():
-            raise DriverError("setpoints hold a value that is no number", "broken-path")
+            raise DriverError("setpoints hold a value that is no number", "broken-path", reason="no-number")
     if (segments.dt < 0).any():
-        raise DriverError("setpoints run backwards in time", "broken-path")
+        raise DriverError("setpoints run backwards in time", "broken-path", reason="backwards")
     pieces: list[Piece] = []
     for begin in range(0, count, _AT_ONCE):
         t, dt, p, v, a = (part[begin : begin + _AT_ONCE].tolist() for part in segments)
@@ -105,7 +107,9 @@ class SetpointQueue(PieceQueue):
         if start < fixed - 1e-9:
             late = 1000 * (fixed - start)
             raise DriverError(
-                f"setpoints start {late:.1f} ms too early to be changed any more; splice later", "late"
+                f"setpoints start {late:.1f} ms too early to be changed any more; splice later",
+                "late",
+                reason="too-early",
             )
         self._check_joint(self.demand_at(start), (pieces[0].p, pieces[0].v), "where they take over")
         self._check_run(segments)
@@ -120,7 +124,9 @@ class SetpointQueue(PieceQueue):
         gaps = np.flatnonzero(np.abs(segments.t[1:] - t_end[:-1]) > _SLOT)
         if gaps.size:
             raise DriverError(
-                f"setpoints have a gap at t = {t_end[gaps[0]]:.4f}; nothing was queued", "broken-path"
+                f"setpoints have a gap at t = {t_end[gaps[0]]:.4f}; nothing was queued",
+                "broken-path",
+                reason="gap",
             )
         jumps = (np.abs(segments.p[1:] - p_end[:-1]) > self._tolerance.position) | (
             np.abs(segments.v[1:] - v_end[:-1]) > self._tolerance.velocity
@@ -130,11 +136,15 @@ class SetpointQueue(PieceQueue):
             before = f"{p_end[row, axis]:.4f} at {v_end[row, axis]:.3f}/s"
             after = f"{segments.p[row + 1, axis]:.4f} at {segments.v[row + 1, axis]:.3f}/s"
             where = f"{self.axes[axis]}: setpoints jump at t = {t_end[row]:.4f}"
-            raise DriverError(f"{where} from {before} to {after}; nothing was queued", "broken-path")
+            raise DriverError(
+                f"{where} from {before} to {after}; nothing was queued", "broken-path", reason="jump"
+            )
         moving = [name for name, speed in zip(self.axes, v_end[-1], strict=True) if abs(speed) > _REST]
         if moving:
             raise DriverError(
-                f"setpoints do not end at rest: {', '.join(moving)} still moves at their end", "broken-path"
+                f"setpoints do not end at rest: {', '.join(moving)} still moves at their end",
+                "broken-path",
+                reason="moves-at-end",
             )
 
     def _check_joint(
@@ -149,7 +159,8 @@ class SetpointQueue(PieceQueue):
             for name, tolerance, before, after in zip(self.axes, limit, one, two, strict=True):
                 if abs(after - before) > tolerance:
                     raise DriverError(
-                        f"{name}: setpoints {where} jump in {what} from {before:.4f} to {after:.4f}"
+                        f"{name}: setpoints {where} jump in {what} from {before:.4f} to {after:.4f}",
+                        reason="jump",
                     )
 
 

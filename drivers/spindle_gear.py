@@ -124,7 +124,11 @@ class Gearing:
     def load(self, cam: Cam) -> None:
         """Replace what lies behind the start of this way."""
         if not self.fits(cam):
-            raise DriverError("slides that follow the spindle cannot change to another index", "broken-path")
+            raise DriverError(
+                "slides that follow the spindle cannot change to another index",
+                "broken-path",
+                reason="other-index",
+            )
         queue = self._queue if self.begun else self._empty()  # nothing of a way that is not begun stays
         queue.commit = self._slides.commit * self._speed
         queue.trim(self.turns)
@@ -277,7 +281,9 @@ class GearedQueue(SetpointQueue):
             gearing.load(cam)
             return
         if gearing is None and not at_rest(self.horizon(now), now):
-            raise DriverError("slides have to rest before they can follow the spindle", "broken-path")
+            raise DriverError(
+                "slides have to rest before they can follow the spindle", "broken-path", reason="not-at-rest"
+            )
         self._gearing = Gearing(cam, phase, self._slides, self._rest)
 
     def play(self, t: float, read_at: float, count: float) -> Motion:
@@ -310,7 +316,9 @@ class GearedQueue(SetpointQueue):
         gearing = self._gearing
         if gearing is not None and len(segments.t) and not gearing.still_at(float(segments.t[0])):
             raise DriverError(
-                "the slides follow the spindle; stop them before they can move by time", "broken-path"
+                "the slides follow the spindle; stop them before they can move by time",
+                "broken-path",
+                reason="follows-spindle",
             )
         super().splice(segments, now)
         self._gearing = None

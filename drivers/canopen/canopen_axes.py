@@ -102,7 +102,7 @@ class CanopenAxes:
         self._need_power()
         homing = self.homing or self._given_up
         if homing is not None:
-            raise DriverError(f"{homing.config.name} is homing; wait until it is done")
+            raise DriverError(f"{homing.config.name} is homing; wait until it is done", reason="homing")
         check_limits(segments, self.config.axes, self._homed())
         self.follower.check(segments)
         self.queue.splice(segments, self.now())
@@ -156,13 +156,15 @@ class CanopenAxes:
     def home(self, axis: str) -> None:
         """Start the drive's homing. Raises DriverError."""
         if axis not in self.axes:
-            raise DriverError(f"there is no axis {axis!r}")
+            raise DriverError(f"there is no axis {axis!r}", reason="no-axis")
         driven = next((a for a in self.drives.axes if a.config.name == axis), None)
         if driven is None or driven.config.absolute:
             return
         self._need_power()
         if self.sample().moving:
-            raise DriverError(f"{axis} cannot home while an axis moves; wait for standstill", "homing")
+            raise DriverError(
+                f"{axis} cannot home while an axis moves; wait for standstill", "homing", reason="axis-moves"
+            )
         self.follower.abort()
         self.homing = Homing(driven, self.follower.mode, self.now())
 

@@ -177,7 +177,9 @@ class MeasuredSpindle:
     def run(self, rpm: float) -> None:
         """There is nothing to turn. Raises DriverError, unless asked to stop."""
         if rpm:
-            raise DriverError("there is no spindle drive on this bus; see spindle.driver", "spindle-off")
+            raise DriverError(
+                "there is no spindle drive on this bus; see spindle.driver", "spindle-off", reason="no-drive"
+            )
 
     def coast(self) -> None:
         """Nothing is turned here."""

@@ -345,12 +345,16 @@ def check_limits(segments: Segments, axes: Sequence[AxisConfig], homed: Sequence
     for i, axis in enumerate(axes):
         if abs(segments.v[:, i]).max() > axis.vmax * 1.001 + 0.01:
             raise DriverError(
-                f"{axis.name}: setpoints faster than {axis.vmax:.1f}/s; nothing was queued", "drive-limits"
+                f"{axis.name}: setpoints faster than {axis.vmax:.1f}/s; nothing was queued",
+                "drive-limits",
+                reason="too-fast",
             )
         if axis.travel is None or not homed[i]:
             continue
         low, high = axis.travel
         if segments.p[:, i].min() < low - 0.01 or segments.p[:, i].max() > high + 0.01:
             raise DriverError(
-                f"{axis.name}: setpoints leave {low:.2f}…{high:.2f}; nothing was queued", "drive-limits"
+                f"{axis.name}: setpoints leave {low:.2f}…{high:.2f}; nothing was queued",
+                "drive-limits",
+                reason="leaves-travel",
             )

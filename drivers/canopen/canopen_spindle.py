@@ -87,7 +87,9 @@ class CanopenSpindle:
             )
         if rpm and self.kept:
             raise DriverError(
-                "the spindle stays off: its drive is held as C; let it go first, by M05", "spindle-off"
+                "the spindle stays off: its drive is held as C; let it go first, by M05",
+                "spindle-off",
+                reason="held-as-c",
             )
         limit = self._config.rpm_max
         self.drive.target = round(min(max(rpm, -limit), limit))

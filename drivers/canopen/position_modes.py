@@ -96,6 +96,7 @@ class ProfiledFollower(Follower):
                 'the drives plan single straight moves only ([canopen] mode = "pp"); programs need "csp" or'
                 ' "ip", or "pvt" and a queue',
                 "drive-limits",
+                reason="one-move-only",
             )
         self._pending = (float(segments.t[0]), segments)
 

@@ -68,11 +68,15 @@ class SpindleC:
         if on and not self._wanted:
             if not self._axes.sample().enabled:
                 raise DriverError(
-                    "C is the spindle's drive, and the drives are off; switch them on first", "c-coupling"
+                    "C is the spindle's drive, and the drives are off; switch them on first",
+                    "c-coupling",
+                    reason="drives-off",
                 )
             if self.step is Step.FREE and (self._spindle.commanded or abs(self._drive.speed) >= _STANDS):
                 raise DriverError(
-                    "C is the spindle's drive, and the spindle turns; stop it first", "c-coupling"
+                    "C is the spindle's drive, and the spindle turns; stop it first",
+                    "c-coupling",
+                    reason="spindle-turns",
                 )
             self._orient = orient
         self._want(on)

@@ -85,7 +85,7 @@ class Line:
         if "tripped" in answer.head:
             raise TrippedError(text(answer.head, "tripped"))
         if why := fault_of(answer.head, "error", "driver"):
-            raise DriverError(why)
+            raise DriverError(why, reason=text(answer.head, "reason"))
         return answer
 
     def order(self, what: str, **values: object) -> None:

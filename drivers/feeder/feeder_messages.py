@@ -47,7 +47,11 @@ class Inbox:
             head, numbers = _LENGTHS.unpack_from(self._bytes)
             end = _LENGTHS.size + head + numbers
             if end > LARGEST or numbers % 8:
-                raise DriverError("the feeder's socket carries something that is no message", "feeder-silent")
+                raise DriverError(
+                    "the feeder's socket carries something that is no message",
+                    "feeder-silent",
+                    reason="no-message",
+                )
             if len(self._bytes) < end:
                 return
             text = bytes(self._bytes[_LENGTHS.size : _LENGTHS.size + head])
@@ -61,10 +65,12 @@ def _head(text: bytes) -> Mapping[str, object]:
         head = json.loads(text)
     except (ValueError, RecursionError) as error:
         raise DriverError(
-            "the feeder's socket carries something that is no message", "feeder-silent"
+            "the feeder's socket carries something that is no message", "feeder-silent", reason="no-message"
         ) from error
     if not isinstance(head, dict):
-        raise DriverError("the feeder's socket carries something that is no message", "feeder-silent")
+        raise DriverError(
+            "the feeder's socket carries something that is no message", "feeder-silent", reason="no-message"
+        )
     return head
 
 
@@ -78,7 +84,9 @@ def segments(numbers: FloatArray, axes: int) -> Segments:
     width = 2 + 3 * axes
     count, left = divmod(len(numbers), width)
     if left or not count or not np.isfinite(numbers).all():
-        raise DriverError("setpoints were damaged on their way to the feeder", "feeder-silent")
+        raise DriverError(
+            "setpoints were damaged on their way to the feeder", "feeder-silent", reason="damaged"
+        )
     cuts = np.cumsum([count, count, count * axes, count * axes])
     t, dt, p, v, a = np.split(numbers, cuts)
     return Segments(t, dt, p.reshape(count, axes), v.reshape(count, axes), a.reshape(count, axes))
@@ -120,7 +128,7 @@ def cam_of(message: Message, axes: int) -> Cam:
 def floats(values: object) -> tuple[float, ...]:
     """A list of numbers as it comes out of JSON. Raises DriverError."""
     if not isinstance(values, Sequence) or not all(isinstance(v, int | float) for v in values):
-        raise DriverError("the feeder answered no numbers", "feeder-silent")
+        raise DriverError("the feeder answered no numbers", "feeder-silent", reason="no-numbers")
     return tuple(float(v) for v in values)
 
 

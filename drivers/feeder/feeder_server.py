@@ -42,7 +42,9 @@ def act(ports: MachinePorts, head: Mapping[str, object]) -> None:
     }
     order = acts.get(text(head, "what"))
     if order is None:
-        raise DriverError("the feeder does not know this order; are both of the same version?")
+        raise DriverError(
+            "the feeder does not know this order; are both of the same version?", reason="unknown-order"
+        )
     order()
 
 
@@ -60,7 +62,7 @@ def use_hand(hands: object | None, head: Mapping[str, object]) -> object:
 
 def _hold(ports: MachinePorts, *, on: bool, orient: bool) -> None:
     if ports.lock is None:
-        raise DriverError("the spindle's drive of this machine is not C")
+        raise DriverError("the spindle's drive of this machine is not C", reason="no-c")
     ports.lock.hold(on, orient)
 
 
@@ -69,19 +71,19 @@ _UNORIENTED = "the driver of this machine's spindle cannot stop it at an angle"
 
 def _orient(ports: MachinePorts, angle: float, sense: int) -> None:
     if ports.orientation is None:
-        raise DriverError(_UNORIENTED)
+        raise DriverError(_UNORIENTED, reason="no-orientation")
     ports.orientation.orient(angle, sense)
 
 
 def _release(ports: MachinePorts) -> None:
     if ports.orientation is None:
-        raise DriverError(_UNORIENTED)
+        raise DriverError(_UNORIENTED, reason="no-orientation")
     ports.orientation.release()
 
 
 def _arm(ports: MachinePorts) -> None:
     if ports.touch is None:
-        raise DriverError("this driver keeps no touch")
+        raise DriverError("this driver keeps no touch", reason="no-touch")
     ports.touch.arm()
 
 
@@ -243,7 +245,7 @@ class Feeder:
         except TrippedError as error:
             return Message({"tripped": str(error)}, NOTHING)
         except DriverError as error:
-            return _refused(error.fault)
+            return _refused(error.fault, error.reason)
         finally:
             self._heard = self._ports.clock.now()
             self._answering += self._heard - began
@@ -422,7 +424,7 @@ class Feeder:
 
     def _mesh(self, message: Message) -> Message:
         if self._ports.gear is None:
-            raise DriverError("this driver cannot follow the spindle")
+            raise DriverError("this driver cannot follow the spindle", reason="no-gear")
         self._ports.gear.mesh(cam_of(message, len(self._ports.axes.axes)))
         return _value(0.0)
 
@@ -454,5 +456,5 @@ def _value(value: float) -> Message:
     return Message({"value": value}, NOTHING)
 
 
-def _refused(why: str) -> Message:
-    return Message(with_code("error", why, "driver"), NOTHING)
+def _refused(why: str, reason: str = "") -> Message:
+    return Message({**with_code("error", why, "driver"), "reason": reason}, NOTHING)

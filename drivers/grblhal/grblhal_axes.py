@@ -47,7 +47,9 @@ class GrblAxes:
 
     def splice(self, segments: Segments) -> None:  # noqa: ARG002  the port's
         """Raises DriverError always."""
-        raise DriverError("this controller plans by itself and takes blocks, no setpoints")
+        raise DriverError(
+            "this controller plans by itself and takes blocks, no setpoints", reason="blocks-only"
+        )
 
     def demand_at(self, t: float) -> tuple[tuple[float, ...], tuple[float, ...]]:  # noqa: ARG002  at rest only
         """Where the slides rest, exactly as the last block said it where that is known."""
@@ -92,7 +94,7 @@ class GrblAxes:
         """Begin to look for a switch. Raises DriverError."""
         axes = {each.name: each for each in self._c.config.axes}
         if axis not in axes or not axes[axis].wired:
-            raise DriverError(f"the controller has no axis {axis!r} to home")
+            raise DriverError(f"the controller has no axis {axis!r} to home", reason="no-axis")
         self._blocks.demand_power()
         if self._blocks.hindrance() and self._c.alarm == 0:
             raise DriverError(f"{axis} cannot home: {self._blocks.hindrance()}", "homing")

@@ -160,11 +160,15 @@ def read_identity(lines: Iterable[str]) -> Identity:
             told.setdefault(found[1], found[2])
     letters, *sizes = told.get("OPT", "").split(",")
     if "VER" not in told or len(sizes) < 2 or not all(size.isdecimal() for size in sizes[:2]):
-        raise DriverError("what answers is no grblHAL: $I says neither [VER:…] nor [OPT:…,blocks,bytes,…]")
+        raise DriverError(
+            "what answers is no grblHAL: $I says neither [VER:…] nor [OPT:…,blocks,bytes,…]",
+            reason="no-grblhal",
+        )
     blocks, buffer = int(sizes[0]), int(sizes[1])
     if buffer < _LEAST_BUFFER:
         raise DriverError(
-            f"the controller's buffer of {buffer} bytes is too small; {_LEAST_BUFFER} are needed"
+            f"the controller's buffer of {buffer} bytes is too small; {_LEAST_BUFFER} are needed",
+            reason="small-buffer",
         )
     axes = told.get("AXS", "3:XYZ").partition(":")[2]
     options = frozenset(told.get("NEWOPT", "").split(",")) - {""}

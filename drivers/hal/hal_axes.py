@@ -216,7 +216,7 @@ class HalAxes:
         """Queue setpoints. Raises DriverError as the port says, and for what the axes cannot do."""
         self._need_power()
         if self.homing is not None:
-            raise DriverError(f"{self.homing.name} is homing; wait until it is done")
+            raise DriverError(f"{self.homing.name} is homing; wait until it is done", reason="homing")
         self._check(segments)
         self.queue.splice(segments, self._now())
         self._send("splice", pieces_of(segments, len(self.axes)))
@@ -295,14 +295,16 @@ class HalAxes:
     def home(self, axis: str) -> None:
         """Look for home; ``sample().homed`` says when it is found. Raises DriverError."""
         if axis not in self.axes:
-            raise DriverError(f"there is no axis {axis!r}")
+            raise DriverError(f"there is no axis {axis!r}", reason="no-axis")
         index = self.axes.index(axis)
         figures = self.config.axes[index]
         if figures.absolute or figures.pins is None:
             return
         self._need_power()
         if self.sample().moving:
-            raise DriverError(f"{axis} cannot home while an axis moves; wait for standstill", "homing")
+            raise DriverError(
+                f"{axis} cannot home while an axis moves; wait for standstill", "homing", reason="axis-moves"
+            )
         self._homed[index] = False
         self.homing = Homing(figures, index, self)
 
@@ -406,12 +408,13 @@ class HalAxes:
         for n in self._driven:
             axis = self.config.axes[n]
             if abs(segments.v[:, n]).max(initial=0.0) > axis.vmax * 1.001 + 0.01:
-                why = f"setpoints faster than {axis.vmax:.1f}/s"
+                why, reason = f"setpoints faster than {axis.vmax:.1f}/s", "too-fast"
             elif axis.travel is not None and self._homed[n] and not self._inside(segments, n, axis.travel):
                 why = f"setpoints leave the travel {axis.travel[0]:.2f}…{axis.travel[1]:.2f}"
+                reason = "leaves-travel"
             else:
                 continue
-            raise DriverError(f"{axis.name}: {why}; nothing was queued", "drive-limits")
+            raise DriverError(f"{axis.name}: {why}; nothing was queued", "drive-limits", reason=reason)
 
     def _inside(self, segments: Segments, n: int, travel: tuple[float, float]) -> bool:
         low, high = min(travel[0], self._actual[n]), max(travel[1], self._actual[n])

@@ -99,7 +99,7 @@ class Homing:
             self._seek_index(now)
         elif self._on is None:
             if now - (self._since or now) > 1.0:
-                raise self._failed("its switch is not sampled")
+                raise self._failed("its switch is not sampled", "not-sampled")
             self._since = self._since or now
         elif self._on:
             self._go(-self._way, self._slow, _Step.LEAVE, now)
@@ -111,12 +111,14 @@ class Homing:
             self._slides.halt()
             self._enter(_Step.STOP, now)
         elif rests and now > self._since + _AFTER:
-            raise self._failed("no switch was found within the travel")
+            raise self._failed("no switch was found within the travel", "no-switch")
 
     def _stop(self, now: float, rests: bool) -> None:
         if rests and now > self._since + _AFTER:
             if not self._on:
-                raise self._failed("the slide has run over its switch; make it longer, or the search slower")
+                raise self._failed(
+                    "the slide has run over its switch; make it longer, or the search slower", "ran-over"
+                )
             self._go(-self._way, self._slow, _Step.LEAVE, now)
 
     def _leave(self, now: float, rests: bool) -> None:
@@ -127,7 +129,7 @@ class Homing:
             self._slides.halt()
             self._enter(_Step.END, now)
         elif rests and now > self._since + _AFTER:
-            raise self._failed("its switch does not go off")
+            raise self._failed("its switch does not go off", "stays-on")
 
     def _seek_index(self, now: float) -> None:
         self._go(self._way, self._slow, _Step.INDEX, now, _INDEX_WAY)
@@ -141,7 +143,7 @@ class Homing:
             self._enter(_Step.END, now)
         elif rests and now > self._since + _AFTER:
             self._slides.ask_index(f"{self.name}.index", False)
-            raise self._failed("no index came by")
+            raise self._failed("no index came by", "no-index")
 
     def _end(self, now: float, rests: bool) -> None:
         if rests and now > self._since + _AFTER:
@@ -173,6 +175,6 @@ class Homing:
     def _enter(self, step: _Step, now: float) -> None:
         self._step, self._since = step, now
 
-    def _failed(self, why: str) -> DriverError:
+    def _failed(self, why: str, reason: str) -> DriverError:
         self._slides.let_limit(self.name, False)
-        return DriverError(f"{self.name}: homing has failed: {why}", "homing")
+        return DriverError(f"{self.name}: homing has failed: {why}", "homing", reason=reason)

@@ -175,7 +175,9 @@ class HalLink:
 
     def _send(self, data: bytes) -> None:
         if self.lost or self._link is None:
-            raise DriverError(self.lost or "there is no bridge to HAL")
+            raise DriverError(
+                self.lost or "there is no bridge to HAL", reason="" if self.lost else "no-bridge"
+            )
         try:
             self._link.send(data)
         except DriverError as error:

@@ -59,10 +59,16 @@ class HalSpindleC:
             return
         if not self._axes.sample().enabled:
             raise DriverError(
-                "C is the spindle's drive, and the drives are off; switch them on first", "c-coupling"
+                "C is the spindle's drive, and the drives are off; switch them on first",
+                "c-coupling",
+                reason="drives-off",
             )
         if self._spindle.ordered or abs(self._spindle.measured()) >= _STANDS:
-            raise DriverError("C is the spindle's drive, and the spindle turns; stop it first", "c-coupling")
+            raise DriverError(
+                "C is the spindle's drive, and the spindle turns; stop it first",
+                "c-coupling",
+                reason="spindle-turns",
+            )
         self._orient = orient
         if orient and not self._spindle.index.known:
             self._spindle.run(_SEARCH)

@@ -118,7 +118,9 @@ class HuanyangHy:
                 self._wire.receive(_TIMEOUT)  # one that comes later still is of no use, and must not be taken
             if left and self.hurry() and function != _CONTROL:
                 break
-        raise NoAnswerError("the inverter does not answer; look at cable, PD163 (id), PD164 and PD165 (line)")
+        raise NoAnswerError(
+            "the inverter does not answer; look at cable, PD163 (id), PD164 and PD165 (line)", reason="silent"
+        )
 
     def _once(self, function: int, data: bytes, begins: bytes) -> bytes | None:
         self._clock.sleep_until(self._free)

@@ -70,7 +70,9 @@ class InverterSpindle:
             # One that turns goes on: a surface speed that is refused for a lost answer costs the part.
             if not (self._attendant.want or self._attendant.warm):
                 raise DriverError(
-                    "the spindle stays off: the inverter has not yet answered often enough", "spindle-off"
+                    "the spindle stays off: the inverter has not yet answered often enough",
+                    "spindle-off",
+                    reason="not-ready",
                 )
         limit = self._config.rpm_max
         self._attendant.want = min(max(rpm, -limit), limit) * self._config.hz_per_rpm

@@ -185,7 +185,7 @@ class Modbus:
             return
         if frame[1:6] != pdu:
             self._failed()
-            raise NoAnswerError("the inverter's answers come too late")
+            raise NoAnswerError("the inverter's answers come too late", reason="late")
         self._doubt = False
 
     def _once(self, pdu: bytes) -> bytes:
@@ -198,7 +198,9 @@ class Modbus:
         self.good += 1
         if frame[1] & FAILED:
             why = _EXCEPTIONS.get(frame[2], f"exception {frame[2]}")
-            raise RefusedError(f"the inverter refuses function {pdu[0]:02X}: {why}")
+            raise RefusedError(
+                f"the inverter refuses function {pdu[0]:02X}: {why}", reason=f"exception-{frame[2]}"
+            )
         return frame
 
     def _answer(self, function: int, until: float) -> bytes:
@@ -212,9 +214,12 @@ class Modbus:
         self._failed()
         if come:
             raise NoAnswerError(
-                f"nothing of what comes back is an answer ({len(come)} bytes); look at line and id"
+                f"nothing of what comes back is an answer ({len(come)} bytes); look at line and id",
+                reason="garbled",
             )
-        raise NoAnswerError("the inverter does not answer; look at cable, id and line settings")
+        raise NoAnswerError(
+            "the inverter does not answer; look at cable, id and line settings", reason="silent"
+        )
 
     def _failed(self) -> None:
         self._doubt = True

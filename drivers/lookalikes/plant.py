@@ -36,7 +36,9 @@ def check_limits(segments: Segments, servos: Sequence[Servo], rpm: float) -> Non
         fastest = abs(segments.v[:, i]).max(initial=0.0)
         if fastest > axis.vmax * 1.001 + 0.01:
             raise DriverError(
-                f"{axis.name}: setpoints faster than {axis.vmax:.1f}/s; nothing was queued", "drive-limits"
+                f"{axis.name}: setpoints faster than {axis.vmax:.1f}/s; nothing was queued",
+                "drive-limits",
+                reason="too-fast",
             )
         if axis.name == "C" and not axis.own_drive and fastest > 0.0 and abs(rpm) > _STANDS:
             raise DriverError(f"C: the spindle turns at {rpm:.0f} rpm; nothing was queued", "drive-limits")
@@ -47,6 +49,7 @@ def check_limits(segments: Segments, servos: Sequence[Servo], rpm: float) -> Non
             raise DriverError(
                 f"{axis.name}: setpoints leave the travel {low:.2f}…{high:.2f}; nothing queued",
                 "drive-limits",
+                reason="leaves-travel",
             )
 
 
@@ -194,7 +197,9 @@ class Plant:
                 return
             rest, velocity = self.queue.demand_at(now)
             if any(velocity) or self._homing is not None:
-                raise DriverError(f"{name} cannot home while an axis moves; wait for standstill")
+                raise DriverError(
+                    f"{name} cannot home while an axis moves; wait for standstill", reason="axis-moves"
+                )
             pieces = straight(
                 now + self.config.commit,
                 rest,
@@ -246,7 +251,9 @@ class Plant:
         if not self.enabled or self._off_at < _NEVER:
             raise DriverError("the drives are off; switch them on first", "power-lost")
         if self._homing is not None:
-            raise DriverError(f"{self._homing[0].axis.name} is homing; wait until it is done")
+            raise DriverError(
+                f"{self._homing[0].axis.name} is homing; wait until it is done", reason="homing"
+            )
 
     def _power_off(self) -> None:
         self.enabled, self._off_at, self._homing = False, _NEVER, None

@@ -109,21 +109,28 @@ def chosen(
     meant = [each for each in meant if not serial or each.serial == serial]
     if not meant:
         of = f" with serial {serial}" if serial else ""
-        raise DriverError(f"the pendant {device}{of} is not plugged in")
+        raise DriverError(f"the pendant {device}{of} is not plugged in", reason="missing")
     groups: dict[str, list[DeviceEntry]] = {}
     for each in meant:
         groups.setdefault(each.stem, []).append(each)
     if len(groups) > 1:
-        raise DriverError(f"{len(groups)} devices are called {device}: unplug the other one, {_apart(meant)}")
+        raise DriverError(
+            f"{len(groups)} devices are called {device}: unplug the other one, {_apart(meant)}",
+            reason="several",
+        )
     able = frozenset().union(*(each.able for each in meant))
     lacking = [name for name, control in wanted.items() if control[:2] not in able]
     if lacking:
         names = ", ".join(lacking)
-        raise DriverError(f"the pendant {device} has not the button or wheel of {names} in the machine file")
+        raise DriverError(
+            f"the pendant {device} has not the button or wheel of {names} in the machine file",
+            reason="lacks-control",
+        )
     if any(each.bluetooth for each in meant):
         raise DriverError(
             f"the pendant {device} is on Bluetooth: a link that is lost cannot be told from a button that is"
-            " held; take one with a cable"
+            " held; take one with a cable",
+            reason="bluetooth",
         )
     needed = {control[:2] for control in wanted.values()}
     return tuple(each for each in meant if each.able & needed)
@@ -170,7 +177,9 @@ class KernelDevice:
         except PermissionError as error:
             raise DriverError(_not_allowed(entry, path)) from error
         except OSError as error:
-            raise DriverError(f"the pendant {entry.name} cannot be opened: {error.strerror}") from error
+            raise DriverError(
+                f"the pendant {entry.name} cannot be opened: {error.strerror}", reason="not-opened"
+            ) from error
         self._able = entry.able
         try:
             _ioctl(self._fd, _CLOCK, struct.pack("@i", _MONOTONIC))
@@ -178,7 +187,8 @@ class KernelDevice:
         except OSError as error:
             os.close(self._fd)
             raise DriverError(
-                f"the pendant {entry.name} is read by another program: end that one ({error.strerror})"
+                f"the pendant {entry.name} is read by another program: end that one ({error.strerror})",
+                reason="taken",
             ) from error
 
     def fileno(self) -> int:

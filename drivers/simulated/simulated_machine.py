@@ -90,7 +90,7 @@ class SimAxes(_OnPlant):
     def home(self, axis: str) -> None:
         """Start looking for the home switch; ``sample().homed`` says when it is found."""
         if axis not in self.axes:
-            raise DriverError(f"there is no axis {axis!r}")
+            raise DriverError(f"there is no axis {axis!r}", reason="no-axis")
         self._plant.home(axis)
 
     def clear_fault(self) -> None:

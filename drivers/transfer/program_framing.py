@@ -127,7 +127,7 @@ class Incoming:
         if self.phase is Phase.WHOLE:
             return
         if self.phase is Phase.WAITING or (self._wrap and not self._at_end()):
-            raise IncompleteError(self._lacking())
+            raise self._lacking()
         self.phase = Phase.WHOLE
 
     def program(self) -> Program:
@@ -140,7 +140,7 @@ class Incoming:
             self._check(line, number)
         whole = b"".join(line + b"\n" for line in lines)
         if not whole.strip():
-            raise IncompleteError("the program that came is empty; send it again")
+            raise IncompleteError("the program that came is empty; send it again", reason="empty")
         detected = seven and not self._settings.own_parity
         digest = sha256(whole).hexdigest()
         return Program(whole, name_of(head, lines), len(lines), digest, detected, self._skipped)
@@ -157,13 +157,16 @@ class Incoming:
     def _check(self, line: bytes, number: int) -> None:
         if self._wrap and line.lstrip().startswith(self._wrap):
             raise IncompleteError(
-                f"line {number} begins with {self._settings.wrap}: more than one program came; send one alone"
+                f"line {number} begins with {self._settings.wrap}: more than one program came; "
+                "send one alone",
+                reason="several",
             )
         for character in line:
             if character < 0x20 and character != _TAB:
                 raise IncompleteError(
                     f"line {number} holds the control character {character:02X}: the line is disturbed. "
-                    "Nothing is kept; send it again"
+                    "Nothing is kept; send it again",
+                    reason="control-character",
                 )
 
     def _wait(self, character: int) -> None:
@@ -204,7 +207,7 @@ class Incoming:
         if not self._wrap:
             self.phase = Phase.WHOLE
         elif plain != _DC3:  # which is also the XOFF of a line that is not held by us
-            raise IncompleteError(self._lacking())
+            raise self._lacking()
 
     def _bad_parity(self, character: int) -> None:
         """What looked like a % with parity in noise before an eight-bit program is none."""
@@ -216,7 +219,8 @@ class Incoming:
             return
         raise IncompleteError(
             f"parity error in line {self.lines}: nothing is kept. Look at {self._settings.line.words}, at "
-            "shield and earth of the cable, and send it again"
+            "shield and earth of the cable, and send it again",
+            reason="parity",
         )
 
     def _at_end(self) -> bool:
@@ -224,14 +228,18 @@ class Incoming:
         line = bytes(character & _SEVEN for character in self._raw[self._begins :])
         return bool(self._begins) and line.translate(None, _SKIPPED).strip() == self._wrap
 
-    def _lacking(self) -> str:
+    def _lacking(self) -> IncompleteError:
         wrap = self._settings.wrap
         if self.phase is Phase.WAITING:
             came = f"{self.count} characters came, but no {wrap}" if self.count else "nothing came"
-            return f"{came}; look at the line settings and at the other side, and send it again"
-        return (
+            return IncompleteError(
+                f"{came}; look at the line settings and at the other side, and send it again",
+                reason="no-begin" if self.count else "nothing",
+            )
+        return IncompleteError(
             f"the last {wrap} is missing, {self.lines} lines came: the program is not whole and is not kept; "
-            "send it again"
+            "send it again",
+            reason="no-end",
         )
 
 
@@ -262,7 +270,7 @@ def outgoing(text: bytes, settings: TransferSettings) -> bytes:
     if wrap:
         lines = _bare(lines, wrap)
     if not any(line.strip() for line in lines):
-        raise DriverError("the program is empty: there is nothing to send")
+        raise DriverError("the program is empty: there is nothing to send", reason="empty")
     for number, line in enumerate(lines, 1):
         _check(line, number, wrap, seven=settings.line.bits == 7)
     framed = [wrap, *lines, wrap] if wrap else lines
@@ -281,12 +289,17 @@ def _bare(lines: list[bytes], wrap: bytes) -> list[bytes]:
 def _check(line: bytes, number: int, wrap: bytes, *, seven: bool) -> None:
     if wrap and line.strip().startswith(wrap):
         raise DriverError(
-            f"line {number} begins with {wrap.decode()}: the other side would take it for the end"
+            f"line {number} begins with {wrap.decode()}: the other side would take it for the end",
+            reason="wrap",
         )
     for character in line:
         if character < 0x20 and character != 0x09:
-            raise DriverError(f"line {number} holds the control character {character:02X}; take it out")
+            raise DriverError(
+                f"line {number} holds the control character {character:02X}; take it out",
+                reason="control-character",
+            )
         if seven and character >= _TOP:
             raise DriverError(
-                f"line {number} holds a letter that 7 bits cannot carry; take it out, or use 8 bits"
+                f"line {number} holds a letter that 7 bits cannot carry; take it out, or use 8 bits",
+                reason="eighth-bit",
             )

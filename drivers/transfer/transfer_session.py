@@ -89,7 +89,8 @@ class Sending(_Transfer):
             self._go_on()
             if self._clock.now() > until:
                 raise DriverError(
-                    "the other side has not asked for a program (DC1) for 2 minutes; start it there"
+                    "the other side has not asked for a program (DC1) for 2 minutes; start it there",
+                    reason="not-asked",
                 )
             come = self._wire.receive(TICK)
         if self._settings.line.flow == "xonxoff":
@@ -117,7 +118,8 @@ class Sending(_Transfer):
         still = now - self._moved
         if still > PATIENCE:
             raise DriverError(
-                f"the other side has held the line for 2 minutes after {out} bytes; look whether it is ready"
+                f"the other side has held the line for 2 minutes after {out} bytes; look whether it is ready",
+                reason="held",
             )
         self._tell(out, HELD_BACK if still > HELD else "")
 
@@ -175,7 +177,8 @@ class Receiving(_Transfer):
         if self._wire.damaged and incoming.phase is not Phase.WAITING:
             raise IncompleteError(
                 f"a damaged character in line {incoming.lines}: nothing is kept. Look at the line settings, "
-                "at shield and earth of the cable, and send it again"
+                "at shield and earth of the cable, and send it again",
+                reason="damaged",
             )
         if incoming.phase is not Phase.WAITING:
             self.reach = Reach(incoming.count, 0, incoming.lines)

@@ -11,6 +11,7 @@ from core.ports import Cam, DriverError, Gear, Segments, Stop, at_rest
 from drivers.clocks import StepClock
 from drivers.simulated.simulated_machine import Simulation
 from drivers.spindle_gear import Phase
+from tests.coded import raises_code
 from tests.drivers.machines import play, ramp, simulation
 
 ZERO = (0.0, 0.0, 0.0)
@@ -205,21 +206,22 @@ def test_a_way_that_is_not_begun_is_replaced_whole() -> None:
 def test_a_standing_spindle_is_not_followed() -> None:
     sim, _ = simulation()
     assert sim.ports.gear is not None
-    with pytest.raises(DriverError, match="does not turn"):
+    with raises_code(DriverError, "thread-no-encoder"):
         sim.ports.gear.mesh(cam(sim))
 
 
 def test_nor_one_that_turns_the_other_way() -> None:
     sim, _, gear = turning(-600.0)
     made = cam(sim)
-    with pytest.raises(DriverError, match="does not turn"):
+    with raises_code(DriverError, "thread-no-encoder"):
         gear.mesh(made._replace(sign=1.0))
 
 
 def test_a_way_that_begins_within_the_commit_is_too_early() -> None:
     sim, _, gear = turning()  # ten turns a second: .3 turn in 30 ms
-    with pytest.raises(DriverError, match="too early"):
+    with raises_code(DriverError, "late") as told:
         gear.mesh(cam(sim, start=0.25))
+    assert told.value.reason == "too-early"
     assert gear.geared() is None
     gear.mesh(cam(sim, start=0.35))
 
@@ -227,10 +229,12 @@ def test_a_way_that_begins_within_the_commit_is_too_early() -> None:
 def test_a_way_has_to_begin_where_the_slides_are_and_end_at_rest() -> None:
     sim, _, gear = turning()
     made = cam(sim)
-    with pytest.raises(DriverError, match=r"Z: .*jump in position"):
+    with raises_code(DriverError, "driver", "Z: ") as told:
         gear.mesh(made._replace(way=made.way._replace(p=made.way.p + np.array([0.0, 1.0, 0.0]))))
-    with pytest.raises(DriverError, match="do not end at rest"):
+    assert told.value.reason == "jump"
+    with raises_code(DriverError, "broken-path") as told:
         gear.mesh(made._replace(way=Segments(*(part[:2] for part in made.way))))
+    assert told.value.reason == "moves-at-end"
     assert gear.geared() is None
 
 
@@ -240,31 +244,36 @@ def test_another_index_is_refused_once_it_moves() -> None:
     gear.mesh(made._replace(zero=made.zero + 1.0))
     gear.mesh(made)  # nothing has moved yet
     play(sim, clock, 0.5)
-    with pytest.raises(DriverError, match="another index"):
+    with raises_code(DriverError, "broken-path") as told:
         gear.mesh(made._replace(zero=made.zero + 1.0))
+    assert told.value.reason == "other-index"
 
 
 def test_too_fast_for_the_slides_and_out_of_their_travel() -> None:
     sim, _, gear = turning(1500.0)
-    with pytest.raises(DriverError, match="Z: setpoints faster"):
+    with raises_code(DriverError, "drive-limits", "Z: ") as told:
         gear.mesh(cam(sim, lead=6.0))  # 150 mm/s
-    with pytest.raises(DriverError, match="Z: setpoints leave the travel"):
+    assert told.value.reason == "too-fast"
+    with raises_code(DriverError, "drive-limits", "Z: ") as told:
         gear.mesh(cam(sim, turns=100.0))  # to 201 mm
+    assert told.value.reason == "leaves-travel"
 
 
 def test_not_while_the_slides_move_by_time() -> None:
     sim, clock, gear = turning()
     sim.ports.axes.splice(ramp(clock.now() + 0.03, ZERO, 60.0, 0.5))
     play(sim, clock, 0.1)
-    with pytest.raises(DriverError, match="have to rest"):
+    with raises_code(DriverError, "broken-path") as told:
         gear.mesh(cam(sim))
+    assert told.value.reason == "not-at-rest"
 
 
 def test_setpoints_in_time_release_a_gear_that_waits_and_no_other() -> None:
     sim, clock, gear = turning()
     gear.mesh(cam(sim, start=5.0))
-    with pytest.raises(DriverError, match="follow the spindle"):
+    with raises_code(DriverError, "broken-path") as told:
         sim.ports.axes.splice(ramp(clock.now() + 1.0, ZERO, 60.0, 0.1))  # will have moved by then
+    assert told.value.reason == "follows-spindle"
     sim.ports.axes.splice(ramp(clock.now() + 0.1, ZERO, 60.0, 0.1))
     assert gear.geared() is None
     play(sim, clock, 2.0)
@@ -274,7 +283,7 @@ def test_setpoints_in_time_release_a_gear_that_waits_and_no_other() -> None:
 def test_drives_that_are_off_follow_nothing() -> None:
     sim, clock, gear = turning()
     sim.ports.axes.enable(False)
-    with pytest.raises(DriverError, match="off"):
+    with raises_code(DriverError, "power-lost"):
         gear.mesh(cam(sim))
     sim.ports.axes.enable(True)
     gear.mesh(cam(sim))

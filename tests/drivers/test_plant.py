@@ -6,7 +6,9 @@ import dataclasses
 
 import pytest
 
+from core.faults import code_of
 from core.ports import DriverError, Stop
+from tests.coded import raises_code
 from tests.drivers.machines import CONFIG, play, ramp, simulation
 
 ZERO = (0.0, 0.0, 0.0)
@@ -47,9 +49,10 @@ def test_a_jammed_slide_trips_and_takes_the_others_down() -> None:
     sim.machine.jam("X")
     play(sim, clock, 0.15)
     sample = sim.ports.axes.sample()
-    assert sample.fault == "X: following error"
+    assert code_of(sample.fault, "driver") == "following"
+    assert sample.fault.startswith("X: ")
     assert not sample.enabled
-    with pytest.raises(DriverError, match="clear the fault"):
+    with raises_code(DriverError, "no-power", "X: "):
         sim.ports.axes.enable(True)
     sim.machine.jam("X", False)
     sim.ports.axes.clear_fault()
@@ -65,7 +68,9 @@ def test_a_stuck_encoder_trips() -> None:
     play(sim, clock, 0.2)
     sim.machine.encoder_stuck("X")
     play(sim, clock, 0.2)
-    assert sim.ports.axes.sample().fault == "X: following error"
+    fault = sim.ports.axes.sample().fault
+    assert code_of(fault, "driver") == "following"
+    assert fault.startswith("X: ")
 
 
 @pytest.mark.parametrize("how", [Stop.RAMP_OFF, Stop.RAMP_HOLD, Stop.OFF])
@@ -85,15 +90,17 @@ def test_the_drives_own_stop(how: Stop) -> None:
 
 def test_drives_refuse_setpoints_when_off_faulted_or_outside() -> None:
     sim, clock = simulation(powered=False)
-    with pytest.raises(DriverError, match="drives are off"):
+    with raises_code(DriverError, "power-lost"):
         sim.ports.axes.splice(ramp(0.03, ZERO, 60.0, 0.1))
     sim.ports.axes.enable(True)
-    with pytest.raises(DriverError, match="faster than"):
+    with raises_code(DriverError, "drive-limits", "X: ") as told:
         sim.ports.axes.splice(ramp(0.03, ZERO, 128.0, 0.1))
-    with pytest.raises(DriverError, match="leave the travel"):
+    assert told.value.reason == "too-fast"
+    with raises_code(DriverError, "drive-limits", "X: ") as told:
         sim.ports.axes.splice(ramp(0.03, ZERO, 100.0, 1.2))
+    assert told.value.reason == "leaves-travel"
     sim.machine.drive_fault("Z", "overtemperature")
-    with pytest.raises(DriverError, match="Z: overtemperature"):
+    with raises_code(DriverError, "axis", "Z: overtemperature"):
         sim.ports.axes.splice(ramp(0.03, ZERO, 60.0, 0.1))
     assert sim.machine.true_position() == ZERO
     assert clock.now() == 0.0
@@ -109,9 +116,9 @@ def test_estop_is_hardware() -> None:
     assert sim.ports.station.snapshot().estop
     assert not sim.ports.axes.sample().enabled
     assert not sim.ports.axes.sample().moving
-    with pytest.raises(DriverError, match="E-stop"):
+    with raises_code(DriverError, "no-power", "E-stop"):
         sim.ports.axes.enable(True)
-    with pytest.raises(DriverError, match="E-stop"):
+    with raises_code(DriverError, "spindle-off", "E-stop"):
         sim.ports.spindle.run(500.0)
     play(sim, clock, 3.0)
     assert sim.machine.spindle_rpm() == 0.0
@@ -128,8 +135,9 @@ def test_homing_finds_the_switch_and_power_loss_forgets_it() -> None:
     assert sim.ports.axes.sample().homed == (True, False, True)
     assert sim.ports.axes.sample().actual[1] == 0.0
     sim.ports.axes.home("Z")
-    with pytest.raises(DriverError, match="homing"):
+    with raises_code(DriverError, "driver", "Z") as told:
         sim.ports.axes.splice(ramp(clock.now() + 0.03, ZERO, 60.0, 0.1))
+    assert told.value.reason == "homing"
     play(sim, clock, 1.5)
     assert sim.ports.axes.sample().homed == (True, True, True)
     assert sim.ports.axes.sample().actual[1] == pytest.approx(0.0, abs=0.00127)
@@ -143,10 +151,12 @@ def test_homing_refuses_while_moving_and_an_unknown_axis() -> None:
     sim, clock = simulation(dataclasses.replace(CONFIG, axes=(CONFIG.axes[0], lost, CONFIG.axes[2])))
     sim.ports.axes.splice(ramp(0.03, ZERO, 60.0, 0.6))
     play(sim, clock, 0.2)
-    with pytest.raises(DriverError, match="standstill"):
+    with raises_code(DriverError, "driver", "Z") as told:
         sim.ports.axes.home("Z")
-    with pytest.raises(DriverError, match="no axis 'B'"):
+    assert told.value.reason == "axis-moves"
+    with raises_code(DriverError, "driver", "'B'") as told:
         sim.ports.axes.home("B")
+    assert told.value.reason == "no-axis"
 
 
 def test_spindle_ramps_after_its_latency() -> None:
@@ -184,7 +194,7 @@ def test_spindle_faults() -> None:
     assert sim.ports.spindle.speed() == 3500.0
     sim.machine.spindle_fault("overcurrent")
     assert sim.ports.spindle.fault() == "overcurrent"
-    with pytest.raises(DriverError, match="overcurrent"):
+    with raises_code(DriverError, "spindle-off", "overcurrent"):
         sim.ports.spindle.run(100.0)
     clock.sleep_until(20.0)
     assert sim.ports.spindle.speed() == 0.0
@@ -216,9 +226,9 @@ def test_safe_keeps_the_collet() -> None:
 
 def test_terminals_refuse_unknown_names() -> None:
     sim, _ = simulation()
-    with pytest.raises(DriverError, match="output 'laser' is not in the machine file"):
+    with raises_code(DriverError, "output", "'laser'"):
         sim.ports.io.write("laser", True)
-    with pytest.raises(DriverError, match="input '77' is not in the machine file"):
+    with raises_code(DriverError, "driver", "'77'"):
         sim.machine.set_input("77", True)
 
 
@@ -228,7 +238,7 @@ def test_c_is_not_positioned_by_a_spindle_that_turns() -> None:
     turn = turn._replace(p=turn.p[:, [1, 2, 0]], v=turn.v[:, [1, 2, 0]], a=turn.a[:, [1, 2, 0]])
     sim.ports.spindle.run(500.0)
     play(sim, clock, 1.0)
-    with pytest.raises(DriverError, match="C: the spindle turns at 500 rpm"):
+    with raises_code(DriverError, "drive-limits", "C: ", "500 rpm"):
         sim.ports.axes.splice(turn._replace(t=turn.t + 1.0))
     sim.ports.spindle.run(0.0)
     play(sim, clock, 1.0)

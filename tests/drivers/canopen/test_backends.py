@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import dataclasses
 
-import pytest
-
 import resources
 from app.compose.backends import connect
 from app.compose.canopen_backend import can_driven
@@ -14,6 +12,7 @@ from core.machine.machine_model import Machine
 from core.ports import DriverError
 from drivers.clocks import StepClock
 from drivers.operator_station import PanelStation
+from tests.coded import raises_code
 from tests.drivers.canopen.bench import can_machine
 
 
@@ -82,5 +81,5 @@ def test_the_simulated_machine_through_the_feeder_has_all_ports() -> None:
 
 def test_a_backend_without_a_driver_is_refused() -> None:
     machine = dataclasses.replace(load_machine(None), backend="abacus")
-    with pytest.raises(DriverError, match="no driver for backend abacus"):
+    with raises_code(DriverError, "driver", "abacus"):
         connect(machine, StepClock())

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
+from core.faults import code_of
 from core.ports import Segments, Stop
 from drivers.canopen import canopen_objects as od
 from drivers.canopen.cyclic_mode import SyncSchedule
@@ -137,7 +138,7 @@ def test_setpoints_away_for_longer_are_a_fault_that_stops_all(bench: CanBench) -
         bench.clock.advance(TICK)
         bench.peers.pump()
     run(bench, 0.3)
-    assert "ms late" in axes.sample().fault
+    assert code_of(axes.sample().fault, "driver") == "queue-dry"
     assert not any(drive.power.powered for drive in plant.drives.values())
     assert plant.servos[0].v == 0.0
 
@@ -225,7 +226,9 @@ def test_a_drive_that_does_not_interpolate_is_told() -> None:
     drive._cyclic = lambda: False  # type: ignore[method-assign]
     bench.machine.axes.enable(True)
     run(bench, 0.5)
-    assert bench.machine.axes.sample().fault == "X: the drive does not interpolate"
+    fault = bench.machine.axes.sample().fault
+    assert code_of(fault, "driver") == "queue-dry"
+    assert fault.startswith("X: ")
     bench.close()
 
 

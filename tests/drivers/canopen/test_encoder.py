@@ -8,11 +8,13 @@ from collections.abc import Iterator
 import pytest
 
 from app.compose.canopen_backend import canopen_config, canopen_peers
+from core.faults import code_of
 from core.machine.machine_model import Machine
 from core.ports import DriverError
 from drivers.canopen.canopen_encoder import CanEncoder
 from drivers.canopen.canopen_survey import survey
 from drivers.clocks import StepClock
+from tests.coded import raises_code
 from tests.drivers.canopen.bench import CanBench, can_machine
 
 OWN = (
@@ -104,34 +106,32 @@ def test_it_counts_on_when_its_range_is_over() -> None:
 
 def test_it_turns_nothing(own: EncoderBench) -> None:
     own.machine.ports.spindle.run(0.0)
-    with pytest.raises(DriverError, match="no spindle drive"):
+    with raises_code(DriverError, "spindle-off") as told:
         own.machine.ports.spindle.run(100.0)
+    assert told.value.reason == "no-drive"
 
 
 # --- what it is refused for -------------------------------------------------------------------------------
 
 
-def refused(machine: Machine, **says: int) -> str:
-    """What connecting says of an encoder that says this of itself."""
+def refused(machine: Machine, *values: str, **says: int) -> None:
+    """Expect that connecting refuses an encoder that reports ``says`` and names ``values``."""
     stand = EncoderBench(machine)
     for name, value in says.items():
         setattr(stand.peers.encoder, name, value)
     try:
-        with pytest.raises(DriverError) as caught:
+        with raises_code(DriverError, "driver", "turns: ", *values):
             stand.encoder.connect()
     finally:
         stand.close()
-    return str(caught.value)
 
 
 def test_another_count_than_the_files_is_refused() -> None:
-    said = refused(can_machine(*OWN), steps=5000)
-    assert "5000 counts a turn (object 6501:0)" in said
-    assert "says 4096" in said
+    refused(can_machine(*OWN), "5000", "6501:0", "4096", steps=5000)
 
 
 def test_a_single_turn_encoder_is_refused_for_a_fast_spindle() -> None:
-    assert "begins anew after 1 turns" in refused(can_machine(*OWN), turns=1)
+    refused(can_machine(*OWN), "1 turns", "2.3", "4.67", turns=1)
 
 
 def test_a_node_that_is_no_encoder_is_refused() -> None:
@@ -140,7 +140,7 @@ def test_a_node_that_is_no_encoder_is_refused() -> None:
     assert stand.machine.config.encoder is not None
     other = dataclasses.replace(stand.machine.config.encoder, node=module.config)
     wrong = CanEncoder(other, stand.machine.bus, None)
-    with pytest.raises(DriverError, match="is a device of profile 401, expected 406"):
+    with raises_code(DriverError, "drive-setup", "401", "406"):
         wrong.connect()
     stand.close()
 
@@ -152,7 +152,10 @@ def test_silence_is_told_of_and_moves_no_axis(own: EncoderBench) -> None:
     own.machine.axes.enable(True)
     own.peers.nodes["turns"].silent = True
     own.run(0.5)
-    assert "turns: it does not answer SYNC" in own.machine.ports.spindle.fault()
+    fault = own.machine.ports.spindle.fault()
+    assert code_of(fault, "driver") == "spindle-encoder"
+    assert "turns: " in fault
+    assert "SYNC" in fault
     assert own.machine.axes.sample().fault == ""
     own.peers.nodes["turns"].silent = False
     own.run(0.2)
@@ -166,7 +169,10 @@ def test_a_restart_is_told_of(own: EncoderBench) -> None:
     own.run(0.1)
     own.peers.nodes["turns"].boot()
     own.run(0.05)
-    assert "it has restarted" in own.machine.ports.spindle.fault()
+    fault = own.machine.ports.spindle.fault()
+    assert code_of(fault, "driver") == "spindle-encoder"
+    assert "turns: " in fault
+    assert "SYNC" not in fault
     own.machine.axes.clear_fault()
     own.turn(600.0)
     own.run(1.5)
@@ -178,7 +184,9 @@ def test_counts_that_leap_are_no_turning(own: EncoderBench) -> None:
     own.run(0.1)
     own.peers.encoder.stuck = 40960
     own.run(0.05)
-    assert "leap" in own.machine.ports.spindle.fault()
+    fault = own.machine.ports.spindle.fault()
+    assert code_of(fault, "driver") == "spindle-encoder"
+    assert "turns: " in fault
 
 
 def test_an_emergency_of_the_node_is_told_of(own: EncoderBench) -> None:

@@ -9,6 +9,7 @@ from core.executor.executor import Executor
 from core.executor.snapshot import State
 from tests.drivers.canopen.bench import CanBench, can_machine
 from tests.executor.rig import Rig
+from tests.texts import text
 
 OVER = "G90G94F300\nX0Z0\nG01F300\n" + "X.2Z-3\nX0Z0\n" * 3 + "M30"
 
@@ -53,7 +54,8 @@ def test_a_drive_that_restarts_has_lost_its_home() -> None:
     rig.run(0.1)
     rig.bench.peers.nodes["X"].boot()
     rig.until(State.FAULT)
-    assert "X: the drive has restarted" in rig.shot.alarms[-1].cause
+    assert rig.shot.alarms[-1].code == "drive-restarted"
+    assert rig.shot.alarms[-1].cause.startswith("X: ")
     assert rig.bench.machine.axes.sample().homed == (False, True, True)
     rig.bench.close()
 
@@ -63,7 +65,7 @@ def test_palms_start_where_the_machine_file_wants_two_hands() -> None:
     rig.start(OVER)
     rig.run(0.1)
     assert rig.state is State.IDLE
-    assert "palm" in rig.shot.start_refused
+    assert rig.shot.start_refused == text("executor.press-palms")
     rig.bench.peers.machine.press_start()
     rig.until(State.RUN, limit=0.3)
     rig.bench.close()
@@ -76,7 +78,7 @@ def test_homing_in_the_order_of_the_machine_file_and_a_cycle_only_afterwards() -
     rig.start(OVER)
     rig.run(0.2)
     assert rig.state is State.IDLE
-    assert "home" in rig.shot.start_refused.lower()
+    assert rig.shot.start_refused == text("executor.not-homed", axes="X, Z")
     order: list[str] = []
 
     def note(shot: object) -> None:

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 
 import pytest
 
+from core.faults import code_of
 from core.ports import DriverError
 from drivers.canopen.canopen_bus import Bus
 from drivers.canopen.canopen_config import CanopenConfig, OutputConfig, PotConfig
@@ -14,6 +15,7 @@ from drivers.canopen.canopen_nodes import BusConfig, CanNode
 from drivers.canopen.canopen_nodes import CanTerminal as Terminal
 from drivers.canopen.canopen_terminals import CanopenIO
 from drivers.clocks import StepClock
+from tests.coded import raises_code
 from tests.drivers.canopen.foreign import NODE, ForeignModule
 
 TICK = 0.01
@@ -144,7 +146,7 @@ def test_modules_of_every_kind_stay_well(make: MakeBench, inputs: int, outputs: 
 
 def test_a_terminal_that_the_module_has_not(make: MakeBench) -> None:
     bench = make(words=1, pot=2)
-    with pytest.raises(DriverError, match=r"io: the module has 1 bytes of inputs, .*no 6401\.2; check"):
+    with raises_code(DriverError, "driver", "io: ", "6401.2"):
         bench.start()
 
 
@@ -152,7 +154,9 @@ def test_a_module_that_restarts_is_told(make: MakeBench) -> None:
     bench = make()
     bench.start()
     bench.module.node.nmt.reset()
-    assert "io: the I/O module has restarted" in bench.run(0.05)
+    fault = bench.run(0.05)
+    assert code_of(fault, "driver") == "io-silent"
+    assert fault.startswith("io: ")
 
 
 @pytest.mark.parametrize(("inputs", "why"), [(1, "SYNC"), (0, "heartbeat")])
@@ -162,7 +166,7 @@ def test_a_module_that_falls_silent_is_told(make: MakeBench, inputs: int, why: s
     bench.module.objects.write(0x1017, 0, 0)  # no heartbeat
     bench.module.node.tpdo[0].enable = False
     assert why in bench.run(0.5)
-    with pytest.raises(DriverError, match="output coolant stays off"):
+    with raises_code(DriverError, "output", "coolant", "io: "):
         bench.io.write("coolant", on=True)
 
 
@@ -178,5 +182,5 @@ def test_a_mapping_that_cannot_be_changed_will_do_when_it_is_the_right_one(make:
 def test_another_mapping_that_cannot_be_changed_is_refused(make: MakeBench) -> None:
     bench = make(inputs=2)
     bench.module.fix_mapping()
-    with pytest.raises(DriverError, match=r"io: node 10, object 1A00:0: refused by the node"):
+    with raises_code(DriverError, "drive-setup", "io: node 10, object 1A00:0: "):
         bench.start()

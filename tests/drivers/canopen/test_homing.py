@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import pytest
 
 from core.ports import DriverError, Stop
+from tests.coded import raises_code
 from tests.drivers.canopen.bench import CanBench, can_machine
 from tests.drivers.machines import ramp
 
@@ -27,8 +28,9 @@ def test_homing_ends_at_the_switch_and_not_by_stale_bits(lost: CanBench) -> None
     assert axes.sample().homed == (False, False, True)
     axes.enable(True)
     axes.home("Z")
-    with pytest.raises(DriverError, match="homing"):
+    with raises_code(DriverError, "driver", "Z") as told:
         axes.splice(ramp(lost.clock.now() + 0.2, ZERO, 60.0, 0.1))
+    assert told.value.reason == "homing"
     lost.run(0.3)
     assert not axes.sample().homed[1]  # target reached was set when it began
     took = lost.until(lambda: axes.sample().homed[1])
@@ -44,15 +46,17 @@ def test_homing_ends_at_the_switch_and_not_by_stale_bits(lost: CanBench) -> None
 
 def test_homing_refuses_without_power_while_moving_and_an_unknown_axis(lost: CanBench) -> None:
     axes = lost.machine.axes
-    with pytest.raises(DriverError, match="drives are off"):
+    with raises_code(DriverError, "power-lost"):
         axes.home("Z")
     axes.enable(True)
-    with pytest.raises(DriverError, match="no axis 'B'"):
+    with raises_code(DriverError, "driver", "'B'") as told:
         axes.home("B")
+    assert told.value.reason == "no-axis"
     axes.splice(ramp(lost.clock.now() + 0.15, ZERO, 60.0, 0.6))
     lost.run(0.3)
-    with pytest.raises(DriverError, match="standstill"):
+    with raises_code(DriverError, "homing", "Z") as told:
         axes.home("Z")
+    assert told.value.reason == "axis-moves"
 
 
 def test_a_homing_that_is_stopped_leaves_the_axis_unhomed(lost: CanBench) -> None:
@@ -63,8 +67,9 @@ def test_a_homing_that_is_stopped_leaves_the_axis_unhomed(lost: CanBench) -> Non
     lost.run(0.5)
     axes.stop(Stop.RAMP_HOLD)
     assert axes.sample().moving
-    with pytest.raises(DriverError, match="homing"):
+    with raises_code(DriverError, "driver", "Z") as told:
         axes.splice(ramp(lost.clock.now() + 0.2, ZERO, 60.0, 0.1))
+    assert told.value.reason == "homing"
     lost.run(0.5)
     sample = axes.sample()
     assert not sample.homed[1]

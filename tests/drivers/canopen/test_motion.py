@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from core.ports import DriverError, Segments, Stop
+from tests.coded import raises_code
 from tests.drivers.canopen.bench import CanBench, can_machine
 from tests.drivers.machines import ramp
 
@@ -137,16 +138,19 @@ def test_a_move_that_comes_while_the_queues_end(bench: CanBench, wait: float) ->
 
 def test_drives_refuse_when_off_too_fast_or_outside(bench: CanBench) -> None:
     axes = bench.machine.axes
-    with pytest.raises(DriverError, match="drives are off"):
+    with raises_code(DriverError, "power-lost"):
         axes.splice(ramp(0.2, ZERO, 60.0, 0.1))
     axes.enable(True)
     start = bench.clock.now() + 0.15
-    with pytest.raises(DriverError, match="faster than"):
+    with raises_code(DriverError, "drive-limits", "X: ") as told:
         axes.splice(ramp(start, ZERO, 128.0, 0.1))
-    with pytest.raises(DriverError, match="leave"):
+    assert told.value.reason == "too-fast"
+    with raises_code(DriverError, "drive-limits", "X: ") as told:
         axes.splice(ramp(start, ZERO, 100.0, 1.2))
-    with pytest.raises(DriverError, match="too early"):
+    assert told.value.reason == "leaves-travel"
+    with raises_code(DriverError, "late") as told:
         axes.splice(ramp(bench.clock.now() + 0.05, ZERO, 60.0, 0.1))
+    assert told.value.reason == "too-early"
     bench.run(0.5)
     assert bench.peers.machine.true_position() == ZERO
 

@@ -11,6 +11,7 @@ from core.executor.snapshot import State
 from tests.drivers.canopen.bench import can_machine
 from tests.drivers.canopen.test_executor import OVER, BusRig, under_way
 from tests.executor.rig import INCH
+from tests.texts import text
 
 ONE_HAND = ("two_hand_start = true", "two_hand_start = false")
 THOU = 0.001 * INCH
@@ -86,7 +87,7 @@ def test_hold_stops_on_the_path_and_bars_the_start_while_it_is_down(make: Callab
     rig.bench.peers.machine.press_start()
     rig.run(0.5)
     assert rig.state is State.HOLD
-    assert rig.shot.start_refused == "feed hold is pressed"
+    assert rig.shot.start_refused == text("executor.hold-pressed")
     rig.bench.peers.machine.release_hold()
     rig.run(0.5)
     rig.bench.peers.machine.press_start()
@@ -138,7 +139,7 @@ def test_a_worn_wiper_is_a_feed_hold(make: Callable[..., BusRig]) -> None:
     under_way(rig, 0.2)
     rig.bench.peers.machine.pot_noise(0.6)
     rig.until(State.HOLD, limit=2.0)
-    assert "OVERRIDE POT JUMPS" in " ".join(event.text for event in rig.events)
+    assert text("executor.pot-jumps") in " ".join(event.text for event in rig.events)
     assert rig.shot.alarms == ()
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from core.ports import DriverError, Stop
+from tests.coded import raises_code
 from tests.drivers.canopen.bench import CanBench, can_machine
 from tests.drivers.machines import ramp
 
@@ -48,8 +49,9 @@ def test_profile_position_refuses_a_corner() -> None:
     segments = ramp(bench.clock.now() + 0.15, ZERO, 60.0, 0.5)
     bent = segments.p.copy()
     bent[1:, 1] = 1.0
-    with pytest.raises(DriverError, match="single straight moves only"):
+    with raises_code(DriverError, "drive-limits") as told:
         axes.splice(segments._replace(p=bent))
+    assert told.value.reason == "one-move-only"
     bench.close()
 
 

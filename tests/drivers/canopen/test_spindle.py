@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import pytest
 
+from core.faults import code_of
 from core.ports import DriverError
+from tests.coded import raises_code
 from tests.drivers.canopen.bench import CanBench, can_machine
 
 
@@ -34,11 +36,12 @@ def test_a_command_during_estop_is_an_alarm_and_not_a_start_at_its_release(bench
     bench.peers.machine.press_estop()
     spindle.run(500.0)
     bench.run(1.5)
-    assert "does not come on" in spindle.fault()
+    assert code_of(spindle.fault(), "driver") == "spindle"
+    assert spindle.fault().startswith("spindle: ")
     bench.peers.machine.release_estop()
     bench.run(2.0)
     assert bench.peers.machine.spindle_rpm() == 0.0
-    with pytest.raises(DriverError, match="stays off"):
+    with raises_code(DriverError, "spindle-off", "spindle: "):
         spindle.run(500.0)
 
 
@@ -48,7 +51,8 @@ def test_a_blocked_motor_is_told_and_the_spindle_runs_down(bench: CanBench) -> N
     bench.run(1.0)
     bench.peers.machine.spindle_fault("blocked")
     bench.until(lambda: spindle.fault() != "", 0.1)
-    assert "spindle: monitoring" in spindle.fault() or "EMCY 7120" in spindle.fault()
+    assert code_of(spindle.fault(), "driver") == "spindle"
+    assert "EMCY 7120" in spindle.fault()
     bench.run(3.0)
     assert not powered(bench)
     bench.peers.machine.spindle_fault("")
@@ -101,8 +105,9 @@ def test_without_a_drive_on_the_bus_there_is_nothing_to_turn() -> None:
         can_machine(('driver = "cia402"', f'driver = "vfd"\n{inverter}'), ("spindle = { id = 3 }", ""))
     )
     spindle = bench.machine.ports.spindle
-    with pytest.raises(DriverError, match="no spindle drive on this bus"):
+    with raises_code(DriverError, "spindle-off") as told:
         spindle.run(100.0)
+    assert told.value.reason == "no-drive"
     spindle.run(0.0)
     assert spindle.speed() == 0.0
     bench.close()

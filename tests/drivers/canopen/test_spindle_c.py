@@ -13,8 +13,10 @@ from core.machine.machine_model import Machine
 from core.ports import DriverError
 from drivers.canopen.spindle_as_c import SpindleC, Step
 from drivers.clocks import StepClock
+from tests.coded import raises_code
 from tests.drivers.canopen.bench import CanBench, can_machine
 from tests.drivers.canopen.test_executor import BusRig
+from tests.texts import text
 
 CHANGES = (
     ("two_hand_start = true", "two_hand_start = false"),
@@ -111,8 +113,9 @@ def test_the_index_is_looked_for_once(stand: CBench) -> None:
 
 def test_given_back_it_turns_again_and_only_then(stand: CBench) -> None:
     stand.hold(orient=False)
-    with pytest.raises(DriverError, match="held as C"):
+    with raises_code(DriverError, "spindle-off") as told:
         stand.machine.ports.spindle.run(500.0)
+    assert told.value.reason == "held-as-c"
     stand.c.hold(False)
     stand.machine.ports.spindle.run(500.0)
     stand.run(0.02)
@@ -125,18 +128,21 @@ def test_given_back_it_turns_again_and_only_then(stand: CBench) -> None:
 def test_it_is_refused_while_it_turns(stand: CBench) -> None:
     stand.machine.ports.spindle.run(300.0)
     stand.run(1.0)
-    with pytest.raises(DriverError, match="the spindle turns"):
+    with raises_code(DriverError, "c-coupling") as told:
         stand.c.hold(True)
+    assert told.value.reason == "spindle-turns"
     stand.machine.ports.spindle.run(0.0)
     stand.run(0.05)
-    with pytest.raises(DriverError, match="the spindle turns"):
+    with raises_code(DriverError, "c-coupling") as told:
         stand.c.hold(True)
+    assert told.value.reason == "spindle-turns"
 
 
 def test_it_is_refused_without_power() -> None:
     stand = CBench(c_machine())
-    with pytest.raises(DriverError, match="drives are off"):
+    with raises_code(DriverError, "c-coupling") as told:
         stand.c.hold(True)
+    assert told.value.reason == "drives-off"
     stand.close()
 
 
@@ -171,7 +177,7 @@ def test_a_drive_without_those_modes_is_refused_at_the_start() -> None:
     assert stand.peers.plant.spindle_drive is not None
     stand.peers.plant.spindle_drive.positions = False
     assert stand.machine.spindle is not None
-    with pytest.raises(DriverError, match="has no mode homing, interpolated position"):
+    with raises_code(DriverError, "drive-setup", "spindle: ", "homing", "interpolated position"):
         stand.machine.spindle.connect()
     stand.close()
 
@@ -294,7 +300,8 @@ def test_an_index_that_is_missing_is_an_alarm(rig: BusRig, monkeypatch: pytest.M
     monkeypatch.setattr(drive.slide, "seek", lambda _method: setattr(drive.slide, "switch", 1e9))
     rig.start("G90G94F300\nM19\nC90S60\nM05\nM30")
     rig.until(State.FAULT, limit=30.0)
-    assert "no index was found" in rig.shot.alarms[-1].cause
+    assert rig.shot.alarms[-1].code == "c-coupling"
+    assert "index" in rig.shot.alarms[-1].cause
     rig.run(3.0)
     assert not drive.power.powered
 
@@ -337,8 +344,9 @@ def test_through_the_feeder_too() -> None:
     lock.hold(True, orient=True)
     run(8.0)
     assert lock.held()
-    with pytest.raises(DriverError, match="held as C"):
+    with raises_code(DriverError, "spindle-off") as told:
         link.run(100.0)
+    assert told.value.reason == "held-as-c"
     lock.hold(False)
     run(3.0)
     assert not lock.held()
@@ -367,7 +375,7 @@ def test_a_fault_of_that_drive_stops_the_slides_too(rig: BusRig) -> None:
 def test_a_jog_of_c_waits_for_the_change_over(rig: BusRig) -> None:
     rig.ready()
     rig.post(Jog("C", 60.0, 0.2))
-    assert "becomes C" in rig.said("refused")[-1]
+    assert text("executor.becomes-c") in rig.said("refused")[-1]
     rig.run(2.0)
     rig.post(Jog("C", 60.0, 0.2))
     rig.until(State.JOG)
@@ -384,7 +392,8 @@ def test_a_drive_that_restarts_as_c_is_a_spindle_again_and_has_lost_its_index(ri
     rig.until_true(lambda _: c.held(), limit=30.0)
     rig.bench.peers.nodes["spindle"].boot()
     rig.until(State.FAULT, limit=0.5)
-    assert "spindle: the drive has restarted" in rig.shot.alarms[-1].cause
+    assert rig.shot.alarms[-1].code == "spindle"
+    assert rig.shot.alarms[-1].cause.startswith("spindle: ")
     rig.run(3.0)
     rig.post(Reset())
     rig.until(State.DISABLED, limit=5.0)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import re
 
 import pytest
 
@@ -12,6 +13,7 @@ from core.ports import DriverError
 from drivers.canopen.canopen_survey import Answer, survey
 from drivers.canopen.canopen_table import CanopenTable
 from drivers.clocks import StepClock
+from tests.coded import raises_code
 from tests.drivers.canopen.bench import can_machine
 
 
@@ -43,7 +45,10 @@ def test_every_node_says_what_it_is() -> None:
     assert {name: answer.node for name, answer in found.items()} == {"X": 1, "Z": 2, "spindle": 3, "io": 10}
     assert not any(answer.trouble for answer in found.values())
     # EPOS2 has no option of its quick stop, and no time for its window
-    assert found["X"].detail == "maxon EPOS2, modes PP homing IP CSP, runs pvt, has not 605Ah 6066h"
+    assert "PP homing IP CSP" in found["X"].detail
+    for value in ("EPOS2", "pvt"):
+        assert value in found["X"].detail
+    assert re.findall("[0-9A-F]{4}h", found["X"].detail) == ["605Ah", "6066h"]
     assert found["io"].detail == "CiA 401"
 
 
@@ -56,20 +61,21 @@ def test_a_family_that_has_not_the_mode_is_wrong_before_anything_is_written() ->
     found = surveyed(*csp)
     assert "runs csp" in found["X"].detail
     interpolated = (('mode = "pvt"', 'mode = "ip"'), *csp[1:])
-    assert "X: node 1 cannot be used in this mode, it has not: 60C1:1" in surveyed(*interpolated)["X"].trouble
+    trouble = surveyed(*interpolated)["X"].trouble
+    assert trouble.startswith("X: node 1 ")
+    assert "60C1:1" in trouble
 
 
 def test_one_that_is_silent_hides_no_other() -> None:
     found = surveyed(silent="Z")
-    assert "Z: node 2" in found["Z"].trouble
-    assert "no answer" in found["Z"].trouble
+    assert found["Z"].trouble.startswith("Z: node 2, object 1000:0: ")
     assert [name for name, answer in found.items() if answer.trouble] == ["Z"]
 
 
 def test_a_node_of_another_kind_is_named_with_both_profiles() -> None:
     found = surveyed(("Z = { id = 2,", "Z = { id = 10,"), ("io = { id = 10,", "io = { id = 2,"))
-    assert "node 10 is a device of profile 401, expected 402" in found["Z"].trouble
-    assert "node 2 is a device of profile 402, expected 401" in found["io"].trouble
+    for name, values in (("Z", ["10", "401", "402"]), ("io", ["2", "402", "401"])):
+        assert re.findall("[0-9]+", found[name].trouble) == values
     assert not found["X"].trouble
 
 
@@ -94,5 +100,5 @@ def test_asking_leaves_no_heartbeat_that_somebody_could_miss(monkeypatch: pytest
 
 def test_a_bus_that_is_not_there_is_one_sentence() -> None:
     machine = can_machine(('interface = "virtual"', 'interface = "nobody"'))
-    with pytest.raises(DriverError, match=r"CAN nobody bench-\d+ cannot be opened"):
+    with raises_code(DriverError, "driver", "CAN nobody bench-"):
         survey(canopen_config(machine), StepClock())
