@@ -61,7 +61,9 @@ class SerialWire:
         try:
             self._port.open()
         except (OSError, ValueError) as error:
-            raise DriverError(f"{port} cannot be opened: {why(error)} ([grblhal] port)") from error
+            raise DriverError(
+                f"{port} cannot be opened: {why(error)} ([grblhal] port)", reason="not-opened"
+            ) from error
 
     def read(self) -> bytes:
         """What has arrived."""

@@ -24,9 +24,9 @@ from tests.drivers.contract.simulated import FEEDER_FAULTS, FEEDER_WORDS, Broken
 from tests.drivers.contract.world import SimWorld
 
 # Three heartbeats of 100 ms, a round of the bus, and v/a from 120 mm/s.
-_SILENT = Fault(told=0.35, rests=0.45, says="check cable and power")
+_SILENT = Fault(told=0.35, rests=0.45, code="drive-silent", names="SYNC")
 # The drives miss our heartbeat.
-_DEAF = Fault(told=0.05, rests=0.45, says="", unknown=ALL_UNKNOWN)
+_DEAF = Fault(told=0.05, rests=0.45, code="bus", unknown=ALL_UNKNOWN)
 _SLIDES, _TERMINALS = frozenset({Unknown.SLIDES}), frozenset({Unknown.OUTPUTS, Unknown.INPUTS})
 
 
@@ -34,18 +34,18 @@ class Canopen(Rig):
     """Queued in the drives (PVT)."""
 
     faults: ClassVar[Mapping[str, Fault]] = {
-        "drive fault": Fault(told=0.03, rests=0.1, says="X: "),
-        "following error": Fault(told=0.08, rests=0.2, says="X: monitoring (EMCY 8611)"),
+        "drive fault": Fault(told=0.03, rests=0.1, code="axis", names="X: "),
+        "following error": Fault(told=0.08, rests=0.2, code="following", names="EMCY 8611"),
         "cable out": replace(_SILENT, unknown=ALL_UNKNOWN),
-        "silence": replace(_SILENT, says="Z: ", unknown=_SLIDES),
-        "silent terminals": replace(_SILENT, says="io: ", unknown=_TERMINALS),
-        "garbage": replace(_DEAF, says="frames that make no sense"),
-        "node reboot": Fault(told=0.03, rests=0.4, says="X: the drive has restarted", unknown=_SLIDES),
-        "terminals reboot": Fault(told=0.03, rests=0.2, says="io: ", unknown=_TERMINALS),
-        "NMT stop": Fault(told=0.15, rests=0.45, says="Z: ", unknown=_SLIDES),
-        "bus-off": replace(_DEAF, says="bus-off"),
-        "two masters": replace(_DEAF, says="another master"),
-        "dead reader": replace(_DEAF, says="the CAN interface"),
+        "silence": replace(_SILENT, names="Z: ", unknown=_SLIDES),
+        "silent terminals": replace(_SILENT, code="io-silent", names="io: ", unknown=_TERMINALS),
+        "garbage": replace(_DEAF, names="181"),
+        "node reboot": Fault(told=0.03, rests=0.4, code="drive-restarted", names="X: ", unknown=_SLIDES),
+        "terminals reboot": Fault(told=0.03, rests=0.2, code="io-silent", names="io: ", unknown=_TERMINALS),
+        "NMT stop": Fault(told=0.15, rests=0.45, code="drive-silent", names="Z: ", unknown=_SLIDES),
+        "bus-off": replace(_DEAF, names="bus-off"),
+        "two masters": replace(_DEAF, names="heartbeat"),
+        "dead reader": replace(_DEAF, names="closed bus"),
     }
     harmless: ClassVar[tuple[str, ...]] = ("late answers",)
     missing: ClassVar[Mapping[str, str]] = {

@@ -132,20 +132,20 @@ class Grblhal(Rig):
     """On an in-memory wire."""
 
     faults: ClassVar[Mapping[str, Fault]] = {
-        "drive fault": Fault(told=0.02, rests=0.02, says="ALARM:17, motor fault", homeless=True),
-        "alarm": Fault(told=0.02, rests=0.02, says="ALARM:14"),
+        "drive fault": Fault(told=0.02, rests=0.02, code="axis", names="ALARM:17", homeless=True),
+        "alarm": Fault(told=0.02, rests=0.02, code="controller-alarm", names="ALARM:14"),
         "cable out": Fault(
             0.02,
             0.9,
-            "the connection to the controller is lost",
+            "controller-lost",
             spins=_ALONE,
             flows=_ALONE,
             unknown=ALL_UNKNOWN,
         ),
-        "silence": Fault(told=1.4, rests=2.2, says="does not answer", unknown=ALL_UNKNOWN),
-        "garbage": Fault(told=0.15, rests=0.3, says="disturbed"),
-        "node reboot": Fault(told=0.15, rests=0.1, says="reset", homeless=True),
-        "two masters": Fault(told=0.15, rests=0.3, says="disturbed"),
+        "silence": Fault(told=1.4, rests=2.2, code="controller-silent", unknown=ALL_UNKNOWN),
+        "garbage": Fault(told=0.15, rests=0.3, code="controller-silent", names="k' "),
+        "node reboot": Fault(told=0.15, rests=0.1, code="position-lost", names="ALARM:3", homeless=True),
+        "two masters": Fault(told=0.15, rests=0.3, code="controller-silent", names="'ok'"),
     }
     harmless: ClassVar[tuple[str, ...]] = ("late answers",)
     missing: ClassVar[Mapping[str, str]] = {

@@ -71,19 +71,19 @@ def hal_machine(*, homing: bool = False, lamps: str = "", orients: bool = False)
     return parse_machine(hal_text(homing=homing, lamps=lamps, orients=orients), "gt75-hal.toml")
 
 
-_GONE = Fault(told=0.05, rests=0.5, says="the bridge to HAL has ended", unknown=ALL_UNKNOWN)
+_GONE = Fault(told=0.05, rests=0.5, code="hal-bridge", unknown=ALL_UNKNOWN)
 
 
 class Hal(Rig):
     """Bridge and servo thread, with the driver in the loop that owns them."""
 
     faults: ClassVar[Mapping[str, Fault]] = {
-        "drive fault": Fault(told=0.03, rests=0.1, says="X: the drive reports a fault"),
-        "following error": Fault(told=0.08, rests=0.2, says="X: following error"),
+        "drive fault": Fault(told=0.03, rests=0.1, code="axis", names="X: "),
+        "following error": Fault(told=0.08, rests=0.2, code="following", names="X: "),
         "dead reader": _GONE,
-        "silence": Fault(0.2, 0.6, "the bridge to HAL has told nothing", unknown=ALL_UNKNOWN),
-        "node reboot": Fault(told=0.35, rests=0.2, says="HAL's servo thread stands", unknown=ALL_UNKNOWN),
-        "garbage": replace(_GONE, says="something that is no packet"),
+        "silence": Fault(0.2, 0.6, "hal-silent", "0.1", unknown=ALL_UNKNOWN),
+        "node reboot": Fault(told=0.35, rests=0.2, code="hal-thread", unknown=ALL_UNKNOWN),
+        "garbage": replace(_GONE, code="hal-silent", names="packet"),
     }
     harmless: ClassVar[tuple[str, ...]] = ("late answers",)
     missing: ClassVar[Mapping[str, str]] = {

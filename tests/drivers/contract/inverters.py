@@ -13,6 +13,7 @@ from app.compose.inverter_backend import ClearingAxes, halt_with, unknown_with
 from app.compose.machine_files import parse_machine
 from core.ports import Unknown
 from drivers.inverter.inverter_attendant import AttendantThread
+from drivers.inverter.inverter_obedience import PRESS
 from drivers.inverter.inverter_spindle import InverterSpindle, attendant
 from tests.drivers.contract.lockstep import LockstepClock
 from tests.drivers.contract.rig import Fault
@@ -25,9 +26,9 @@ from tests.drivers.inverter.wires import BenchWire
 _RTU, _NO_WATCH = 2.2, "it has no time-out of its own: a watchdog relay on its run terminal"
 _SPINDLE = frozenset({Unknown.SPINDLE})
 # A second of silence, and the tries under way.
-_LOST = Fault(told=_RTU, rests=_RTU + 0.2, says="PRESS E-STOP", unknown=_SPINDLE)
+_LOST = Fault(told=_RTU, rests=_RTU + 0.2, code="inverter-silent", names=PRESS, unknown=_SPINDLE)
 _DISOBEYS = Fault(
-    told=1.6, rests=1.8, says="understood 0.00 Hz: PRESS E-STOP"
+    told=1.6, rests=1.8, code="ignores-stop", names="0.00 Hz"
 )  # a second, and the looks under way
 
 
@@ -70,10 +71,8 @@ class OnALine(Simulated):
         "garbage": _LOST,
         "answers too late": dataclasses.replace(_LOST, told=2 * _RTU, rests=2 * _RTU + 0.2),
         "node reboot": _DISOBEYS,
-        "dead reader": Fault(
-            0.1, 0.2, "nobody attends the inverter any more: PRESS E-STOP", unknown=_SPINDLE
-        ),
-        "two masters": dataclasses.replace(_DISOBEYS, says="PRESS E-STOP"),
+        "dead reader": Fault(0.1, 0.2, "inverter-silent", PRESS, unknown=_SPINDLE),
+        "two masters": dataclasses.replace(_DISOBEYS, names=PRESS),
     }
     harmless: ClassVar[tuple[str, ...]] = ("late answers", "noise")
     heals = 2.0  # a port that has gone is tried again each second

@@ -8,6 +8,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
+from core.faults import FaultCode
 from core.machine.machine_model import Machine
 from core.ports import BlockSink, MachinePorts, Unknown
 from drivers.clocks import StepClock
@@ -35,7 +36,8 @@ NINE = (
 class Fault:
     """What may be counted on once something has gone wrong on a driver's wires.
 
-    ``told`` and ``rests``: s until the driver ``says`` so, and until every slide stands. ``spins``,
+    ``told`` and ``rests``: s until the driver reports it by its ``code``, in a text that ``names`` a value,
+    and until every slide stands. ``spins``,
     ``flows``: why spindle or coolant stay on, where nothing can be said to them any more. ``homeless``:
     nobody knows any more where the slides are. ``unknown``: of what nothing is heard as long as it lasts;
     what is said of that is the last that was. Behind each of them Reset leads back.
@@ -43,7 +45,8 @@ class Fault:
 
     told: float
     rests: float
-    says: str
+    code: FaultCode
+    names: str = ""
     spins: str = ""
     flows: str = ""
     homeless: bool = False

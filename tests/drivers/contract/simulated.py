@@ -21,7 +21,7 @@ from drivers.reopening import Opening
 from tests.drivers.contract.rig import Fault, Rig
 from tests.drivers.contract.world import SimWorld
 
-_TRIP = Fault(told=0.02, rests=0.1, says="X: drive fault")
+_TRIP = Fault(told=0.02, rests=0.1, code="axis", names="X: ")
 _INSIDE = "the simulated machine is in this process: there is no wire"
 
 
@@ -43,7 +43,7 @@ class Simulated(Rig):
 
     faults: ClassVar[Mapping[str, Fault]] = {
         "drive fault": _TRIP,
-        "following error": Fault(0.07, 0.15, "X: following error"),
+        "following error": Fault(0.07, 0.15, "following", "X: "),
     }
     missing: ClassVar[Mapping[str, str]] = {
         "cable out": _INSIDE,
@@ -127,7 +127,14 @@ FEEDER_WORDS = {
     "garbage": "the feeder's socket carries something that is no message",
 }
 FEEDER_FAULTS = {
-    fault: Fault(told=0.02, rests=1.5, says=says, unknown=ALL_UNKNOWN) for fault, says in FEEDER_WORDS.items()
+    fault: Fault(
+        told=0.02,
+        rests=1.5,
+        code="feeder-gone" if fault == "dead reader" else "feeder-silent",
+        names=words,
+        unknown=ALL_UNKNOWN,
+    )
+    for fault, words in FEEDER_WORDS.items()
 }
 FEEDER_MISSING = {
     "cable out": "the feeder hangs on a socket pair inside one computer",

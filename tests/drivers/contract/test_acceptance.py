@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 
 import pytest
 
@@ -15,6 +16,7 @@ from tests.drivers.contract.control import Control
 from tests.drivers.contract.rig import STILL, TICK
 from tests.drivers.contract.test_cycle import PART, off_line
 from tests.drivers.contract.test_stopped import cutting
+from tests.texts import pattern, text
 
 AMAX = 3000.0  # mm/s², the least of all drivers here
 
@@ -35,7 +37,7 @@ def test_a_host_that_is_away_leaves_the_slides_on_their_path(control: Control, s
     assert off < 0.005
     assert way < 127.0 * 1.3  # of what it has, and nothing more
     control.tick()
-    assert any("away" in text for text in control.said("starved"))
+    assert any(re.search(r"[0-9.]+ s$", said) for said in control.said("starved"))
     assert control.shot.alarms == ()
     control.run(1.0)
     assert (control.state is State.HOLD) is (stall > 1.0)  # setpoints or blocks for a second are ahead
@@ -44,7 +46,7 @@ def test_a_host_that_is_away_leaves_the_slides_on_their_path(control: Control, s
     control.until(State.IDLE)
     assert control.shot.alarms == ()
     # Where a feeder has made the machine safe meanwhile, somebody has to look at the part.
-    disturbed = any("was disturbed" in text for text in control.said("uncounted"))
+    disturbed = any(re.match(pattern("executor.cycle-disturbed"), said) for said in control.said("uncounted"))
     assert (control.shot.ends, control.shot.parts) == (1, 0 if disturbed else 1)
     assert not disturbed or stall > 1.0
     assert control.world.place() == pytest.approx((0.0, 0.0), abs=0.003)
@@ -121,7 +123,7 @@ def test_a_silent_station_keeps_its_pots_and_holds(control: Control) -> None:
     assert control.state is State.RUN
     control.until(State.HOLD, limit=0.3)
     assert control.shot.feed_override == pytest.approx(0.8)
-    assert control.shot.waiting_for == "OPERATOR STATION SILENT"
+    assert control.shot.waiting_for == text("executor.station-silent")
 
 
 def test_two_starts_within_a_bounce_are_one_cycle(control: Control) -> None:
@@ -143,5 +145,5 @@ def test_a_program_that_has_changed_since_its_proof_is_refused(control: Control)
     control.post(LoadJob(other, Proof(job.digest, ())))
     control.press()
     assert control.state is State.IDLE
-    assert "another program" in control.shot.start_refused
+    assert text("executor.other-proof") in control.shot.start_refused
     assert control.nothing_moves()

@@ -16,6 +16,7 @@ from tests.drivers.contract.grbl import Grblhal
 from tests.drivers.contract.hal import Hal
 from tests.drivers.contract.rig import STILL, Rig
 from tests.drivers.contract.simulated import Fed, Simulated
+from tests.texts import text
 
 THREAD = "G90G94F300\nM03S600\nX.5Z.2\nX.25\nG33X.2Z-1I.025K.05\nG00Z1\nM30\n"
 STILL_G95 = "G90G94F300\nG95F.01Z-1\nM30\n"
@@ -104,7 +105,7 @@ def test_a_spindle_that_ignores_its_stop_is_told_within_a_second_and_asks_for_th
     assert control.until(State.FAULT, limit=3.0) <= 1.7
     alarm = control.shot.alarms[0]
     assert alarm.code in {"spindle", "ignores-stop"}
-    assert "PRESS E-STOP" in alarm.cause + alarm.remedy
+    assert text("executor.press-estop") in alarm.cause + alarm.remedy
 
 
 @pytest.mark.parametrize("name", [name for name in THREADING if name != "grblhal"])

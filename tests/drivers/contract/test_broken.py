@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from core.faults import code_of
 from core.ports import DriverError
 from tests.drivers.contract.conftest import Broken
 from tests.drivers.contract.rig import NINE, Rig
@@ -65,7 +66,8 @@ def test_a_fault_is_told_in_time_and_only_a_clear_word_brings_power_back(broken:
     rig.under_way()
     rig.acts()[fault]()
     rig.until(lambda: rig.told != "", rig.faults[fault].told)
-    assert rig.faults[fault].says in rig.told
+    assert code_of(rig.told, "axis") == rig.faults[fault].code
+    assert rig.faults[fault].names in rig.told
     rig.run(0.1)
     assert rig.ports.unknown() == rig.faults[fault].unknown
     costs_no_time(rig)

@@ -12,6 +12,7 @@ from core.executor.snapshot import State
 from tests.drivers.contract.control import INCH, Control
 from tests.drivers.contract.rig import STILL, TICK, Rig
 from tests.drivers.contract.test_stopped import cutting
+from tests.texts import text
 
 PART = (
     "G90G94F300\nM03S1000\nM08\nM25\nX1\nG01F60Z-.5\nG03X1.25Z-.75I1.25K-.5\nX1.5\nG04F.3\n"
@@ -93,7 +94,7 @@ def test_the_hold_button_holds_and_keeps_holding(control: Control) -> None:
     control.until(State.HOLD, limit=0.4)
     control.press()
     assert control.state is State.HOLD
-    assert control.shot.start_refused == "feed hold is pressed"
+    assert control.shot.start_refused == text("executor.hold-pressed")
     control.world.release_hold()
     control.press()
     control.until(State.RUN, limit=0.1)

@@ -10,6 +10,7 @@ from core.executor.drive_test_path import DriveTestPath, Shape
 from core.executor.snapshot import State
 from tests.drivers.contract.control import Control
 from tests.drivers.contract.rig import STILL
+from tests.texts import text
 
 LEASE = 0.3
 PATHS = (
@@ -40,7 +41,7 @@ def test_a_test_is_played_and_comes_back_or_is_refused_with_the_reason(
     barred = control.shot.drive_test.barred
     assert barred == (PLANS if control.rig.blocks is not None else "")
     if barred:
-        assert control.said("refused") == [f"drive test: {PLANS}"]
+        assert control.said("refused") == [text("executor.drive-test", why=PLANS)]
         assert seen == []
         assert control.world.place() == began
         return
@@ -65,5 +66,5 @@ def test_a_test_that_nobody_renews_ends_with_its_lease(control: Control) -> None
     control.rest(0.2)
     assert 0.5 < control.world.place()[1] - at <= 10.0 * (LEASE + 0.1)
     control.until(State.IDLE, limit=0.5)
-    assert control.said("refused") == ["Z was stopped before the end of its drive test"]
+    assert control.said("refused") == [text("executor.test-cut-short", axis="Z")]
     assert control.shot.drive_test.whole == 0

@@ -8,6 +8,7 @@ import pytest
 
 from core.executor.snapshot import State
 from core.ports import DriverError
+from tests.coded import raises_code
 from tests.drivers.contract.control import Control
 from tests.drivers.contract.hal import Hal
 
@@ -81,7 +82,7 @@ def test_any_other_output_is_refused_while_the_chain_is_open(control: Control) -
     control.ready()
     control.rig.slides.press_estop()
     control.run(0.1)
-    with pytest.raises(DriverError, match="coolant stays as it is: the E-stop chain is open"):
+    with raises_code(DriverError, "output", "coolant", "E-stop"):
         control.rig.ports.io.write("coolant", True)
 
 

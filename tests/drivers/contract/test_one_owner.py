@@ -12,6 +12,7 @@ from app.compose.serial_ports import open_wire as open_line
 from core.ports import DriverError
 from drivers.grblhal.grblhal_wire import open_wire as open_controller
 from drivers.serial_line import LineSettings
+from tests.coded import raises_code
 from tests.drivers.ptys import open_pty
 
 Opened = Callable[[], None]  # lets it go again
@@ -38,10 +39,9 @@ def port() -> Iterator[str]:
 @pytest.mark.parametrize("first", OWNERS)
 def test_a_second_owner_is_one_sentence(port: str, first: str, second: str) -> None:
     close = OWNERS[first](port)
-    with pytest.raises(DriverError) as refused:
+    with raises_code(DriverError, "driver", port) as refused:
         OWNERS[second](port)
-    said = str(refused.value)
-    assert said.startswith(f"{port} cannot be opened: another program has it open; close it there")
-    assert "\n" not in said
+    assert refused.value.reason == "not-opened"
+    assert "\n" not in str(refused.value)
     close()
     OWNERS[second](port)()

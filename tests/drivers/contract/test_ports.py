@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from core.ports import DriverError, Stop
+from tests.coded import raises_code
 from tests.drivers.contract.conftest import need
 from tests.drivers.contract.rig import Rig
 
@@ -36,7 +37,7 @@ def test_a_move_arrives_where_it_was_told(powered: Rig) -> None:
 
 
 def test_without_power_nothing_is_taken(rig: Rig) -> None:
-    with pytest.raises(DriverError, match="drives are off"):
+    with raises_code(DriverError, "power-lost"):
         rig.go(60.0, 0.1)
     assert not rig.ports.axes.sample().enabled
     assert rig.stands()
@@ -75,7 +76,7 @@ def test_stops_that_take_the_power(moving: Rig, how: Stop) -> None:
     # friction alone brakes half as hard; a round of the bus is 1.2 mm
     assert moving.world.place()[0] - before < (2.0 if how is Stop.OFF else 1.0) * BRAKING + 1.5
     assert moving.stands()
-    with pytest.raises(DriverError, match="drives are off"):
+    with raises_code(DriverError, "power-lost"):
         moving.go(-60.0, 0.1)
 
 
@@ -96,9 +97,10 @@ def test_homing_finds_home_for_one_axis_and_only_where_power_is(lost: Rig) -> No
     z = axes.axes.index("Z")
     lost.run(0.1)
     assert not axes.sample().homed[z]
-    with pytest.raises(DriverError, match="'B'"):
+    with raises_code(DriverError, "driver", "'B'") as told:
         axes.home("B")
-    with pytest.raises(DriverError, match="drives are off"):
+    assert told.value.reason == "no-axis"
+    with raises_code(DriverError, "power-lost"):
         axes.home("Z")
     axes.enable(True)
     lost.run(0.2)
@@ -125,7 +127,7 @@ def test_estop_takes_power_and_gives_nothing_back(moving: Rig) -> None:
     assert moving.ports.station.snapshot().estop
     assert not axes.sample().enabled
     assert not axes.sample().moving
-    with pytest.raises(DriverError, match="E-stop"):
+    with raises_code(DriverError, "no-power", "E-stop"):
         axes.enable(True)
     stood = moving.world.place()
     moving.run(2.0)

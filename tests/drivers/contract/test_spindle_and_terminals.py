@@ -7,6 +7,7 @@ from functools import partial
 import pytest
 
 from core.ports import DriverError, Spindle
+from tests.coded import raises_code
 from tests.drivers.contract.rig import Rig
 
 
@@ -66,7 +67,7 @@ def test_outputs_go_out_and_fall_safe(rig: Rig) -> None:
     assert not rig.world.outputs()["coolant"]
     assert io.outputs()["collet"]  # "keep"
     assert rig.world.outputs()["collet"]
-    with pytest.raises(DriverError, match="output 'laser' is not in the machine file"):
+    with raises_code(DriverError, "output", "'laser'"):
         io.write("laser", True)
 
 

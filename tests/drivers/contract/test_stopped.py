@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 
 import pytest
 
@@ -13,6 +14,7 @@ from core.ports import Unknown
 from tests.drivers.contract.conftest import Broken
 from tests.drivers.contract.control import Control
 from tests.drivers.contract.rig import STILL, Fault
+from tests.texts import pattern, text
 
 OVER = "G90G94F300\nM03S600\nM08\nX0Z0\nG01F300\n" + "X3Z-.2\nX0Z0\n" * 2 + "M30\n"
 SHORT = "G90G94F300\nM03S600\nX.1\nG01F100X0\nM30\n"
@@ -43,7 +45,7 @@ def all_off(control: Control, outcome: Fault) -> None:
     assert "internal" not in codes
     if codes[0] in CUT_OFF:  # one cause, one alarm, which asks for the E-stop
         assert len(codes) == 1
-        assert control.shot.alarms[0].remedy.startswith("PRESS E-STOP")
+        assert control.shot.alarms[0].remedy.startswith(text("executor.press-estop"))
 
 
 def test_a_fault_stops_all_and_only_the_operator_goes_on(broken: Broken) -> None:
@@ -58,7 +60,8 @@ def test_a_fault_stops_all_and_only_the_operator_goes_on(broken: Broken) -> None
     control.run(0.1)
     assert control.shot.unknown == outcome.unknown
     alarm = control.shot.alarms[0]
-    assert outcome.says in alarm.detail + alarm.remedy
+    assert alarm.code == outcome.code
+    assert outcome.names in alarm.detail + alarm.remedy
     all_off(control, outcome)
     stood, powered = control.world.place(), rig.ports.axes.sample().enabled
     control.press()
@@ -76,7 +79,7 @@ def test_a_fault_stops_all_and_only_the_operator_goes_on(broken: Broken) -> None
     parts = control.shot.parts
     control.start(SHORT)
     if outcome.homeless:
-        assert "must be homed first" in control.shot.start_refused
+        assert re.fullmatch(pattern("executor.not-homed"), control.shot.start_refused)
         return
     control.until(State.IDLE, limit=20.0)
     assert control.shot.parts == parts + 1

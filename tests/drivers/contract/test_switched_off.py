@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 
 import pytest
 
@@ -13,6 +14,7 @@ from tests.drivers.contract.conftest import need
 from tests.drivers.contract.control import INCH, Control
 from tests.drivers.contract.rig import STILL, TICK
 from tests.drivers.contract.simulated import Fed
+from tests.texts import pattern, text
 
 CUT = "G90G94F300\nM03S600\nM08\nX.1\nG01F30Z-2\nM30\n"
 DWELL = "G90G94F300\nM03S600\nM08\nX.1\nG04F3\nG01F60X.5\nM30\n"
@@ -43,13 +45,13 @@ def test_an_output_that_goes_off_in_a_cut_holds_and_is_announced(control: Contro
     struck = control.clock.now()
     control.until(State.HOLD, limit=control.rig.sees_output + control.rig.hold + 0.1)
     assert control.clock.now() - struck < control.rig.sees_output + control.rig.hold + 0.1
-    assert "COOLANT HAS GONE OFF" in control.shot.waiting_for
+    assert text("executor.gone-off", output="COOLANT") in control.shot.waiting_for
     control.run(0.5)
     stood = control.world.place()
     control.run(1.0)
     assert control.world.place() == pytest.approx(stood, abs=STILL)
     assert "coolant" not in on(control)  # and nobody has switched it on again
-    assert control.shot.announced == ("COOLANT COMES ON",)
+    assert control.shot.announced == (text("executor.comes-on", output="COOLANT"),)
     control.press()
     control.until(State.RUN, limit=0.5)
     control.run(0.1 if control.rig.blocks is None else 1.0)  # a controller does it behind the blocks it has
@@ -58,7 +60,8 @@ def test_an_output_that_goes_off_in_a_cut_holds_and_is_announced(control: Contro
     assert control.shot.alarms == ()
     assert control.shot.parts == 0
     (why,) = control.said("uncounted")
-    assert "coolant has gone off" in why
+    gone = text("executor.gone-off", output="COOLANT").lower()
+    assert why.startswith(text("executor.cycle-disturbed", why=gone))
 
 
 def test_an_output_that_comes_on_by_itself_holds_too(control: Control) -> None:
@@ -69,7 +72,7 @@ def test_an_output_that_comes_on_by_itself_holds_too(control: Control) -> None:
         pytest.skip("what was never switched is not looked for in a controller's reports")
     control.rig.switch_output("coolant", True)
     control.until(State.HOLD, limit=control.rig.sees_output + control.rig.hold + 0.1)
-    assert control.shot.announced == ("COOLANT GOES OFF",)
+    assert control.shot.announced == (text("executor.goes-off", output="COOLANT"),)
     control.press()
     control.run(0.3)
     assert "coolant" not in on(control)
@@ -86,10 +89,10 @@ def test_a_spindle_that_dies_in_a_cut_by_the_minute_holds(control: Control) -> N
     assert control.world.place() == pytest.approx(stood, abs=STILL)
 
 
-@pytest.mark.parametrize("text", [DWELL, STOP], ids=["dwell", "stop"])
-def test_a_control_that_was_silent_at_a_standstill(control: Control, text: str) -> None:
+@pytest.mark.parametrize("program", [DWELL, STOP], ids=["dwell", "stop"])
+def test_a_control_that_was_silent_at_a_standstill(control: Control, program: str) -> None:
     """Where something switches off meanwhile it is declared and announced; else all is as it was."""
-    control.start(text)
+    control.start(program)
     control.until_true(lambda shot: shot.waiting_for == "DWELL" or shot.state is State.PROGRAM_STOP)
     control.until_true(lambda _: control.world.rpm() > 590.0)
     state, place = control.state, control.world.place()
@@ -102,15 +105,24 @@ def test_a_control_that_was_silent_at_a_standstill(control: Control, text: str) 
         assert control.world.rpm() == pytest.approx(600.0, rel=0.1)
         return
     (said,) = control.said("disturbed")
-    assert said == "CONTROL WAS SILENT FOR 0.5 S, SWITCHED OFF: SPINDLE, COOLANT"
+    assert said == text(
+        "executor.trip",
+        who=text("executor.control-silent"),
+        seconds=0.5,
+        what=text("executor.switched-off"),
+        names="SPINDLE, COOLANT",
+    )
     assert control.state is (State.HOLD if state is State.WAIT else state)
     assert on(control) == {"collet"}
-    assert set(control.shot.announced) == {"THE SPINDLE STARTS AT 600 RPM FORWARD", "COOLANT COMES ON"}
+    assert set(control.shot.announced) == {
+        text("executor.spindle-starts", rpm=600, direction="FORWARD"),
+        text("executor.comes-on", output="COOLANT"),
+    }
     control.post(CycleStart())
     control.world.press_start()
     control.run(0.1)
     assert control.state in {State.HOLD, State.PROGRAM_STOP}  # nobody has had the time to read it
-    assert "look first" in control.shot.start_refused
+    assert re.fullmatch(pattern("executor.look-first"), control.shot.start_refused)
     control.run(2.0)
     assert on(control) == {"collet"}
     assert control.world.rpm() == 0.0
@@ -126,7 +138,7 @@ def test_a_control_that_was_silent_at_a_standstill(control: Control, text: str) 
     assert least > 500.0  # not fed before the spindle was at its speed again
     assert control.shot.alarms == ()
     assert control.shot.parts == 0
-    assert "disturbed" in control.said("uncounted")[0]
+    assert re.match(pattern("executor.cycle-disturbed"), control.said("uncounted")[0])
 
 
 def test_a_stall_that_outlasts_the_queue_in_a_cut_goes_on_with_a_start(control: Control) -> None:
@@ -146,15 +158,15 @@ def test_a_stall_that_outlasts_the_queue_in_a_cut_goes_on_with_a_start(control: 
     assert control.shot.parts == (0 if control.rig.watched else 1)
 
 
-@pytest.mark.parametrize("text", [DWELL, CUT], ids=["dwell", "cut"])
+@pytest.mark.parametrize("program", [DWELL, CUT], ids=["dwell", "cut"])
 @pytest.mark.parametrize("kind", [Fed, FedCanopen])
 @pytest.mark.parametrize("seconds", [0.3, 1.0])
 def test_outputs_that_fell_with_a_feeder_that_stood_still_do_not_come_back(
-    kind: type[Fed | FedCanopen], text: str, seconds: float
+    kind: type[Fed | FedCanopen], program: str, seconds: float
 ) -> None:
     rig = kind()
     control = Control(rig)
-    control.start(text)
+    control.start(program)
     control.until_true(lambda shot: shot.waiting_for == "DWELL" or control.world.place()[1] < -8.0)
     control.until_true(lambda _: control.world.rpm() > 590.0)
     rig.feeder_stands(seconds)
@@ -167,7 +179,7 @@ def test_outputs_that_fell_with_a_feeder_that_stood_still_do_not_come_back(
     control.run(0.5)
     assert control.world.place() == pytest.approx(stood, abs=STILL)
     if control.state is State.HOLD:
-        assert "COOLANT COMES ON" in control.shot.announced
+        assert text("executor.comes-on", output="COOLANT") in control.shot.announced
         control.press()
         control.run(1.5)
         assert "coolant" in on(control)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import re
 
 import pytest
 
@@ -13,6 +14,7 @@ from core.ports import PROBE
 from tests.drivers.contract.conftest import need
 from tests.drivers.contract.control import Control
 from tests.drivers.contract.rig import TICK, Rig
+from tests.texts import pattern, text
 
 FACE = -6.0  # mm of X: the setter is touched by slides that go beyond, from 0 towards −
 SLOW = 0.2  # mm/s
@@ -90,7 +92,7 @@ def test_letting_go_stops_it(bench: Bench, phase: TouchPhase) -> None:
     bench.rest(0.6)
     bench.until(State.IDLE)
     assert bench.touched.place is None
-    assert "let go" in bench.touched.why
+    assert text("executor.let-go") in bench.touched.why
 
 
 def test_a_screen_that_is_gone_stops_it(bench: Bench) -> None:
@@ -109,7 +111,7 @@ def test_nothing_there_leads_back(bench: Bench) -> None:
     bench.touch()
     bench.until(State.JOG)
     bench.until(State.IDLE, limit=30.0)
-    assert "nothing was touched" in bench.touched.why
+    assert re.fullmatch(pattern("executor.not-touched"), bench.touched.why)
     assert bench.shot.actual[0] == pytest.approx(begin, abs=0.01)
     assert bench.shot.alarms == ()
 
@@ -123,7 +125,7 @@ def test_an_input_that_is_on_begins_nothing(bench: Bench) -> None:
     bench.executor.post(Touch("X", -1, LEASE, 1))
     Control.tick(bench)
     assert bench.state is State.IDLE
-    assert any("on already" in event.text for event in bench.events if event.kind == "refused")
+    assert any(text("executor.setter-on") in event.text for event in bench.events if event.kind == "refused")
 
 
 @pytest.mark.parametrize("fault", ["drive fault", "cable out", "silence"])

@@ -88,7 +88,9 @@ def test_an_answer_that_never_comes_is_missed() -> None:
     bench.peer.quirks.garble.append(b"")
     bench.start("G90G94F300\nX.3Z.2\nM30\n")
     bench.until(State.FAULT, limit=5.0)
-    assert "no answer" in bench.alarms()
+    (alarm,) = bench.shot.alarms
+    assert alarm.code == "controller-silent"
+    assert "'N2G0X7.62Z5.08'" in alarm.detail
 
 
 def test_a_leaping_position_is_not_believed() -> None:
@@ -118,7 +120,7 @@ def test_a_silent_controller_is_told() -> None:
     bench.peer.quirks.deaf = True
     took = bench.until(State.FAULT, limit=3.0)
     assert took < 1.4
-    assert "does not answer" in bench.alarms()
+    assert [alarm.code for alarm in bench.shot.alarms] == ["controller-silent"]
 
 
 def test_without_its_host_it_runs_on_for_no_more_than_it_was_given() -> None:

@@ -8,6 +8,7 @@ from core.executor.snapshot import State
 from core.machine.machine_model import Machine
 from core.table_schema import MachineFileError
 from tests.drivers.grblhal.bench import GrblBench, grbl_machine, quirky
+from tests.texts import text
 
 CLAMPED = (
     'collet  = { at = "out.0", safe = "keep" }    # on: clamped; closed by hand: collet = { at = "none" }'
@@ -35,14 +36,14 @@ def test_a_program_runs_and_one_that_asks_for_it_is_refused_before_the_start() -
     assert not bench.alarms()
     bench.start(PART.format("M13\nM12\n"))
     assert bench.state is State.IDLE
-    assert "line 3: this machine has no output collet" in bench.shot.start_refused
+    assert text("executor.no-such-for-line", line=3, what="output collet") in bench.shot.start_refused
 
 
 def test_one_that_is_only_left_out_is_still_a_mistake_of_the_file() -> None:
-    with pytest.raises(MachineFileError, match=r'io.out.collet: missing.*at = "none"'):
+    with pytest.raises(MachineFileError, match=r'io\.out\.collet: .*at = "none"'):
         grbl_machine((CLAMPED, ""))
 
 
 def test_an_m_code_needs_an_output_that_is_there() -> None:
-    with pytest.raises(MachineFileError, match=r"m_codes.25.output"):
+    with pytest.raises(MachineFileError, match=r"m_codes\.25\.output"):
         by_hand(('catcher = { at = "out.1", safe = false }', 'catcher = { at = "none" }'))

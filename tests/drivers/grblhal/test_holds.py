@@ -8,6 +8,7 @@ from core.executor.commands import FeedHold, FeedOverride, Reset
 from core.executor.snapshot import State
 from tests.drivers.grblhal.bench import GrblBench, quirky
 from tests.drivers.grblhal.test_run import LONG
+from tests.texts import text
 
 
 def test_hold_and_on() -> None:
@@ -84,7 +85,7 @@ def test_an_override_of_nothing_holds_and_goes_on_by_itself() -> None:
     bench.run(0.5)
     bench.post(FeedOverride(0.0))
     bench.until(State.WAIT, limit=1.0)
-    assert bench.shot.waiting_for == "FEED OVERRIDE AT 0"
+    assert bench.shot.waiting_for == text("executor.feed-override-0")
     at = bench.peer.slides.place
     bench.run(1.0)
     assert bench.peer.slides.place == at
@@ -117,7 +118,7 @@ def test_a_hold_that_nobody_here_has_asked_for_holds_the_cycle() -> None:
     bench.until_true(lambda shot: shot.line == 4)
     bench.peer.feed(b"\x82")  # a button at the controller, pressed between two reports
     bench.until(State.HOLD, limit=0.5)
-    assert bench.shot.waiting_for == "THE CONTROLLER HOLDS"
+    assert bench.shot.waiting_for == text("executor.controller-holds")
     bench.run(1.0)
     assert bench.state is State.HOLD
     bench.press()

@@ -20,6 +20,7 @@ from drivers.clocks import RealClock
 from drivers.lookalikes.grblhal_far_end import TcpEnd, serve
 from drivers.lookalikes.grblhal_firmware import Firmware
 from drivers.lookalikes.spindle_motor import SpindleFaults
+from tests.coded import raises_code
 from tests.drivers.grblhal.bench import SHIPPED, quirky
 from tests.drivers.inverter.inverter_lookalikes import HuanyangSlave, Inverter
 from tests.drivers.inverter.lines import HuanyangEnd, Pair, inverter, until
@@ -155,7 +156,7 @@ def test_an_inverter_that_does_not_answer_is_one_sentence_and_the_controller_is_
     text = both.path.read_text(encoding="utf-8")
     port = text.partition('family = "huanyang", port = "')[2].partition('"')[0]
     missing = parse_machine(text.replace(port, "/dev/ttyNONE7"), "missing.toml")
-    with pytest.raises(DriverError, match="huanyang on /dev/ttyNONE7"):
+    with raises_code(DriverError, "driver", "huanyang", "/dev/ttyNONE7"):
         connect(missing, RealClock())
     connect(load_machine(both.path), RealClock()).close()
 

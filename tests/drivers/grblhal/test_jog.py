@@ -7,6 +7,7 @@ import pytest
 from core.executor.commands import Jog, JogStep, JogStop
 from core.executor.snapshot import State
 from tests.drivers.grblhal.bench import GrblBench
+from tests.texts import text
 
 V, LEASE = 40.0, 0.2
 
@@ -117,7 +118,7 @@ def test_a_jog_ends_at_the_end_of_the_travel() -> None:
     bench = ready()
     hold_key(bench, 4.0)  # the travel ends at 101.6 mm
     assert bench.peer.slides.place[0] == pytest.approx(101.6 - 0.01, abs=1e-4)
-    assert any("end of its travel" in text for text in bench.said("refused"))
+    assert any(text("executor.travel-end", axis="X", sign="+") in said for said in bench.said("refused"))
 
 
 def test_a_step_is_exact_and_refused_while_it_moves() -> None:

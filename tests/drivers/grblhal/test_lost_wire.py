@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 
 from core.executor.commands import EnableDrives, Reset
@@ -9,6 +11,7 @@ from core.executor.snapshot import State
 from core.ports import ALL_UNKNOWN
 from tests.drivers.contract.grbl import HOMING
 from tests.drivers.grblhal.bench import GrblBench, grbl_machine, quirky
+from tests.texts import pattern, text
 
 CUT = "G90G94F300\nM03S600\nM08\nX.1\nG01F30Z-2\nM30\n"
 
@@ -50,8 +53,9 @@ def test_reset_connects_and_switches_off_what_is_still_on_and_says_so() -> None:
     assert bench.peer.spindle.speed == 0.0
     assert not bench.peer.outputs["flood"]
     (said,) = [event.text for event in bench.events if event.kind == "disturbed"]
-    assert said.startswith("THE MACHINE WAS NOT HEARD FOR 3.")
-    assert said.endswith("FOUND ON, SWITCHED OFF: SPINDLE, COOLANT")
+    who, what = text("executor.machine-not-heard"), text("executor.found-on")
+    assert re.fullmatch(pattern("executor.trip", who=who, what=what, names="SPINDLE, COOLANT"), said)
+    assert "3." in said
     assert bench.shot.unknown == frozenset()
     assert all(bench.shot.homed)
     assert bench.shot.actual[:2] == pytest.approx(bench.peer.slides.place, abs=0.001)
@@ -85,7 +89,7 @@ def test_a_controller_that_has_restarted_meanwhile_has_to_be_homed(homes: bool) 
     bench.post(EnableDrives())
     bench.run(0.5)
     bench.press()
-    assert "must be homed first" in bench.shot.start_refused
+    assert re.fullmatch(pattern("executor.not-homed"), bench.shot.start_refused)
 
 
 def test_a_reset_by_its_button_keeps_the_place_where_it_does_not_stand_at_0() -> None:

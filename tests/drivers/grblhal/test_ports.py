@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from core.ports import DriverError, LineOp, Segments, Stop
+from tests.coded import raises_code
 from tests.drivers.grblhal.bench import GrblBench, quirky
 
 
@@ -19,8 +20,9 @@ def powered() -> GrblBench:
 def test_setpoints_are_refused() -> None:
     bench = powered()
     still = np.zeros((1, 3))
-    with pytest.raises(DriverError, match="takes blocks"):
+    with raises_code(DriverError, "driver") as told:
         bench.machine.axes.splice(Segments(np.zeros(1), np.zeros(1), still, still, still))
+    assert told.value.reason == "blocks-only"
 
 
 def test_a_block_arrives_where_it_was_told_to_the_last_decimal() -> None:
@@ -110,7 +112,7 @@ def test_outputs_go_out_and_fall_safe() -> None:
     bench.alone(0.1)
     assert not bench.peer.outputs["flood"]
     assert bench.peer.outputs["out.0"]  # "keep"
-    with pytest.raises(DriverError, match="output 'laser' is not in the machine file"):
+    with raises_code(DriverError, "output", "'laser'"):
         io.write("laser", True)
 
 
@@ -131,5 +133,5 @@ def test_an_output_that_could_not_be_said_is_said_later() -> None:
 def test_a_block_is_refused_while_the_modes_are_verified() -> None:
     bench = powered()
     bench.machine.blocks.abort()
-    with pytest.raises(DriverError, match="modes are being verified"):
+    with raises_code(DriverError, "controller-refuses", "modes are being verified"):
         bench.machine.blocks.submit(LineOp(1.0, 0.0, 1.0))

@@ -12,6 +12,8 @@ from drivers.grblhal.grblhal_gcode import jog_line, line_of, number
 from drivers.grblhal.grblhal_machine import GrblMachine
 from drivers.grblhal.grblhal_overrides import steps_to
 from drivers.grblhal.grblhal_report import read_identity, read_report
+from drivers.grblhal.grblhal_scripts import MISSED
+from tests.coded import raises_code
 from tests.drivers.grblhal.bench import grbl_machine
 
 FULL = (
@@ -83,13 +85,13 @@ def test_a_setting_that_does_not_stay_is_refused() -> None:
         (b"$32=2\n", b"ok\r\n"),
         (b"$$\n", b"$10=1535\r\n$13=0\r\n$32=0\r\nok\r\n"),
     )
-    with pytest.raises(DriverError, match=r"\$32=2 was written and reads 0"):
+    with raises_code(DriverError, "driver", "$32=2", "reads 0"):
         GrblMachine(grblhal_config(grbl_machine()), StepClock(), wire)
 
 
 @pytest.mark.parametrize("answer", [b"", b"hello\r\n", b"<Idle>\r\n"])
 def test_what_is_no_controller_is_refused(answer: bytes) -> None:
-    with pytest.raises(DriverError, match="/dev/ttyACM0: the controller sends no status report"):
+    with raises_code(DriverError, "driver", "/dev/ttyACM0: ", MISSED):
         GrblMachine(grblhal_config(grbl_machine()), StepClock(), ScriptedWire((b"\x87", answer)))
 
 
@@ -207,13 +209,14 @@ def test_an_answer_to_nothing_is_told() -> None:
 
 
 @pytest.mark.parametrize(
-    ("lines", "expected"),
+    ("lines", "reason"),
     [
-        ([], "no grblHAL"),
-        (["[VER:1.1f:]", "[OPT:V]"], "no grblHAL"),
-        (["[VER:1:]", "[OPT:V,16,128]"], "128 bytes"),
+        ([], "no-grblhal"),
+        (["[VER:1.1f:]", "[OPT:V]"], "no-grblhal"),
+        (["[VER:1:]", "[OPT:V,16,128]"], "small-buffer"),
     ],
 )
-def test_an_identity_is_demanded(lines: list[str], expected: str) -> None:
-    with pytest.raises(DriverError, match=expected):
+def test_an_identity_is_demanded(lines: list[str], reason: str) -> None:
+    with raises_code(DriverError, "driver") as told:
         read_identity(lines)
+    assert told.value.reason == reason

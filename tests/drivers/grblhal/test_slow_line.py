@@ -44,7 +44,7 @@ def test_one_that_answers_nothing_is_told_as_before() -> None:
     bench.run(1.0)
     mute(bench.peer)
     bench.until(State.FAULT, limit=2.0)
-    assert "does not answer" in bench.alarms()
+    assert [alarm.code for alarm in bench.shot.alarms] == ["controller-silent"]
 
 
 def mute(peer: Firmware) -> None:

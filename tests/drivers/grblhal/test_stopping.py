@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from core.faults import code_of
 from core.ports import LineOp, Stop, ThreadOp
 from tests.drivers.grblhal.bench import GrblBench, quirky
 
@@ -136,7 +137,7 @@ def test_a_spindle_that_does_not_stop_in_a_hold_is_told() -> None:
     bench.alone(0.5)
     bench.machine.spindle.run(0.0)
     bench.alone(1.5)
-    assert "does not stop its spindle" in bench.machine.controller.fault
+    assert code_of(bench.machine.controller.fault, "driver") == "ignores-stop"
 
 
 def test_in_a_jog_functions_wait_for_its_end() -> None:
@@ -184,5 +185,6 @@ def test_a_reset_that_is_never_told_is_a_fault_and_no_waiting_for_ever() -> None
     bench.alone(2.0)
     bench.peer.quirks.deaf = False
     bench.alone(0.5)
-    assert "does not come back from its reset" in bench.machine.controller.fault
+    assert code_of(bench.machine.controller.fault, "driver") == "controller-silent"
+    assert "reset" in bench.machine.controller.fault
     assert bench.machine.blocks.state().resting

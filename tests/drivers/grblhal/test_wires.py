@@ -16,6 +16,7 @@ from drivers.clocks import RealClock
 from drivers.grblhal.grblhal_wire import open_wire
 from drivers.lookalikes.grblhal_far_end import PtyEnd, TcpEnd, serve
 from drivers.lookalikes.grblhal_firmware import Firmware
+from tests.coded import raises_code
 from tests.drivers.grblhal.bench import SHIPPED
 from tests.drivers.ptys import open_pty
 
@@ -61,10 +62,10 @@ def test_nobody_there_is_one_sentence(tmp_path: Path, capsys: Captured) -> None:
     file = tmp_path / "grblhal.toml"
     file.write_text(SHIPPED.replace("/dev/ttyACM0", "/dev/nothing-here"), encoding="utf-8")
     assert main(["machine", "check", str(file)]) == 1
-    assert "/dev/nothing-here cannot be opened" in capsys.readouterr().err
+    assert "/dev/nothing-here" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("port", ["tcp://127.0.0.1", "tcp://:23", "tcp://host:a"])
 def test_a_bad_address_is_refused(port: str) -> None:
-    with pytest.raises(DriverError, match=r"expected tcp://host:port"):
+    with raises_code(DriverError, "driver", port, "tcp://host:port"):
         open_wire(port, 115_200)
