@@ -103,7 +103,7 @@ def number(head: Mapping[str, object], key: str) -> float:
     """A finite number of the head. Raises DriverError where there is none."""
     value = head.get(key)
     if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) < _HUGE:
-        raise DriverError(f"the feeder was sent no number as {key}", "feeder-silent")
+        raise DriverError(f"the feeder was sent no number as {key}", "feeder-silent", reason="no-number")
     return float(value)
 
 

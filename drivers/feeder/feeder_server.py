@@ -53,11 +53,13 @@ def use_hand(hands: object | None, head: Mapping[str, object]) -> object:
     name, values = text(head, "name"), head.get("values")
     use = None if name.startswith("_") or hands is None else getattr(hands, name, None)
     if not callable(use) or not isinstance(values, list):
-        raise DriverError("this machine has no simulated station")
+        raise DriverError("this machine has no simulated station", reason="no-station")
     try:
         return use(*values)
     except TypeError as error:
-        raise DriverError(f"the simulated station cannot {name} with {values}") from error
+        raise DriverError(
+            f"the simulated station cannot {name} with {values}", reason="wrong-values"
+        ) from error
 
 
 def _hold(ports: MachinePorts, *, on: bool, orient: bool) -> None:
@@ -91,7 +93,7 @@ def _how(word: str) -> Stop:
     try:
         return Stop(word)
     except ValueError as error:
-        raise DriverError(f"the feeder does not know the stop {word!r}") from error
+        raise DriverError(f"the feeder does not know the stop {word!r}", reason="unknown-stop") from error
 
 
 # --- What the feeder has switched off by itself, and that nothing goes on before the control knows it.
@@ -238,7 +240,9 @@ class Feeder:
         self.asleep = what == "rest" or (what == "look" and message.head.get("rests") is True)
         answer = self._answers.get(what)
         if answer is None:
-            return _refused("the feeder does not know this request; are both of the same version?")
+            return _refused(
+                "the feeder does not know this request; are both of the same version?", "unknown-request"
+            )
         try:
             self._guard.demand_allowed(message)
             return answer(message)

@@ -10,6 +10,7 @@ import numpy as np
 
 from app.compose.feeder_process import FeederProcess
 from app.compose.machine_files import load_machine
+from core.faults import code_of
 from core.ports import Segments
 from drivers.clocks import RealClock
 from drivers.feeder.feeder_ports import feeder_ports
@@ -38,7 +39,9 @@ def main(path: str) -> None:
     while True:
         sample = ports.axes.sample()
         if sample.fault:
-            sys.stdout.write(json.dumps({"fault": sample.fault}) + "\n")
+            sys.stdout.write(
+                json.dumps({"fault": sample.fault, "code": code_of(sample.fault, "axis")}) + "\n"
+            )
             sys.stdout.flush()
             return
         clock.sleep_until(clock.now() + TICK)

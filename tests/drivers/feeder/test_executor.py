@@ -15,6 +15,7 @@ from tests.drivers.contract.simulated import BrokenLink, simulation_driven
 from tests.executor.rig import Rig
 from tests.executor.test_signal_lamps import tower, with_lamps
 from tests.executor.test_threads import EXTERNAL
+from tests.texts import text
 
 TURN = "G90G94F300\nT1\nM03S1000\nM08\nX.5Z0\nG95F.005\nG01X.4Z-.2\nX.5\nM09\nM05\nG94F300\nZ0\nM30\n"
 TOOLS = {1: ToolOffset(0.0, 0.0, 0.0)}
@@ -70,6 +71,11 @@ def test_without_its_feeder_the_control_shows_no_station_and_no_motion() -> None
     assert rig.sim.ports.spindle.fault() == "the feeder process has ended"
 
 
+def tripped(seconds: float, names: str) -> str:
+    who, what = text("executor.control-silent"), text("executor.switched-off")
+    return text("executor.trip", who=who, seconds=seconds, what=what, names=names)
+
+
 def test_coolant_that_nobody_renewed_in_a_cut_holds_and_comes_on_with_the_start() -> None:
     """Its terminal wants a word each .3 s; the control was away for .5 s, and the slides went on."""
     rig = FedRig()
@@ -83,10 +89,10 @@ def test_coolant_that_nobody_renewed_in_a_cut_holds_and_comes_on_with_the_start(
     assert rig.sim.ports.axes.sample().moving
     rig.tick()
     rig.until(State.HOLD, limit=0.3)
-    assert rig.shot.waiting_for == "CONTROL WAS SILENT FOR 0.5 S, SWITCHED OFF: COOLANT"
+    assert rig.shot.waiting_for == tripped(0.5, "COOLANT")
     assert rig.sim.machine.spindle_rpm() == pytest.approx(600.0)  # the tool was in the cut
     rig.run(1.0)
-    assert rig.shot.announced == ("COOLANT COMES ON",)
+    assert rig.shot.announced == (text("executor.comes-on", output="COOLANT"),)
     rig.post(CycleStart())
     rig.run(0.05)
     assert rig.sim.machine.outputs()["coolant"]
@@ -133,7 +139,7 @@ def test_what_else_it_switched_off_holds_and_is_named_without_the_lamp(on: str, 
     rig = in_dwell_away(on)
     rig.tick()
     rig.until(State.HOLD, limit=0.5)
-    assert rig.shot.waiting_for == f"CONTROL WAS SILENT FOR 0.3 S, SWITCHED OFF: {names}"
+    assert rig.shot.waiting_for == tripped(0.3, names)
 
 
 def test_at_rest_nothing_is_told_of_a_lamp() -> None:

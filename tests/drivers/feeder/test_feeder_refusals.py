@@ -19,6 +19,7 @@ from drivers.feeder.feeder_messages import NOTHING, Message, floats, packed
 from drivers.feeder.feeder_ports import feeder_ports
 from drivers.feeder.feeder_server import Driven, Feeder
 from drivers.simulated.simulated_machine import Simulation, build_simulation
+from tests.coded import raises_code
 from tests.drivers.contract.simulated import simulation_driven
 from tests.drivers.machines import CONFIG
 from tests.drivers.test_gear import cam
@@ -38,8 +39,9 @@ def refuse(why: str) -> Callable[..., object]:
 
 @pytest.mark.parametrize("told", ["1, 2", [1.0, "2"], None, {"x": 1.0}])
 def test_what_are_no_numbers_is_no_place(told: object) -> None:
-    with pytest.raises(DriverError, match="the feeder answered no numbers"):
+    with raises_code(DriverError, "feeder-silent") as refused:
         floats(told)
+    assert refused.value.reason == "no-numbers"
 
 
 def test_a_driver_that_cannot_follow_the_spindle_says_so_through_its_feeder() -> None:
@@ -50,8 +52,9 @@ def test_a_driver_that_cannot_follow_the_spindle_says_so_through_its_feeder() ->
     ports = feeder_ports(asked)
     assert ports.gear is not None
     asked._link = line._link  # behind the other feeder there is none
-    with pytest.raises(DriverError, match="this driver cannot follow the spindle"):
+    with raises_code(DriverError, "driver") as told:
         ports.gear.mesh(cam(sim, turns=3.0))
+    assert told.value.reason == "no-gear"
 
 
 def test_a_spindle_that_refuses_its_stop_keeps_no_output_on(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -109,9 +112,9 @@ def test_a_feeder_that_nobody_can_start_again_asks_for_another_control() -> None
     sim, clock = simulation()
     line = Line(LoopLink(Feeder(simulation_driven(sim.ports, sim.machine))), clock)
     line.fault = "the feeder process has ended"
-    with pytest.raises(DriverError, match="the feeder process has ended; start the control again"):
+    with raises_code(DriverError, "feeder-gone"):
         line.restart()
-    with pytest.raises(DriverError, match="the feeder process has ended"):
+    with raises_code(DriverError, "driver", line.fault):
         line.ask(Message({"do": "hello"}, NOTHING))
 
 
@@ -119,8 +122,8 @@ def test_a_reset_that_the_drives_refuse_starts_no_feeder(monkeypatch: pytest.Mon
     sim, _ = simulation()
     link = LoopLink(Feeder(simulation_driven(sim.ports, sim.machine)))
     assert cleared(link) is link
-    monkeypatch.setattr(sim.ports.axes, "clear_fault", refuse("Z: the fault stays: overcurrent"))
-    with pytest.raises(DriverError, match="Z: the fault stays: overcurrent"):
+    monkeypatch.setattr(sim.ports.axes, "clear_fault", refuse("Z: overcurrent"))
+    with raises_code(DriverError, "driver", "Z: overcurrent"):
         cleared(link)
 
 

@@ -120,7 +120,7 @@ def test_a_card_that_has_let_go_and_a_drive_that_is_not_ready_are_faults(tmp_pat
             lathe.until(lambda shot: bool(shot.alarms))
             alarm = lathe.events[-1].alarm
             assert alarm is not None
-            assert "the drive reports a fault" in alarm.detail
+            assert alarm.code == "axis"
             switch(lathe, tmp_path, ON["mesa-7i97"])
 
 

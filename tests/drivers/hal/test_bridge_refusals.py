@@ -10,6 +10,7 @@ from core.ports import DriverError
 from drivers.hal.bridge.packets import flat
 from drivers.hal.bridge.setpoint_player import Player
 from drivers.setpoint_pieces import Piece
+from tests.coded import raises_code
 from tests.drivers.hal.played import STILL, TICK, Bench, powered
 
 
@@ -27,7 +28,8 @@ def test_a_limit_switch_stops_x_on_its_path_and_takes_the_power(bench: Bench) ->
     bench.run(0.5)
     bench.wire("x-high", True)
     bench.run(0.5)
-    assert bench.bridge == ("X: on its limit switch", "limit-switch")
+    assert bench.bridge[1] == "limit-switch"
+    assert bench.bridge[0].startswith("X: ")
     assert not bench.axes.sample().enabled
     stood = bench.x
     bench.run(0.5)
@@ -40,7 +42,8 @@ def test_a_limit_switch_is_no_end_for_the_axis_that_looks_for_it(bench: Bench) -
     bench.run(0.3)
     assert bench.bridge == ("", "")
     bench.told("homing", axis="X", on=False)
-    assert bench.bridge == ("X: on its limit switch", "limit-switch")
+    assert bench.bridge[1] == "limit-switch"
+    assert bench.bridge[0].startswith("X: ")
 
 
 def test_a_limit_switch_without_power_is_no_fault(bench: Bench) -> None:
@@ -55,7 +58,7 @@ def test_a_limit_switch_without_power_is_no_fault(bench: Bench) -> None:
 def test_setpoints_for_a_time_that_was_played_stop_it(bench: Bench) -> None:
     late = Piece(bench.clock.now() - 0.02, 1.0, (bench.x + 1.0, bench.z), STILL, STILL)
     bench.told("splice", tuple(flat([late])))
-    assert bench.bridge == ("setpoints came too late to be played", "late")
+    assert bench.bridge[1] == "late"
     bench.run(0.5)
     assert not bench.axes.sample().enabled
     assert bench.x == pytest.approx(0.0, abs=1e-3)
@@ -76,7 +79,7 @@ def test_the_same_setpoints_once_more_are_not_too_late(bench: Bench) -> None:
 def test_a_thread_for_turns_that_have_gone_by_stops_it(bench: Bench) -> None:
     gone = Piece(-3.0, 1.0, (bench.x, bench.z), (0.0, -1.0), STILL)  # three turns ago
     bench.told("mesh", tuple(flat([gone])), zero=0.0, sign=1.0, way=1)
-    assert bench.bridge == ("the thread came too late to be played", "late")
+    assert bench.bridge[1] == "late"
 
 
 def test_what_hal_has_played_of_another_stream_than_it_was_told_stops_it(
@@ -84,10 +87,8 @@ def test_what_hal_has_played_of_another_stream_than_it_was_told_stops_it(
 ) -> None:
     monkeypatch.setattr(bench.far.bridge.rows, "settle", lambda _plays_b: False)
     bench.run(2 * TICK)
-    assert bench.bridge == (
-        "setpoints came too late to HAL, which played what was queued before",
-        "late",
-    )
+    assert bench.bridge[1] == "late"
+    assert "HAL" in bench.bridge[0]
 
 
 # --- what is not done -------------------------------------------------------------------------------------
@@ -96,13 +97,13 @@ def test_what_hal_has_played_of_another_stream_than_it_was_told_stops_it(
 def test_with_a_fault_there_is_no_power_until_it_is_cleared(bench: Bench) -> None:
     bench.far.machine.drive_fault("X")
     bench.run(0.5)
-    fault = bench.bridge[0]
-    assert fault == "X: the drive reports a fault"
+    assert bench.bridge[1] == "axis"
+    assert bench.bridge[0].startswith("X: ")
     bench.far.plant.faulty.clear()  # the drive is whole again, and nobody has acknowledged it
     bench.told("enable")
     bench.run(0.5)
     assert bench.pin("enable") == 0.0
-    with pytest.raises(DriverError, match="drives stay off: X: the drive reports a fault; clear the fault"):
+    with raises_code(DriverError, "no-power", "X: "):
         bench.axes.enable(True)
     bench.axes.clear_fault()
     bench.run(0.3)
@@ -117,7 +118,7 @@ def test_with_an_open_chain_the_spindle_is_not_ordered_to_turn(bench: Bench) -> 
     bench.far.bridge.handle({"do": "spindle", "rpm": 500.0, "on": True}, ())
     bench.far.bridge.round()
     assert bench.pin("spindle.speed") == 0.0  # not for a single period
-    with pytest.raises(DriverError, match=r"stays off: .*E-stop"):
+    with raises_code(DriverError, "spindle-off", "E-stop"):
         bench.driver.ports.spindle.run(500.0)
     bench.run(1.0)
     assert bench.far.machine.spindle_rpm() == 0.0

@@ -8,6 +8,7 @@ import pytest
 
 from core.ports import DriverError
 from drivers.setpoint_queue import straight
+from tests.coded import raises_code
 from tests.drivers.contract.hal import Hal
 
 X, Z = 0, 1
@@ -46,5 +47,6 @@ def test_setpoints_from_where_the_slide_lags_are_refused(rig: Hal) -> None:
     sticks_before_home(rig)
     axes = rig.ports.axes
     lags = axes.sample().actual
-    with pytest.raises(DriverError, match="Z: setpoints where they take over jump in position"):
+    with raises_code(DriverError, "driver", "Z: ", "position") as told:
         axes.splice(straight(rig.clock.now() + 0.3, lags, X, to=lags[X] - 1.0, speed=10.0, accel=100.0))
+    assert told.value.reason == "jump"

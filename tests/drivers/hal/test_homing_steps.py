@@ -10,6 +10,7 @@ from core.ports import DriverError, Segments
 from drivers.hal.hal_config import HalAxis
 from drivers.hal.hal_homing import Homing
 from drivers.hal.hal_table import HalAxisPins
+from tests.coded import raises_code
 
 PINS = HalAxisPins("cmd", "fb", home="h", limit_low="l", limit_high="u", index_enable="i")
 OFFSET = 2.5  # mm from the mark to zero
@@ -161,16 +162,18 @@ def test_the_index_alone_is_looked_for_within_thirty_millimetres(method: int, wa
     assert slides.ways == [pytest.approx((way * 30.0, 2.0))]
     steps(order, slides, 0.2)
     slides.t = slides.until
-    with pytest.raises(DriverError, match="X: homing has failed: no index came by"):
+    with raises_code(DriverError, "homing", "X: ") as told:
         rests(order, slides)
+    assert told.value.reason == "no-index"
     assert (slides.asked, slides.limits) == ([True, False], [True, False])
 
 
 def test_a_switch_that_nobody_samples_is_told_after_a_second() -> None:
     order, slides = homing(19)
     steps(order, slides, 1.0)
-    with pytest.raises(DriverError, match="its switch is not sampled"):
+    with raises_code(DriverError, "homing", "X: ") as told:
         steps(order, slides, 0.05)
+    assert told.value.reason == "not-sampled"
     assert slides.ways == []
 
 
@@ -179,8 +182,9 @@ def test_no_switch_in_the_whole_travel() -> None:
     order.see(0.0, False)
     order.step(0.0)
     steps(order, slides, 1.0)
-    with pytest.raises(DriverError, match="no switch was found within the travel"):
+    with raises_code(DriverError, "homing", "X: ") as told:
         rests(order, slides)
+    assert told.value.reason == "no-switch"
     assert slides.limits == [True, False]
 
 
@@ -191,8 +195,9 @@ def test_a_slide_that_ran_over_its_switch() -> None:
     order.see(30.0, True)
     steps(order, slides, 0.01)
     order.see(31.0, False)
-    with pytest.raises(DriverError, match="has run over its switch; make it longer, or the search slower"):
+    with raises_code(DriverError, "homing", "X: ") as told:
         rests(order, slides)
+    assert told.value.reason == "ran-over"
 
 
 def test_a_switch_that_does_not_go_off() -> None:
@@ -200,7 +205,7 @@ def test_a_switch_that_does_not_go_off() -> None:
     order.see(0.0, True)
     order.step(0.0)
     steps(order, slides, 1.0)
-    with pytest.raises(DriverError, match="its switch does not go off") as told:
+    with raises_code(DriverError, "homing", "X: ") as told:
         rests(order, slides)
-    assert told.value.code == "homing"
+    assert told.value.reason == "stays-on"
     assert math.isfinite(slides.until)

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 import pytest
 
+from core.faults import code_of
 from tests.drivers.contract.hal import Hal
 
 INDEX = 0.3  # turns of the simulated spindle at its index
@@ -45,7 +46,8 @@ def test_a_spindle_whose_index_does_not_come_by_is_told_and_reset_asks_again(rig
     rig.run(0.5)
     assert rig.ports.spindle.fault() == ""
     rig.until(lambda: bool(rig.ports.spindle.fault()), limit=2.0)
-    assert "phase Z of its encoder" in rig.ports.spindle.fault()
+    assert code_of(rig.ports.spindle.fault(), "driver") == "spindle-encoder"
+    assert "hal.spindle.index_enable" in rig.ports.spindle.fault()
     rig.far.has_index = True
     rig.ports.axes.clear_fault()
     assert rig.ports.spindle.fault() == ""

@@ -96,7 +96,7 @@ def test_the_machine_is_hung_on_our_signals_and_keeps_its_own() -> None:
 
 def test_one_of_ours_on_two_of_theirs_is_refused() -> None:
     asked = [wanted("guard", ours="door"), wanted("by-hand", ours="door")]
-    with pytest.raises(RuntimeError, match=r"io\.some: by-hand and guard are driven alike; make them one"):
+    with pytest.raises(RuntimeError, match=r"io\.some: by-hand .*guard"):
         nets(asked, {}, PINS, SIGNALS)
 
 
@@ -105,7 +105,7 @@ def test_one_of_ours_on_two_of_theirs_is_refused() -> None:
     [
         ("echo 'HAL: ERROR: pin not found' >&2; exit 1", "HAL: ERROR: pin not found"),
         ("echo 'no'; exit 2", "no"),
-        ("exit 3", "halcmd has failed"),
+        ("exit 3", "halcmd"),
     ],
 )
 def test_what_halcmd_refuses_is_told_in_its_words(

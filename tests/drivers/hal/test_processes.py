@@ -17,6 +17,7 @@ from core.ports import ALL_UNKNOWN
 from tests.drivers.hal.halrun import folder_for_all, halrun_on_path
 from tests.drivers.hal.lathes import lathe
 from tests.drivers.hal.live import LiveLathe, live
+from tests.texts import text
 
 pytestmark = [pytest.mark.long, pytest.mark.real_time]
 SPEED = 100.0  # mm/s
@@ -75,7 +76,7 @@ def test_a_killed_bridge_and_reset_starts_hal_anew(running: LiveLathe) -> None:
     assert abs(rests(running) - before) < SPEED * AHEAD + RAMP
     told(running, "hal-bridge")
     assert running.shot.unknown == ALL_UNKNOWN
-    assert running.shot.alarms[0].cause == "the bridge to HAL has ended"
+    assert running.shot.alarms[0].cause == text("drivers.bridge-ended")
 
 
 def test_ctrl_c_that_reaches_the_bridge_stops_nothing(running: LiveLathe) -> None:

@@ -10,11 +10,13 @@ import pytest
 import resources
 from app.compose.hal_backend import hal_config
 from app.compose.machine_files import parse_machine
+from core.faults import code_of
 from core.ports import DriverError
 from drivers.hal.hal_axes import HalAxes
 from drivers.hal.hal_link import HalLink
 from drivers.hal.hal_spindle_c import HalSpindleC, Step
 from drivers.hal.hal_terminals import HalSpindle
+from tests.coded import raises_code
 from tests.drivers.hal.lathes import PATIENT, changed
 
 Z, C = 1, 2
@@ -152,14 +154,15 @@ def test_with_the_drives_off_or_the_spindle_turning_it_is_not_taken() -> None:
     stand.run(0.2)
     for ordered, rpm in ((100.0, 0.0), (0.0, 2.0), (0.0, -2.5)):
         stand.turning.ordered, stand.turning.rpm = ordered, rpm
-        with pytest.raises(DriverError, match="the spindle turns; stop it first"):
+        with raises_code(DriverError, "c-coupling") as told:
             stand.c.hold(True)
+        assert told.value.reason == "spindle-turns"
     stand.turning.rpm = 1.9
     stand.link.told["powered"] = False
     stand.run(0.05)
-    with pytest.raises(DriverError, match="the drives are off; switch them on first") as told:
+    with raises_code(DriverError, "c-coupling") as told:
         stand.c.hold(True)
-    assert told.value.code == "c-coupling"
+    assert told.value.reason == "drives-off"
     assert stand.c.step is Step.FREE
     assert not [each for each in stand.link.said if each[0] == "c"]
 
@@ -184,15 +187,15 @@ def test_its_index_is_looked_for_with_60_rpm_and_it_brakes_before_it_is_taken() 
 
 
 @pytest.mark.parametrize(
-    ("known", "rpm", "seconds", "says"),
+    ("known", "rpm", "seconds", "named"),
     [
-        (False, 60.0, 15.0, "C: the spindle's index does not come by"),
-        (True, 60.0, 15.0, "C: the spindle does not stop"),
-        (True, 0.0, 2.0, "C: hal.spindle.in_position_mode does not come on"),
+        (False, 60.0, 15.0, "index"),
+        (True, 60.0, 15.0, "stop"),
+        (True, 0.0, 2.0, "hal.spindle.in_position_mode"),
     ],
 )
 def test_what_does_not_come_in_its_time_is_a_fault_and_the_spindle_is_free(
-    known: bool, rpm: float, seconds: float, says: str
+    known: bool, rpm: float, seconds: float, named: str
 ) -> None:
     stand = Stand(tells=True)
     stand.run(0.2)
@@ -203,7 +206,9 @@ def test_what_does_not_come_in_its_time_is_a_fault_and_the_spindle_is_free(
     stand.run(seconds - 0.05)
     assert stand.axes.fault == ""
     stand.run(0.1)
-    assert str(stand.axes.fault) == says
+    assert code_of(stand.axes.fault, "driver") == "c-coupling"
+    assert stand.axes.fault.startswith("C: ")
+    assert named in stand.axes.fault
     assert (stand.c.step, stand.turning.ordered, stand.turning.lent) == (Step.FREE, 0.0, False)
     assert stand.link.said[-1] == ("c", False)
 

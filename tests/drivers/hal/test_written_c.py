@@ -137,7 +137,7 @@ def test_a_drive_that_takes_steps_is_changed_over_by_a_terminal(name: str, pin: 
 
 def test_what_c_cannot_do_without_is_said() -> None:
     relay, board = AS_C["gt75-mesa-7i76e"]
-    assert "that changes it from speed to steps" in refused(
+    assert "hal.spindle.position_mode = spindle-is-c" in refused(
         "gt75-mesa-7i76e", (relay[0], relay[1].replace(RELAY, "spindle-is-c")), board
     )
     assert "board.axis.C.p" in refused(
@@ -145,7 +145,7 @@ def test_what_c_cannot_do_without_is_said() -> None:
         AS_C["gt75-mesa-7i97"][0],
         ("[board.spindle]\n", "[board.axis.C]\n[board.spindle]\n"),
     )
-    assert "leave it out: C is the spindle's drive" in refused(
+    assert "board.axis.C.channel = 3" in refused(
         "gt75-ethercat", AS_C["gt75-ethercat"][0],
         ("[board.spindle]\n", "[board.axis.C]\np = 20\nchannel = 3\n\n[board.spindle]\n"),
     )  # fmt: skip
@@ -171,4 +171,4 @@ def test_what_a_drive_of_its_own_needs() -> None:
         own=True,
     )
     assert "board.axis.C.full_rpm" in said
-    assert "expected an encoder of its own" in said
+    assert "board.spindle.encoder = 2" in said

@@ -7,6 +7,7 @@ import pytest
 from drivers.clocks import StepClock
 from drivers.inverter import modbus_rtu
 from drivers.inverter.modbus_rtu import Modbus, NoAnswerError, RefusedError
+from tests.coded import raises_code
 from tests.drivers.inverter.inverter_lookalikes import DeltaMemory, HitachiMemory, Inverter, RtuSlave
 from tests.drivers.inverter.wires import BenchWire
 
@@ -79,18 +80,21 @@ def test_every_function_reads_and_writes() -> None:
 
 def test_a_refusal_is_told_by_its_name_and_not_repeated() -> None:
     modbus, wire, _ = line_to(delta())
-    with pytest.raises(RefusedError, match="no such address"):
+    with raises_code(RefusedError, "driver", "03") as told:
         modbus.registers(0x7777)
-    with pytest.raises(RefusedError, match="function not known"):
+    assert told.value.reason == "exception-2"
+    with raises_code(RefusedError, "driver", "01") as told:
         modbus.coils(0)
+    assert told.value.reason == "exception-1"
     assert len(wire.sent) == 2
 
 
 def test_silence_takes_three_tries() -> None:
     modbus, wire, clock = line_to(delta())
     wire.silent = True
-    with pytest.raises(NoAnswerError, match="look at cable, id and line settings"):
+    with raises_code(NoAnswerError, "driver") as told:
         modbus.registers(0x2103)
+    assert told.value.reason == "silent"
     assert len(wire.sent) == 3
     assert clock.now() == pytest.approx(0.6, abs=0.05)  # three answers of .2 s at most
 
@@ -98,8 +102,9 @@ def test_silence_takes_three_tries() -> None:
 def test_noise_alone_is_told_apart_from_silence() -> None:
     modbus, wire, _ = line_to(delta())
     wire.noise, wire.spoils = b"\x55\x55", True
-    with pytest.raises(NoAnswerError, match="nothing of what comes back is an answer"):
+    with raises_code(NoAnswerError, "driver", "10 bytes") as told:
         modbus.registers(0x2103)
+    assert told.value.reason == "garbled"
 
 
 def test_a_stop_that_waits_ends_the_tries() -> None:

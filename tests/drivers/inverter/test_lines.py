@@ -16,9 +16,12 @@ from app.compose.backend_entry import Connected
 from app.compose.backends import connect
 from app.compose.machine_answers import check_ports
 from app.compose.machine_files import load_machine
+from core.faults import code_of
 from core.machine.machine_model import Machine
 from core.ports import DriverError
 from drivers.clocks import RealClock, StepClock
+from drivers.inverter.inverter_obedience import PRESS
+from tests.coded import raises_code
 from tests.drivers.inverter.benches import FAMILIES
 from tests.drivers.inverter.inverter_lookalikes import DeltaMemory, HitachiMemory, HuanyangSlave, Inverter
 from tests.drivers.inverter.lines import HuanyangEnd, ModbusServer, Pair, inverter, until
@@ -89,8 +92,8 @@ def test_ignoring_a_stop_asks_for_the_estop(connected: Connected, wired: Wired) 
     wired.inverter.deaf = True
     spindle.run(0.0)
     until(lambda: spindle.fault() != "", "a fault")
-    assert "told to stop" in spindle.fault()
-    assert "PRESS E-STOP" in spindle.fault()
+    assert code_of(spindle.fault(), "driver") == "ignores-stop"
+    assert PRESS in spindle.fault()
 
 
 def test_cable_out_is_a_fault_that_axes_and_spindle_share(connected: Connected, wired: Wired) -> None:
@@ -99,7 +102,8 @@ def test_cable_out_is_a_fault_that_axes_and_spindle_share(connected: Connected, 
     until(lambda: spindle.speed() > 800.0, "900 rpm")
     wired.cable.cut()
     until(lambda: spindle.fault() != "", "a fault")
-    assert "PRESS E-STOP" in spindle.fault()
+    assert code_of(spindle.fault(), "driver") == "inverter-silent"
+    assert PRESS in spindle.fault()
     connected.ports.axes.clear_fault()
     until(lambda: spindle.fault() != "", "the fault again")
 
@@ -125,7 +129,7 @@ def test_silence_then_life_and_a_clear_word(connected: Connected, wired: Wired) 
 def test_estop_keeps_it_off(connected: Connected) -> None:
     assert connected.panel is not None
     connected.panel.press_estop()
-    with pytest.raises(DriverError, match="E-stop is pressed"):
+    with raises_code(DriverError, "spindle-off", "E-stop"):
         connected.ports.spindle.run(100.0)
     connected.ports.spindle.run(0.0)
 
@@ -135,8 +139,9 @@ def test_machine_check_reads_it(wired: Wired, capsys: pytest.CaptureFixture[str]
     report = json.loads(capsys.readouterr().out)
     (spindle,) = [port for port in report["ports"] if port["name"] == "spindle"]
     assert spindle["state"] == "ok"
-    assert spindle["detail"].startswith("0 rpm, stands, gives 0.00 Hz")
-    assert any("no encoder is connected" in text for text in report["warnings"])
+    assert spindle["detail"].startswith("0 rpm, ")
+    assert "0.00 Hz" in spindle["detail"]
+    assert any("encoder" in warning for warning in report["warnings"])
     assert wired.inverter.stops > 0
     assert not wired.inverter.running
 
@@ -160,10 +165,11 @@ def test_a_port_that_is_not_there_is_one_sentence(tmp_path: Path) -> None:
     answers = check_ports(load_machine(path))
     assert [(row.name, row.state) for row in answers.rows] == [("spindle", "no answer")]
     (told,) = answers.trouble
-    assert "huanyang on /dev/ttyNONE7: /dev/ttyNONE7 cannot be opened: there is no such port" in told
+    assert "huanyang" in told
+    assert "/dev/ttyNONE7" in told
 
 
 def test_a_clock_moved_by_hand_is_refused(tmp_path: Path) -> None:
     machine = load_machine(machine_file(tmp_path, "huanyang", "/dev/ttyNONE7"))
-    with pytest.raises(DriverError, match="needs real time"):
+    with raises_code(DriverError, "driver", "real time"):
         connect(machine, StepClock())

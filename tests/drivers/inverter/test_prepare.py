@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 
 from core.ports import DriverError
+from drivers.inverter.modbus_rtu import NoAnswerError
+from drivers.serial_line import WireError
+from tests.coded import raises_code
 from tests.drivers.inverter.benches import bench
 from tests.drivers.inverter.inverter_lookalikes import DeltaMemory, HitachiMemory, HuanyangSlave
 
@@ -30,24 +35,27 @@ def test_hitachi_gets_its_time_out() -> None:
 def test_huanyang_has_none_and_says_so() -> None:
     warnings = bench("huanyang").attendant.warnings
     assert len(warnings) == 1
-    assert "no time-out of its own" in warnings[0]
+    assert "time-out" in warnings[0]
 
 
 @pytest.mark.parametrize(
-    ("family", "register", "value", "said"),
+    ("family", "register", "value", "named"),
     [
-        ("delta-vfdb", 0x0201, 0, "Pr.02-01 is 0; set it to 3"),
-        ("delta-vfdb", 0x0100, 5000, "Pr.01-00 ends at 50 Hz, the highest speed needs 58.33"),
-        ("hitachi-wj200", 0x1201, 2, "A002 is 2; set it to 3"),
-        ("hitachi-wj200", 0x1203, 500, "A004 ends at 50 Hz"),
+        ("delta-vfdb", 0x0201, 0, ["Pr.02-01", "0", "3"]),
+        ("delta-vfdb", 0x0100, 5000, ["Pr.01-00", "50 Hz", "58.33"]),
+        ("hitachi-wj200", 0x1201, 2, ["A002", "2", "3"]),
+        ("hitachi-wj200", 0x1203, 500, ["A004", "50 Hz"]),
     ],
 )
-def test_settings_of_others_are_told_and_left(family: str, register: int, value: int, said: str) -> None:
+def test_settings_of_others_are_told_and_left(
+    family: str, register: int, value: int, named: list[str]
+) -> None:
     one = bench(family, connect=False)
     assert isinstance(one.memory, DeltaMemory | HitachiMemory)
     one.memory.settings[register] = value
     one.attendant.connect()
-    assert [said in text for text in one.attendant.warnings] == [True]
+    (warning,) = one.attendant.warnings
+    assert all(each in warning for each in named)
     assert one.memory.settings[register] == value
 
 
@@ -57,7 +65,7 @@ def test_settings_that_an_inverter_does_not_know_are_told() -> None:
     del one.memory.settings[0x0903]
     one.attendant.connect()
     assert len(one.attendant.warnings) == 1
-    assert "Pr.09-03 cannot be read" in one.attendant.warnings[0]
+    assert "Pr.09-03" in one.attendant.warnings[0]
 
 
 def test_huanyang_that_listens_to_its_keypad_is_told() -> None:
@@ -65,7 +73,7 @@ def test_huanyang_that_listens_to_its_keypad_is_told() -> None:
     assert isinstance(one.memory, HuanyangSlave)
     one.memory.parameters[1] = 0
     one.attendant.connect()
-    assert any("PD001 is 0; set it to 2" in text for text in one.attendant.warnings)
+    assert any(re.search(r"PD001 .*\b0\b.*\b2\b", warning) for warning in one.attendant.warnings)
 
 
 def test_huanyang_is_trusted_after_ten_good_answers() -> None:
@@ -74,18 +82,19 @@ def test_huanyang_is_trusted_after_ten_good_answers() -> None:
     one.wire.loses = 1
     one.attendant.exchange()
     assert not one.attendant.warm
-    with pytest.raises(DriverError, match="not yet answered often enough"):
+    with raises_code(DriverError, "spindle-off") as told:
         one.spindle.run(100.0)
+    assert told.value.reason == "not-ready"
     one.run(1.0)
     one.spindle.run(100.0)
 
 
 @pytest.mark.parametrize("family", ["delta-vfdb", "hitachi-wj200", "huanyang"])
-@pytest.mark.parametrize(("fault", "said"), [("silent", "does not answer"), ("out", "cannot be opened")])
-def test_nobody_there_is_one_sentence(family: str, fault: str, said: str) -> None:
+@pytest.mark.parametrize(("fault", "kind"), [("silent", NoAnswerError), ("out", WireError)])
+def test_nobody_there_is_one_sentence(family: str, fault: str, kind: type[DriverError]) -> None:
     one = bench(family, connect=False)
     setattr(one.wire, fault, True)
-    with pytest.raises(DriverError, match=said):
+    with pytest.raises(kind):
         one.attendant.connect()
 
 

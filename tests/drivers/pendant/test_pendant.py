@@ -14,6 +14,7 @@ from drivers.pendant.pendant_buttons import AxisRange, PendantButtons
 from drivers.pendant.pendant_reader import Pendant
 from drivers.pendant.pendant_station import LOST, PendantIO, PendantStation
 from drivers.pendant.pendant_table import STOPS
+from tests.coded import raises_code
 from tests.drivers.pendant.made import (
     ABS,
     ABS_HAT0X,
@@ -330,9 +331,9 @@ def test_it_adds_to_the_station_and_can_start_nothing() -> None:
     assert io.inputs()["hold"]
     assert not io.inputs()["start"]
     assert io.outputs() == {"coolant": True}
-    with pytest.raises(DriverError, match="coolant False"):
+    with raises_code(DriverError, "driver", "coolant False"):
         io.write("coolant", False)
-    with pytest.raises(DriverError, match="safe"):
+    with raises_code(DriverError, "driver", "safe"):
         io.safe()
 
 

@@ -12,6 +12,7 @@ import pytest
 from core.ports import DriverError
 from drivers.pendant.input_codes import ABS, KEY, REL, Control, button_of, wheel_of
 from drivers.pendant.input_devices import DeviceEntry, KernelDevice, chosen, entries
+from tests.coded import raises_code
 
 WANTED = {"hold": Control(KEY, 0x131), "handwheel": Control(REL, 7)}
 ABLE = frozenset({(KEY, 0x130), (KEY, 0x131), (REL, 7)})
@@ -83,23 +84,25 @@ def test_one_device_of_two_nodes_is_both() -> None:
 
 
 @pytest.mark.parametrize(
-    ("found", "serial", "expected"),
+    ("found", "serial", "reason", "values"),
     [
-        ([], "", "not plugged in"),
-        ([entry()], "7", "with serial 7 is not plugged in"),
-        ([entry(), entry(node="event9", stem="usb-1.3")], "", "no serial that tells them apart"),
+        ([], "", "missing", []),
+        ([entry()], "7", "missing", ["7"]),
+        ([entry(), entry(node="event9", stem="usb-1.3")], "", "several", ["2 "]),
         (
             [entry(serial="A1"), entry(node="event9", stem="usb-1.3", serial="B2")],
             "",
-            "serial = one of A1, B2",
+            "several",
+            ["2 ", "A1, B2"],
         ),
-        ([entry(able=frozenset({(KEY, 0x131)}))], "", "not the button or wheel of handwheel"),
-        ([entry(bluetooth=True)], "", "take one with a cable"),
+        ([entry(able=frozenset({(KEY, 0x131)}))], "", "lacks-control", ["handwheel"]),
+        ([entry(bluetooth=True)], "", "bluetooth", []),
     ],
 )
-def test_what_is_refused(found: list[DeviceEntry], serial: str, expected: str) -> None:
-    with pytest.raises(DriverError, match=expected):
+def test_what_is_refused(found: list[DeviceEntry], serial: str, reason: str, values: list[str]) -> None:
+    with raises_code(DriverError, "driver", *values) as told:
         chosen("Shop Pendant", serial, WANTED, found)
+    assert told.value.reason == reason
 
 
 def test_a_twin_is_told_apart_by_its_serial() -> None:
@@ -119,8 +122,9 @@ def test_what_may_not_be_read_says_the_rule_to_add(tmp_path: Path, monkeypatch: 
 
 
 def test_a_node_that_is_gone_is_told_with_the_cause(tmp_path: Path) -> None:
-    with pytest.raises(DriverError, match="the pendant Shop Pendant cannot be opened: No such file"):
+    with raises_code(DriverError, "driver", "Shop Pendant") as told:
         KernelDevice(entry(), tmp_path)
+    assert told.value.reason == "not-opened"
 
 
 def test_the_kernel_is_asked_by_the_numbers_of_its_header(
@@ -151,8 +155,9 @@ def test_the_kernel_is_asked_by_the_numbers_of_its_header(
 
 def test_a_file_that_is_no_device_is_none(tmp_path: Path) -> None:
     (tmp_path / "event3").write_bytes(b"")
-    with pytest.raises(DriverError, match="read by another program"):
+    with raises_code(DriverError, "driver", "Shop Pendant") as told:
         KernelDevice(entry(), tmp_path)
+    assert told.value.reason == "taken"
 
 
 def test_names_are_the_kernels() -> None:

@@ -9,6 +9,7 @@ import pytest
 from drivers.serial_line import LineSettings
 from drivers.transfer.program_framing import Incoming, IncompleteError, Phase, Program
 from drivers.transfer.transfer_settings import TransferSettings
+from tests.coded import raises_code
 
 EIGHT = TransferSettings(LineSettings("bench"))
 SEVEN = TransferSettings(LineSettings("bench", bits=7, parity="E"))
@@ -108,27 +109,30 @@ def test_names(head: bytes, first: bytes, name: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("stream", "settings", "said"),
+    ("stream", "settings", "reason", "values"),
     [
-        (b"", EIGHT, "nothing came"),
-        (b"G90\nM30\n", EIGHT, "8 characters came, but no %"),
-        (framed(b"\n")[:-2], EIGHT, "last % is missing, 5 lines came"),
-        (framed(b"\n")[:-2] + b"\x14", EIGHT, "last % is missing"),
-        (b"%\nG90\n", EIGHT, "last % is missing"),
-        (b"%\n%\n", EIGHT, "empty"),
-        (b"%\n\n\n%\n", EIGHT, "empty"),
-        (b"%\nG90\nX\x021.\n%\n", EIGHT, "line 2 holds the control character 02"),
-        (b"%_N_A_MPF\nG90\n%_N_B_MPF\nG91\n%\n", EIGHT, "more than one program"),
-        (even(framed(b"\n"))[:8] + b"\x31" + even(b"9\nM30\n%\n"), SEVEN, "parity error in line 1"),
-        (even(framed(b"\n"))[:8] + b"\xb0\xb0", EIGHT, "parity error in line 1"),
-        (odd(framed(b"\n")), SEVEN, "but no %"),
+        (b"", EIGHT, "nothing", []),
+        (b"G90\nM30\n", EIGHT, "no-begin", ["8 characters", "%"]),
+        (framed(b"\n")[:-2], EIGHT, "no-end", ["%", "5 lines"]),
+        (framed(b"\n")[:-2] + b"\x14", EIGHT, "no-end", ["%"]),
+        (b"%\nG90\n", EIGHT, "no-end", ["%"]),
+        (b"%\n%\n", EIGHT, "empty", []),
+        (b"%\n\n\n%\n", EIGHT, "empty", []),
+        (b"%\nG90\nX\x021.\n%\n", EIGHT, "control-character", ["line 2 ", "02"]),
+        (b"%_N_A_MPF\nG90\n%_N_B_MPF\nG91\n%\n", EIGHT, "several", ["line 2 ", "%"]),
+        (even(framed(b"\n"))[:8] + b"\x31" + even(b"9\nM30\n%\n"), SEVEN, "parity", ["line 1:"]),
+        (even(framed(b"\n"))[:8] + b"\xb0\xb0", EIGHT, "parity", ["line 1:"]),
+        (odd(framed(b"\n")), SEVEN, "no-begin", ["%"]),
     ],
     ids=["nothing", "no %", "lost %", "DC4 before %", "stopped", "empty", "blank", "control", "two", "parity",
          "parity found", "wrong parity"],
 )  # fmt: skip
-def test_what_is_not_whole_is_refused(stream: bytes, settings: TransferSettings, said: str) -> None:
-    with pytest.raises(IncompleteError, match=said):
+def test_what_is_not_whole_is_refused(
+    stream: bytes, settings: TransferSettings, reason: str, values: list[str]
+) -> None:
+    with raises_code(IncompleteError, "driver", *values) as told:
         taken(stream, settings)
+    assert told.value.reason == reason
 
 
 def test_every_cut_of_a_program_is_noticed() -> None:

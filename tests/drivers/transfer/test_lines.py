@@ -12,6 +12,7 @@ from drivers.serial_port import SerialWire
 from drivers.transfer.program_framing import Program, outgoing
 from drivers.transfer.transfer_session import CancelledError, Receiving, Sending
 from drivers.transfer.transfer_settings import TransferSettings
+from tests.coded import raises_code
 from tests.drivers.inverter.lines import WAIT, Pair, until
 from tests.drivers.transfer.far_end import FarEnd, feed
 
@@ -74,8 +75,9 @@ def test_giving_up_while_it_is_held_lets_the_port_go(far: FarEnd, pool: ThreadPo
 
 def test_a_port_has_one_owner(far: FarEnd) -> None:
     first = SerialWire(LineSettings(far.port))
-    with pytest.raises(WireError, match="cannot be opened"):
+    with raises_code(WireError, "driver", far.port) as told:
         SerialWire(LineSettings(far.port))
+    assert told.value.reason == "not-opened"
     first.close()
 
 
@@ -85,8 +87,9 @@ def test_cable_out_while_receiving(pool: ThreadPoolExecutor) -> None:
         job = Receiving(SerialWire(settings.receiving, watch=True), RealClock(), settings)
         future = pool.submit(job.run)
         cable.cut()
-        with pytest.raises(WireError, match="has failed"):
+        with raises_code(WireError, "driver", cable.near) as told:
             future.result(WAIT)
+        assert told.value.reason == "failed"
 
 
 @pytest.mark.parametrize("bits", [7, 8])

@@ -9,6 +9,7 @@ from drivers.serial_line import LineSettings
 from drivers.serial_port import Unmarker
 from drivers.transfer.program_framing import outgoing
 from drivers.transfer.transfer_settings import TransferSettings
+from tests.coded import raises_code
 
 LINE = LineSettings("bench")
 
@@ -29,18 +30,19 @@ def test_a_program_goes_out_framed_once(settings: TransferSettings, expected: by
 
 
 @pytest.mark.parametrize(
-    ("text", "bits", "said"),
+    ("text", "bits", "reason", "values"),
     [
-        (b"", 8, "empty"),
-        (b"%\n%\n", 8, "empty"),
-        (b"G90\n%\nM30\n", 8, "line 2 begins with %"),
-        (b"G90\nX\x071\n", 8, "line 2 holds the control character 07"),
-        ("(öl)\n".encode(), 7, "line 1 holds a letter that 7 bits cannot carry"),
+        (b"", 8, "empty", []),
+        (b"%\n%\n", 8, "empty", []),
+        (b"G90\n%\nM30\n", 8, "wrap", ["line 2 ", "%"]),
+        (b"G90\nX\x071\n", 8, "control-character", ["line 2 ", "07"]),
+        ("(öl)\n".encode(), 7, "eighth-bit", ["line 1 ", "7 bits"]),
     ],
 )
-def test_what_would_not_arrive_is_not_sent(text: bytes, bits: int, said: str) -> None:
-    with pytest.raises(DriverError, match=said):
+def test_what_would_not_arrive_is_not_sent(text: bytes, bits: int, reason: str, values: list[str]) -> None:
+    with raises_code(DriverError, "driver", *values) as told:
         outgoing(text, TransferSettings(LineSettings("bench", bits=bits)))
+    assert told.value.reason == reason
 
 
 def test_without_a_frame_the_text_goes_out_alone() -> None:

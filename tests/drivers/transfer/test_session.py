@@ -12,6 +12,7 @@ from drivers.serial_line import LineSettings, WireError
 from drivers.transfer.program_framing import IncompleteError, outgoing
 from drivers.transfer.transfer_session import CancelledError, Reach, Receiving, Sending
 from drivers.transfer.transfer_settings import TransferSettings
+from tests.coded import raises_code
 from tests.drivers.transfer.bench import OtherSide
 
 SETTINGS = TransferSettings(LineSettings("bench", flow="xonxoff"), eol="\n")
@@ -55,8 +56,9 @@ def test_a_hold_in_a_line_is_waited_for_and_told() -> None:
 
 def test_a_hold_that_does_not_end_is_a_sentence() -> None:
     side = OtherSide(StepClock(), holds=(0.5, 1e9))
-    with pytest.raises(DriverError, match="held the line for 2 minutes after"):
+    with raises_code(DriverError, "driver", "2 minutes", " bytes") as told:
         sending(side).run()
+    assert told.value.reason == "held"
     assert side.closed
 
 
@@ -99,8 +101,9 @@ def test_it_waits_for_dc1_and_then_obeys_the_codes() -> None:
 
 def test_nobody_asks_for_it() -> None:
     side = OtherSide(StepClock())
-    with pytest.raises(DriverError, match="has not asked for a program"):
+    with raises_code(DriverError, "driver", "DC1") as told:
         sending(side, dataclasses.replace(SETTINGS, wait=True)).run()
+    assert told.value.reason == "not-asked"
     assert side.taken == b""
 
 
@@ -192,8 +195,9 @@ def test_a_pause_behind_a_line_is_no_end() -> None:
 
 def test_a_lost_last_percent_is_refused() -> None:
     side = OtherSide(StepClock(), [(1.0, DATA[:-2])])
-    with pytest.raises(IncompleteError, match="last % is missing, 201 lines came"):
+    with raises_code(IncompleteError, "driver", "%", "201 lines") as told:
         receiving(side).run()
+    assert told.value.reason == "no-end"
     assert 11.0 <= side.clock.now() < 11.2
     assert side.closed
 
@@ -206,8 +210,9 @@ def test_a_damaged_character_ends_it_at_once() -> None:
         side.damaged = int(side.clock.now() >= 1.1)
 
     side.before_listening = spoil
-    with pytest.raises(IncompleteError, match="a damaged character in line"):
+    with raises_code(IncompleteError, "driver", "line ") as told:
         job.run()
+    assert told.value.reason == "damaged"
 
 
 @pytest.mark.parametrize("at", [0.0, 1.02, 1.1, 9.0])
