@@ -12,11 +12,13 @@ import pytest
 
 import resources
 from app.compose.journal import Journal
+from core.alarms import CATALOGUE
 from core.records.record import Record
 from core.records.ring_file import LAST, NOW, read_ring
 from core.store.store import Store
 from tests.killed.bench import Process, process, until
 from tests.late_computer import tell
+from tests.texts import text
 
 pytestmark = [
     pytest.mark.skipif(not sys.platform.startswith("linux"), reason="looks for processes in /proc"),
@@ -24,7 +26,7 @@ pytestmark = [
 ]
 PROGRAM = "G90G94\nM03S600\nM08\nG01X.2Z-.2F20\nX0.Z0.\nM30\n"  # 2 s of motion a part
 OPERATOR = "tests.killed.operator"
-_LATE = "CONTROL WAS SILENT", "SETPOINTS RAN LOW"
+_LATE = text("executor.control-silent"), CATALOGUE["low-queue"].text.upper()
 
 
 @pytest.fixture
@@ -101,7 +103,7 @@ def test_a_killed_screen_keeps_what_was_entered_and_leaves_nobody(
     with Store.open(home, read_only=True) as store:
         assert store.parts("part.nc") > counted
         told = [event.text for event in store.events() if event.kind == "warning"]
-        assert "part.nc: the control ended in the middle of its last run" in told
+        assert text("shopfloor.ended-in-run", program="part.nc") in told
 
 
 def test_a_run_without_an_end_is_told_at_the_next_start(tmp_path: Path) -> None:
@@ -121,6 +123,6 @@ def test_a_killed_feeder_stops_the_program_and_says_so(files: tuple[str, str], t
         cutting(desk, 0)
         os.kill(desk.feeder(), signal.SIGKILL)
         until(lambda: desk.says("state", "ALARM"), lambda: desk.lines[-3:])
-        assert "THE FEEDER HAS ENDED" in str(desk.lines[-1]["alarms"])
+        assert CATALOGUE["feeder-gone"].text.upper() in str(desk.lines[-1]["alarms"])
         # The screen goes on: offsets and editor stay at hand.
         until(lambda: desk.family() == {desk.popen.pid}, desk.family)

@@ -14,6 +14,7 @@ from app.shopfloor.agent_desk import asked_agent, current_address, streams_answe
 from core.machine.shop_network_tables import StatusPageTable
 from core.table_schema import MachineFileError
 from resources import machine_file
+from tests.texts import text
 
 # As the standard has it (part 3, Streams); versions differ in the name space alone.
 STREAMS = """<?xml version="1.0" encoding="UTF-8"?>
@@ -82,7 +83,7 @@ def test_an_alarm_says_why() -> None:
 
 
 def test_of_a_machine_that_the_agent_does_not_hear_nothing_is_told() -> None:
-    assert streams_answer(streams(available="UNAVAILABLE")) == (None, "the agent hears nothing of it")
+    assert streams_answer(streams(available="UNAVAILABLE")) == (None, text("shopfloor.agent-hears-nothing"))
 
 
 @pytest.mark.parametrize("count", ["UNAVAILABLE", "-3", "1e9", "", "9" * 4000, "٣"])
@@ -144,12 +145,12 @@ def test_an_agent_is_asked_for_one_machine() -> None:
     assert heard.status["made"] == 57
     assert unknown.status is None
     assert unknown.address == f"{address.removeprefix('http://')}/MILL5"
-    assert unknown.trouble == "it answers 404 Not Found"
+    assert unknown.trouble == text("shopfloor.answers", answer="404 Not Found")
 
 
 def test_what_answers_and_is_no_agent_is_told() -> None:
     with agent(lambda _path: (200, b"<html>")) as address:
-        assert asked_agent(f"{address}/MILL4").trouble == "what answers there is no desk"
+        assert asked_agent(f"{address}/MILL4").trouble == text("shopfloor.no-desk")
 
 
 def test_the_address_of_what_is_so_now() -> None:
@@ -174,7 +175,7 @@ def test_the_machine_file_names_machines_at_their_agents() -> None:
 
 @pytest.mark.parametrize("address", ["http://shop-pc:5000", "http://shop-pc:5000/", "shop-pc:5000/MILL4"])
 def test_an_agent_without_a_machine_is_refused(address: str) -> None:
-    with pytest.raises(MachineFileError, match="the agent's address and the device"):
+    with pytest.raises(MachineFileError, match=r"status_page\.agents = "):
         page_table(f'agents = ["{address}"]')
 
 
@@ -184,5 +185,5 @@ def test_an_agent_without_a_machine_is_refused(address: str) -> None:
 )
 def test_an_address_that_is_none_is_refused(keys: str) -> None:
     """Else the desk ended with a traceback when it began to ask."""
-    with pytest.raises(MachineFileError, match="begins with http"):
+    with pytest.raises(MachineFileError, match=r"status_page\.desks = "):
         page_table(keys)

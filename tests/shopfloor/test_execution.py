@@ -9,6 +9,7 @@ import pytest
 from app.shopfloor.floor_reading import Execution, mode_of
 from core.executor.snapshot import Snapshot, Starts, State
 from tests.interrupted import broken_off
+from tests.texts import text
 
 RUN, IDLE = Snapshot(state=State.RUN, program="a.nc"), Snapshot(state=State.IDLE, program="a.nc")
 
@@ -34,13 +35,13 @@ RUN, IDLE = Snapshot(state=State.RUN, program="a.nc"), Snapshot(state=State.IDLE
         (State.WAIT, "AT SPEED", "ACTIVE", "the spindle runs up"),
         (State.WAIT, "SPINDLE STOP", "ACTIVE", "the spindle runs down"),
         (State.WAIT, "C AXIS", "ACTIVE", "the drive changes from turning to positioning"),
-        (State.WAIT, "PROOF WITH THE CHANGED OFFSETS", "ACTIVE", "the control thinks"),
+        (State.WAIT, text("executor.proof-wait"), "ACTIVE", "the control thinks"),
         (State.WAIT, "PLC-1", "WAIT", "an input by its terminal"),
         (State.WAIT, "COLLET", "WAIT", "a device moves the material"),
         (State.WAIT, "TB2-5", "WAIT", "bar feed or loader have to answer"),
-        (State.WAIT, "FEED OVERRIDE AT 0", "FEED_HOLD", "the pot holds the slides"),
-        (State.WAIT, "SPINDLE SWITCH OFF", "INTERRUPTED", "the switch has to be turned"),
-        (State.WAIT, "SPINDLE OVERRIDE AT 0", "INTERRUPTED", "the pot has to be turned"),
+        (State.WAIT, text("executor.feed-override-0"), "FEED_HOLD", "the pot holds the slides"),
+        (State.WAIT, text("executor.spindle-switch-off"), "INTERRUPTED", "the switch has to be turned"),
+        (State.WAIT, text("executor.spindle-override-0"), "INTERRUPTED", "the pot has to be turned"),
         (State.PROGRAM_STOP, "", "PROGRAM_STOPPED", "M00"),
         (State.JOG, "", "READY", "no program is under way"),
         (State.HOME, "", "READY", "no program is under way"),

@@ -41,6 +41,8 @@ from core.records.record import Record, channels_of
 from core.store.part_cycles import StopRow
 from core.table_schema import MachineFileError
 from resources import machine_file
+from tests.coded import raises_code
+from tests.texts import text
 
 LATHE = load_machine(None)
 TOKEN = "gt75-word-of-ours"
@@ -157,11 +159,11 @@ def test_head_has_no_body() -> None:
 
 def test_a_page_open_to_the_shop_wants_a_token() -> None:
     text = machine_file("gt75.toml")
-    with pytest.raises(MachineFileError, match=r"other computers can ask at 0\.0\.0\.0"):
+    with pytest.raises(MachineFileError, match=r"status_page\.token: .*0\.0\.0\.0"):
         parse_machine(text + '[status_page]\nbind = "0.0.0.0"\ntoken = "short"\n', "m.toml")
-    with pytest.raises(MachineFileError, match="letters, figures"):
+    with pytest.raises(MachineFileError, match=r"status_page\.token: "):
         parse_machine(text + '[status_page]\ntoken = "with a blank and more"\n', "m.toml")
-    with pytest.raises(MachineFileError, match="begins with http"):
+    with pytest.raises(MachineFileError, match=r"status_page\.desks = "):
         parse_machine(text + '[status_page]\ndesks = ["lathe2:8317"]\n', "m.toml")
     table = parse_machine(
         text + f'[status_page]\nbind = "0.0.0.0"\ntoken = "{TOKEN}"\n', "m.toml"
@@ -171,17 +173,18 @@ def test_a_page_open_to_the_shop_wants_a_token() -> None:
 
 
 @pytest.mark.parametrize(
-    ("line", "why"),
+    ("line", "path"),
     [
-        ('mqtt = "shop:broker"', "address of the broker"),
-        ('mqtt = ":1883"', "address of the broker"),
-        ('hook = "ftp://x"', "begins with http"),
-        ('topic = "shop/#"', "a topic without"),
+        ('mqtt = "shop:broker"', "announce.mqtt"),
+        ('mqtt = ":1883"', "announce.mqtt"),
+        ('hook = "ftp://x"', "announce.hook"),
+        ('topic = "shop/#"', "announce.topic"),
     ],
 )
-def test_a_wrong_address_of_who_is_told_is_refused(line: str, why: str) -> None:
-    with pytest.raises(MachineFileError, match=why):
+def test_a_wrong_address_of_who_is_told_is_refused(line: str, path: str) -> None:
+    with pytest.raises(MachineFileError) as told:
         parse_machine(f"{machine_file('gt75.toml')}[announce]\n{line}\n", "m.toml")
+    assert [finding.path for finding in told.value.errors] == [path]
 
 
 def test_the_broker_has_its_usual_port() -> None:
@@ -283,7 +286,7 @@ def test_of_a_silent_control_nothing_else_is_said() -> None:
     look = OfficeLook("GT-75", reader, Snapshot, lambda _: 1.0, lambda: (), lambda: datetime.now(UTC))
     look.status()
     told = look.status()
-    assert (told["state"], told["available"], told["made"]) == ("CONTROL SILENT", False, None)
+    assert (told["state"], told["available"], told["made"]) == (text("shopfloor.control-silent"), False, None)
 
 
 # --- the desks beside -------------------------------------------------------------------------------
@@ -346,7 +349,7 @@ def test_a_desk_shows_another_one() -> None:
 
 def test_another_desk_that_wants_another_token_says_so() -> None:
     with served(page(TOKEN)) as address:
-        assert asked(address).trouble == "it wants another token"
+        assert asked(address).trouble == text("shopfloor.other-token")
 
 
 def test_a_desk_that_is_off_does_not_answer() -> None:
@@ -355,7 +358,7 @@ def test_a_desk_that_is_off_does_not_answer() -> None:
         heard = asked(f"http://127.0.0.1:{nobody.getsockname()[1]}")
     assert heard.status is None
     assert "refused" in heard.trouble
-    assert "NO ANSWER" in get(page(others=(heard,)))[2]
+    assert text("shopfloor.no-answer-shown") in get(page(others=(heard,)))[2]
 
 
 def test_what_another_desk_says_is_not_believed() -> None:
@@ -400,7 +403,7 @@ def test_an_older_desk_shows_what_it_says_and_a_dead_one_that_it_is_dead() -> No
     assert [each.status is not None for each in heard] == [True, False, True]
     shown = get(page(others=tuple(heard)))[2]
     cards = shown[shown.index('class="others"') :].split("<article>")[1:]
-    assert [("NO ANSWER" in card, ">PARTS<" in card.upper()) for card in cards] == [
+    assert [(text("shopfloor.no-answer-shown") in card, ">PARTS<" in card.upper()) for card in cards] == [
         (False, False),
         (True, False),
         (False, True),
@@ -435,7 +438,7 @@ def test_what_was_heard_long_ago_is_not_told_as_of_now() -> None:
     now[0] = 10.0
     assert asking.look()[0].status == {"state": "RUNNING"}
     now[0] = 10.5
-    assert (asking.look()[0].status, asking.look()[0].trouble) == (None, "not heard for 10 s")
+    assert (asking.look()[0].status, asking.look()[0].trouble) == (None, text("shopfloor.silent-for", age=10))
 
 
 def test_a_desk_that_never_answers_is_told_behind_a_while() -> None:
@@ -443,7 +446,10 @@ def test_a_desk_that_never_answers_is_told_behind_a_while() -> None:
     asking = OtherDesks(("http://lathe2:8317",), lambda _address: OtherDesk("lathe2"), lambda: now[0])
     assert asking.look()[0].state == "…"
     now[0] = 110.5
-    assert (asking.look()[0].state, asking.look()[0].trouble) == ("NO ANSWER", "not heard for 10 s")
+    assert (asking.look()[0].state, asking.look()[0].trouble) == (
+        text("shopfloor.no-answer-shown"),
+        text("shopfloor.silent-for", age=10),
+    )
 
 
 def test_a_desk_that_dies_keeps_its_name(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -482,9 +488,9 @@ def test_who_looks_after_a_night_sees_no_desk_that_is_dead_because_nobody_asked(
 def test_a_port_that_is_taken_is_told() -> None:
     with socket.create_server(("127.0.0.1", 0)) as other:
         port = other.getsockname()[1]
-        with pytest.raises(DriverError, match=f"127.0.0.1:{port}: another program listens there"):
+        with raises_code(DriverError, "driver", f"[status_page] 127.0.0.1:{port}: "):
             listening_at("127.0.0.1", port)
-    with pytest.raises(DriverError, match="this computer has no such address"):
+    with raises_code(DriverError, "driver", "[status_page] 192.0.2.1:8317: "):
         listening_at("192.0.2.1", 8317)
 
 
@@ -501,7 +507,7 @@ def test_machine_check_has_a_row_for_the_page_and_for_the_broker() -> None:
         ]
     states = [{row.name: row.state for row in rows} for rows in told]
     assert (states[0]["status_page"], states[0]["announce"]) == ("fault", "ok")
-    assert states[1]["announce"] == "no answer"
+    assert states[1]["announce"] == text("shopfloor.no-answer")
 
 
 # --- pictures ---------------------------------------------------------------------------------------

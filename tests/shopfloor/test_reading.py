@@ -17,6 +17,7 @@ from core.interpreter.modal_state import Modal
 from core.machine.machine_model import InputModel, Machine
 from core.ports import ALL_UNKNOWN
 from tests.interrupted import broken_off
+from tests.texts import text
 
 KEYS = frozenset(
     ["Xtravel", "Ztravel", "Xservo", "Zservo", "Sdrive", "comms", "logic", "system", "motion"]  # of the lathe
@@ -149,6 +150,13 @@ def alarm(code: Code, detail: str = "") -> Alarm:
     return alarm_and_reaction(AlarmError(code, detail), 0, 0.0)[0]
 
 
+JOB = text("executor.interrupted-job", program="PIN.NC", line=8, tool="T3", part=5, why="E-STOP")
+
+
+def moved(axis: str) -> str:
+    return text("executor.line-moves", line=12, axis=axis, place="150.000", unit="mm")
+
+
 def test_without_alarms_all_is_normal() -> None:
     assert active(AT) == {}
 
@@ -160,10 +168,10 @@ def test_without_alarms_all_is_normal() -> None:
         ("axis", "Z: following error", "Zservo"),
         ("axis", "C: over current", "Sdrive"),  # the spindle is C
         ("axis", "the drives have lost power", "system"),
-        ("following", "Z is 2.345 off its setpoint", "Zservo"),
+        ("following", text("executor.off-setpoint", axis="Z", distance="2.345"), "Zservo"),
         ("in-position", "", "system"),
-        ("travel", "line 12 moves X to 150.000 mm from home", "Xtravel"),
-        ("travel", "line 12 moves Z to 150.000 mm from home", "Ztravel"),
+        ("travel", moved("X"), "Xtravel"),
+        ("travel", moved("Z"), "Ztravel"),
         ("travel", "", "motion"),
         ("driver", "the bus is off", "comms"),
         ("spindle", "VFD: E07", "Sdrive"),
@@ -195,13 +203,16 @@ def test_an_alarm_that_nobody_has_placed_is_not_lost() -> None:
 
 
 def test_two_faults_of_a_slide_stand_side_by_side() -> None:
-    both = alarm("axis", "X: over current"), alarm("following", "X is 2.345 off its setpoint")
+    both = (
+        alarm("axis", "X: over current"),
+        alarm("following", text("executor.off-setpoint", axis="X", distance="2.345")),
+    )
     assert [code for _, code, _ in active(replace(AT, alarms=both))["Xservo"]] == ["101", "102"]
 
 
 def test_an_interrupted_job_is_a_warning_of_the_system_as_long_as_it_stands() -> None:
     left = replace(Snapshot(state=State.IDLE), interrupted=broken_off())
-    assert active(left) == {"system": (("WARNING", "interrupted", "PIN.NC line 8, T3, part 5: E-STOP"),)}
+    assert active(left) == {"system": (("WARNING", "interrupted", JOB),)}
 
 
 def test_a_hold_that_nobody_pressed_is_a_warning() -> None:

@@ -27,6 +27,7 @@ from tests.cli.conftest import Turndesk, home, turndesk
 from tests.drivers.mtconnect.agent import FakeAgent, kinds_of
 from tests.executor.rig import Rig
 from tests.free_port import free_port
+from tests.texts import pattern
 
 __all__ = ["home", "turndesk"]
 
@@ -197,9 +198,9 @@ def test_a_port_that_is_taken_is_said_and_the_machine_runs(home: Path, tmp_path:
         port = other.getsockname()[1]
         desk = build_desk(str(machine_file(tmp_path, port)))
         try:
-            assert desk.notice.startswith(
-                f"NO SHOP-FLOOR DATA: [mtconnect] 127.0.0.1 port {port} cannot be opened"
-            )
+            assert re.fullmatch(pattern("shopfloor.no-data"), desk.notice)
+            for value in ("[mtconnect]", "127.0.0.1", str(port)):
+                assert value in desk.notice
             assert desk.snapshot().state is State.DISABLED
         finally:
             desk.close()
@@ -282,14 +283,15 @@ def test_a_run_that_is_faster_than_its_time_tells_nobody_of_its_parts(
 ) -> None:
     status, err = run(turndesk, machine_file(tmp_path, free_port()))
     assert status == 0
-    assert "no shop-floor data: this run is faster than its time; give --realtime" in err
+    assert "--realtime" in err
 
 
 def test_a_run_with_a_taken_port_says_so_and_runs(turndesk: Turndesk, tmp_path: Path) -> None:
     with socket.create_server(("127.0.0.1", 0)) as other:
-        status, err = run(turndesk, machine_file(tmp_path, other.getsockname()[1]), "--realtime")
+        port = other.getsockname()[1]
+        status, err = run(turndesk, machine_file(tmp_path, port), "--realtime")
     assert status == 0
-    assert err.count("cannot be opened") == 1
+    assert err.count(str(port)) == 1
 
 
 # --- the device model as a command -----------------------------------------------------------------------
@@ -307,7 +309,7 @@ def test_without_the_table_there_is_no_model(turndesk: Turndesk, tmp_path: Path)
     path.write_text(resources.machine_file("gt75.toml"))
     told = turndesk("machine", "mtconnect", path)
     assert (told.status, told.out) == (2, "")
-    assert "there is no [mtconnect] table" in told.err
+    assert "[mtconnect]" in told.err
 
 
 def test_a_device_name_that_no_agent_takes_is_refused(turndesk: Turndesk, tmp_path: Path) -> None:
@@ -334,9 +336,10 @@ def test_machine_check_tries_the_port(turndesk: Turndesk, tmp_path: Path) -> Non
 
 def test_machine_check_names_a_port_that_is_taken(turndesk: Turndesk, tmp_path: Path) -> None:
     with socket.create_server(("127.0.0.1", 0)) as other:
-        told = turndesk("machine", "check", machine_file(tmp_path, other.getsockname()[1]))
+        port = other.getsockname()[1]
+        told = turndesk("machine", "check", machine_file(tmp_path, port))
     assert told.status == 1
-    assert "cannot be opened" in told.err
+    assert f"127.0.0.1 port {port}" in told.err
 
 
 def test_machine_check_names_a_device_that_no_agent_takes(turndesk: Turndesk, tmp_path: Path) -> None:

@@ -8,6 +8,7 @@ import pytest
 
 from app.programs.whole_file import FileError
 from app.transfer.line_transfer import Received, free_name, store_new
+from tests.texts import pattern
 
 
 def received(name: str = "O77.nc") -> Received:
@@ -28,7 +29,7 @@ def test_a_klartext_program_that_is_given_another_name_stays_one(tmp_path: Path)
 @pytest.mark.parametrize("name", ["O77", "O77.nc", "o77.NC"])
 def test_what_is_there_stays(tmp_path: Path, name: str) -> None:
     (tmp_path / "O77.nc").write_bytes(b"OLD\n")
-    with pytest.raises(FileError, match="IS THERE ALREADY; TAKE ANOTHER NAME"):
+    with pytest.raises(FileError, match=pattern("files.name-taken", file="O77.nc")):
         store_new(received(), tmp_path, name)
     assert (tmp_path / "O77.nc").read_bytes() == b"OLD\n"
     assert len(list(tmp_path.iterdir())) == 1
@@ -43,7 +44,7 @@ def test_names_that_are_none(tmp_path: Path, name: str) -> None:
 
 def test_a_disk_that_takes_nothing_is_a_sentence(tmp_path: Path) -> None:
     (tmp_path / "file").write_bytes(b"")
-    with pytest.raises(FileError, match="CANNOT BE WRITTEN"):
+    with pytest.raises(FileError, match=pattern("files.not-written", path=tmp_path / "file")):
         store_new(received(), tmp_path / "file", "O77")
 
 
