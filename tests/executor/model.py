@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+import re
 from collections import Counter
 from collections.abc import Callable, Iterator
 from itertools import pairwise
@@ -48,6 +49,7 @@ from core.ports import DriverError
 from core.proving.prove_program import prove
 from tests.executor.lines import line_job, restart_job
 from tests.executor.rig import TICK, Rig
+from tests.texts import pattern
 
 TOOLS = {1: ToolOffset(), 2: ToolOffset(x=1.0, z=-2.0)}
 PROGRAMS = (
@@ -220,7 +222,7 @@ class Machine(Rig):
     def _check(self, old: Snapshot, new: Snapshot, place: tuple[float, ...], dt: float) -> None:
         if old.state in MOVES and new.state not in MOVES:
             self.stood = new.t
-        told = any("SPINDLE STARTS" in text for text in old.announced)
+        told = any(re.search(pattern("executor.spindle-starts"), said) for said in old.announced)
         self.announced = self.announced + dt if told else 0.0
         self._nothing_moves_unasked(old, new, place, dt)
         self._the_spindle_waits(old, new)

@@ -18,6 +18,7 @@ from core.interpreter.job_setup import ToolOffset
 from core.language.source import Source
 from core.proving.prove_program import prove
 from tests.executor.rig import Rig
+from tests.texts import text
 
 ORIENTED = shipped_machine("ac-table-mill")
 MILL = replace(ORIENTED, spindle=replace(ORIENTED.spindle, oriented=False))  # whose spindle stops anywhere
@@ -58,7 +59,7 @@ def test_the_bar_moves_in_its_bore_only_while_the_spindle_stands(direction: int)
         rig.run(0.4)
         rig.post(CycleStart())
     rig.until_true(lambda shot: shot.actual[Z] > BOTTOM + 5.0)
-    assert "SPINDLE STOP" in waited
+    assert text("executor.spindle-stop-wait") in waited
 
 
 @pytest.mark.parametrize(("direction", "message"), [(1, "EDGE TO X+"), (2, "EDGE TO Y+"), (3, "EDGE TO X-")])

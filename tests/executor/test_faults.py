@@ -367,7 +367,7 @@ def test_spindle_start_with_the_collet_open_is_refused() -> None:
 def test_unclamping_at_speed_is_refused_where_the_machine_file_says_so() -> None:
     rig = Rig(strict_machine())
     rig.start("G90G94F300\nM03S1000\nG04F3\nM05\nM13\nM12\nM30\n")
-    rig.until_true(lambda shot: shot.waiting_for == "SPINDLE STOP")
+    rig.until_true(lambda shot: shot.waiting_for == text("executor.spindle-stop-wait"))
     assert "collet" in rig.shot.outputs
     assert rig.shot.rpm_actual > 300
     rig.until_true(lambda shot: "collet" not in shot.outputs)

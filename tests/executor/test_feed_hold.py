@@ -144,7 +144,7 @@ def test_resume_into_a_cut_without_the_spindle_is_refused() -> None:
     assert rig.shot.announced == (text("executor.spindle-starts", rpm=1000, direction="FORWARD"),)
     at = rig.shot.actual
     rig.post(CycleStart())
-    assert rig.shot.waiting_for == "AT SPEED"
+    assert rig.shot.waiting_for == text("executor.at-speed")
     while rig.state is State.WAIT:
         assert rig.shot.actual == at
         rig.tick()

@@ -162,7 +162,7 @@ def test_the_hold_button_refuses_jogs() -> None:
     rig.sim.machine.press_hold()
     rig.run(0.05)
     rig.post(Jog("X", 10.0, 0.2))
-    assert "feed hold" in rig.said("refused")[0]
+    assert text("executor.hold-pressed") in rig.said("refused")[0]
     assert rig.state is State.IDLE
 
 
@@ -209,11 +209,12 @@ def test_homing_that_makes_no_sense_is_refused() -> None:
     rig.post(EnableDrives(), Home("B"))
     rig.post(Home("X"))
     assert rig.state is State.IDLE
-    assert [text.split(": ")[1] for text in rig.said("refused")] == [
-        "state DRIVES OFF",
+    why = (
+        text("executor.state", state="DRIVES OFF"),
         text("executor.no-home-axis", axis="B"),
         text("executor.all-homed"),
-    ]
+    )
+    assert rig.said("refused") == [text("executor.homing", why=each) for each in why]
 
 
 def test_hold_ends_homing() -> None:

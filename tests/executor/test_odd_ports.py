@@ -12,6 +12,7 @@ from core.executor.executor import Executor
 from core.executor.snapshot import Event, State
 from core.ports import MachinePorts
 from tests.executor.rig import Rig
+from tests.texts import text
 
 pytestmark = pytest.mark.long
 
@@ -142,7 +143,7 @@ def test_an_output_that_cannot_be_switched_off_is_tried_on_and_an_alarm_of_its_o
     assert rig.shot.outputs & {"coolant", "catcher"} == {"coolant"}
     assert rig.shot.alarms[-1].code == "not-safe"
     assert "the outputs" in rig.shot.alarms[-1].cause
-    assert "PRESS E-STOP" in rig.shot.alarms[-1].remedy
+    assert text("executor.press-estop") in rig.shot.alarms[-1].remedy
     odd.broken = False
     rig.run(0.2)
     assert "coolant" not in rig.shot.outputs

@@ -49,7 +49,7 @@ def begun() -> Rig:
 def orienting() -> Rig:
     """The spindle turns to its angle, above the part."""
     rig = begun()
-    rig.until_true(lambda shot: shot.waiting_for == "SPINDLE ORIENT")
+    rig.until_true(lambda shot: shot.waiting_for == text("executor.spindle-orient"))
     return rig
 
 
@@ -64,7 +64,7 @@ def held(rig: Rig) -> bool:
 def test_the_bar_goes_beside_the_centre_only_while_the_spindle_is_held_at_its_angle() -> None:
     rig = begun()
     rig.until_true(lambda shot: shot.rpm_actual > 2000.0)
-    rig.until_true(lambda shot: shot.waiting_for == "SPINDLE STOP")
+    rig.until_true(lambda shot: shot.waiting_for == text("executor.spindle-stop-wait"))
     waited: list[str] = []
     beside: list[bool] = []
     centre = rig.shot.actual[X]
@@ -76,7 +76,7 @@ def test_the_bar_goes_beside_the_centre_only_while_the_spindle_is_held_at_its_an
 
     rig.watch.append(watch)
     rig.until(State.IDLE)
-    assert "SPINDLE ORIENT" in waited
+    assert text("executor.spindle-orient") in waited
     assert len(beside) > 20
     assert all(beside)
 
@@ -125,7 +125,7 @@ def test_held_in_its_hole_the_bar_stays_at_its_angle() -> None:
 def test_a_drive_that_never_arrives_is_one_alarm_and_nothing_has_moved() -> None:
     rig = begun()
     rig.sim.machine.spindle_never_oriented()
-    rig.until_true(lambda shot: shot.waiting_for == "SPINDLE ORIENT")
+    rig.until_true(lambda shot: shot.waiting_for == text("executor.spindle-orient"))
     at = rig.shot.actual
     took = rig.until(State.FAULT)
     assert took == pytest.approx(MILL.spindle.timeout + 3.0 * 60.0 / MILL.spindle.orient_rpm, abs=3.0)
@@ -145,7 +145,7 @@ def test_a_drive_that_lets_its_angle_go_stops_the_bar_in_its_hole() -> None:
 
 def test_the_spindle_switch_keeps_it_from_turning_to_an_angle() -> None:
     rig = begun()
-    rig.until_true(lambda shot: shot.waiting_for == "SPINDLE STOP")
+    rig.until_true(lambda shot: shot.waiting_for == text("executor.spindle-stop-wait"))
     rig.sim.machine.set_spindle_auto(False)
     rig.run(3.0)
     turns = rig.sim.machine.spindle_turns()

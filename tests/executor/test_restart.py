@@ -448,7 +448,7 @@ def test_in_a_program_that_was_changed_since_no_block_tells_where_the_tool_stand
     assert rig.shot.interrupted_line == 7
     cut = StateRebuild(whole.source, whole.setup, lambda _count: None).cut
     out = way_out_of(cut, rig.shot, whole, Choices())
-    assert out.trouble.startswith("HOW T1 CAME TO STAND HERE IS NOT KNOWN")
+    assert out.trouble == text("executor.how-tool-came", tool=1)
     assert not out.begin.approach
 
 

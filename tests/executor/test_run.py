@@ -14,6 +14,7 @@ from core.motion.axis_limits import MotionLimits
 from core.motion.motion_plan import plan
 from tests.executor.rig import INCH, CreepingClock, Rig
 from tests.motion.paths import build_path
+from tests.texts import text
 
 LINE = "G90G94F300\nG01F60Z-1\nX1\nM30\n"
 
@@ -47,7 +48,7 @@ def test_the_block_shown_is_the_one_being_played() -> None:
 def test_feed_waits_for_the_spindle_and_rapids_do_not() -> None:
     rig = Rig()
     rig.start("G90G94F300\nM03S3000\nX1\nG01F60Z-1\nM30\n")
-    rig.until_true(lambda shot: shot.waiting_for == "AT SPEED")
+    rig.until_true(lambda shot: shot.waiting_for == text("executor.at-speed"))
     assert rig.shot.actual[0] == pytest.approx(INCH, abs=0.006)
     assert rig.shot.rpm_actual < 1500
     rig.until_true(lambda shot: shot.actual[1] < -0.001)

@@ -217,7 +217,7 @@ def test_a_wait_for_the_speed_says_what_keeps_the_spindle() -> None:
     context = context_of(None)
     context.spindle.ask(SpindleDemand(600.0))
     wait = at_speed(context)
-    assert wait.label() == "AT SPEED"
+    assert wait.label() == text("executor.at-speed")
     context.spindle.override = 0.0
     assert wait.label() == text("executor.spindle-override-0")
 

@@ -18,6 +18,7 @@ from tests.drivers.contract.grbl import Grblhal
 from tests.drivers.contract.rig import TICK, Rig
 from tests.drivers.contract.rigs import make
 from tests.executor.rig import Rig as Simulated
+from tests.texts import text
 
 pytestmark = pytest.mark.long
 
@@ -76,7 +77,7 @@ def test_whose_executor_is_gone_stops_with_spindle_and_coolant_off(name: str, de
     (alarm,) = control.shot.alarms
     assert alarm.code == "control-silent"
     assert ("ended" if dead else "stuck") in alarm.cause
-    assert "PRESS E-STOP" in alarm.remedy
+    assert text("executor.press-estop") in alarm.remedy
     assert len(control.said("alarm")) == 1
     rig.close()
 

@@ -7,6 +7,7 @@ from dataclasses import replace
 import pytest
 
 from app.shopfloor.floor_reading import Execution, mode_of
+from core.alarms import CATALOGUE
 from core.executor.snapshot import Snapshot, Starts, State
 from tests.interrupted import broken_off
 from tests.texts import text
@@ -26,15 +27,15 @@ RUN, IDLE = Snapshot(state=State.RUN, program="a.nc"), Snapshot(state=State.IDLE
         (State.HOLD, "", "FEED_HOLD", "somebody pressed it"),
         (
             State.HOLD,
-            "SETPOINTS RAN LOW",
+            CATALOGUE["low-queue"].text.upper(),
             "INTERRUPTED",
             "nobody pressed it, and somebody has to start it again",
         ),
         (State.BLOCK_END, "", "INTERRUPTED", "each block wants a press"),
         (State.WAIT, "DWELL", "ACTIVE", "a dwell is a block like any other"),
-        (State.WAIT, "AT SPEED", "ACTIVE", "the spindle runs up"),
-        (State.WAIT, "SPINDLE STOP", "ACTIVE", "the spindle runs down"),
-        (State.WAIT, "C AXIS", "ACTIVE", "the drive changes from turning to positioning"),
+        (State.WAIT, text("executor.at-speed"), "ACTIVE", "the spindle runs up"),
+        (State.WAIT, text("executor.spindle-stop-wait"), "ACTIVE", "the spindle runs down"),
+        (State.WAIT, text("executor.c-axis"), "ACTIVE", "the drive changes from turning to positioning"),
         (State.WAIT, text("executor.proof-wait"), "ACTIVE", "the control thinks"),
         (State.WAIT, "PLC-1", "WAIT", "an input by its terminal"),
         (State.WAIT, "COLLET", "WAIT", "a device moves the material"),

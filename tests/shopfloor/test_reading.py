@@ -10,7 +10,7 @@ import pytest
 
 from app.compose.machine_files import load_machine
 from app.shopfloor.floor_reading import PLACES, FloorReader, Value
-from core.alarms import Code
+from core.alarms import CATALOGUE, Code
 from core.executor.raised_alarm import AlarmError, alarm_and_reaction, make_alarm
 from core.executor.snapshot import Alarm, Snapshot, State
 from core.interpreter.modal_state import Modal
@@ -217,7 +217,7 @@ def test_an_interrupted_job_is_a_warning_of_the_system_as_long_as_it_stands() ->
 
 def test_a_hold_that_nobody_pressed_is_a_warning() -> None:
     held = replace(AT, state=State.HOLD, stop=make_alarm("low-queue", "", 4, 0.0))
-    assert active(held) == {"system": (("WARNING", "904", "SETPOINTS RAN LOW"),)}
+    assert active(held) == {"system": (("WARNING", "904", CATALOGUE["low-queue"].text.upper()),)}
     assert active(replace(held, stop=make_alarm("feed-hold", "H at the keyboard", 4, 0.0))) == {}
     assert active(replace(held, stop=None)) == {}
     assert active(replace(AT, state=State.WAIT, waiting_for="DWELL")) == {}

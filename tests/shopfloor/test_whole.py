@@ -339,7 +339,7 @@ def test_machine_check_names_a_port_that_is_taken(turndesk: Turndesk, tmp_path: 
         port = other.getsockname()[1]
         told = turndesk("machine", "check", machine_file(tmp_path, port))
     assert told.status == 1
-    assert f"127.0.0.1 port {port}" in told.err
+    assert str(port) in told.err
 
 
 def test_machine_check_names_a_device_that_no_agent_takes(turndesk: Turndesk, tmp_path: Path) -> None:

@@ -78,7 +78,7 @@ def test_the_collet_stays_closed_until_the_spindle_stands(shipped: Rig) -> None:
     locks = dataclasses.replace(shipped.machine.interlocks, unclamp_while_turning=False)
     control = Control(shipped, dataclasses.replace(shipped.machine, interlocks=locks))
     control.start("G90G94F300\nM03S1000\nG04F1\nM05\nM13\nM12\nM30\n")
-    control.until_true(lambda shot: shot.waiting_for == "SPINDLE STOP")
+    control.until_true(lambda shot: shot.waiting_for == text("executor.spindle-stop-wait"))
     assert abs(control.world.rpm()) > 300.0
     assert control.world.outputs()["collet"]
     control.until_true(lambda _: not control.world.outputs()["collet"])
@@ -122,7 +122,7 @@ def test_a_pass_that_came_too_late_to_be_queued_is_cut_when_it_goes_on(
     ports = rig.ports
     sink, way = (ports.axes, "splice") if ports.gear is None else (ports.gear, "mesh")
     control.start(THREAD)
-    control.until_true(lambda shot: shot.waiting_for == "AT SPEED")
+    control.until_true(lambda shot: shot.waiting_for == text("executor.at-speed"))
     with monkeypatch.context() as patch:
         patch.setattr(sink, way, too_late)
         control.until(State.HOLD, limit=10.0)
@@ -150,7 +150,7 @@ def test_a_pass_that_comes_too_late_again_and_again_begins_at_a_later_index(
         mesh(*asked)
 
     control.start(THREAD)
-    control.until_true(lambda shot: shot.waiting_for == "AT SPEED")
+    control.until_true(lambda shot: shot.waiting_for == text("executor.at-speed"))
     monkeypatch.setattr(rig.ports.gear, "mesh", at_times)
     control.until_true(lambda _: control.world.place()[1] < -0.2 * INCH)
     assert control.shot.stop is None

@@ -24,6 +24,7 @@ from tests.drivers.contract.hal import Hal
 from tests.drivers.contract.rig import STILL, Rig
 from tests.drivers.contract.rigs import RIGS
 from tests.drivers.contract.simulated import Fed, Simulated
+from tests.texts import text
 
 LATHE = shipped_machine("sinumerik-modulo")
 ABLE: dict[str, Callable[[], Simulated | Fed | Hal]] = {
@@ -53,7 +54,7 @@ def start(control: Control) -> None:
     assert not proof.errors, proof.errors
     control.post(LoadJob(job, proof))
     control.press()
-    control.until_true(lambda shot: shot.waiting_for == "SPINDLE ORIENT")
+    control.until_true(lambda shot: shot.waiting_for == text("executor.spindle-orient"))
 
 
 def at(rig: Rig) -> float:

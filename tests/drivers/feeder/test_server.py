@@ -295,7 +295,7 @@ def test_a_loop_that_wakes_up_late_is_told_once_for_each_record(
     for seconds in (0.01, 0.06, 0.055, 0.08):
         bench.feeder.late(seconds)
     bench.ports.axes.sample()
-    assert [line.split("woke up ")[1][:5] for line in caplog.messages] == ["60 ms", "80 ms"]
+    assert [re.findall(r"\d+ ms", line)[0] for line in caplog.messages] == ["60 ms", "80 ms"]
 
 
 def test_a_thread_whose_spindle_stands_does_not_keep_an_orphan_for_ever(bench: Bench) -> None:
@@ -465,7 +465,8 @@ def test_one_that_sleeps_is_missed_after_half_a_second(sleeper: Sleeper) -> None
     for _ in range(3):
         sleeper.clock.advance(0.05)
         sleeper.feeder.tick()
-    assert sleeper.feeder._notes == ["the control is silent: spindle stopped, outputs safe"]
+    (note,) = sleeper.feeder._notes
+    assert re.search("spindle .*outputs ", note)
 
 
 def test_drivers_that_cannot_tell_how_long_they_need_nothing_go_round_as_ever(sleeper: Sleeper) -> None:

@@ -26,6 +26,7 @@ from tests.drivers.inverter.benches import FAMILIES
 from tests.drivers.inverter.inverter_lookalikes import DeltaMemory, HitachiMemory, HuanyangSlave, Inverter
 from tests.drivers.inverter.lines import HuanyangEnd, ModbusServer, Pair, inverter, until
 from tests.late_computer import stalls_told
+from tests.texts import text
 
 pytestmark = pytest.mark.real_time  # an inverter that answers late is one that does not answer
 
@@ -163,7 +164,7 @@ def test_through_the_feeder(wired: Wired) -> None:
 def test_a_port_that_is_not_there_is_one_sentence(tmp_path: Path) -> None:
     path = machine_file(tmp_path, "huanyang", "/dev/ttyNONE7")
     answers = check_ports(load_machine(path))
-    assert [(row.name, row.state) for row in answers.rows] == [("spindle", "no answer")]
+    assert [(row.name, row.state) for row in answers.rows] == [("spindle", text("shopfloor.no-answer"))]
     (told,) = answers.trouble
     assert "huanyang" in told
     assert "/dev/ttyNONE7" in told
