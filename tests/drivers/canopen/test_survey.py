@@ -62,7 +62,7 @@ def test_a_family_that_has_not_the_mode_is_wrong_before_anything_is_written() ->
     assert "runs csp" in found["X"].detail
     interpolated = (('mode = "pvt"', 'mode = "ip"'), *csp[1:])
     trouble = surveyed(*interpolated)["X"].trouble
-    assert trouble.startswith("X: node 1 ")
+    assert trouble.startswith("X: ")
     assert "60C1:1" in trouble
 
 

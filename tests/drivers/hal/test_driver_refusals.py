@@ -80,7 +80,7 @@ def test_the_spindle_stays_off_behind_a_drive_that_reports_a_fault(bench: Bench)
 def test_no_output_goes_on_behind_a_bridge_that_is_silent(bench: Bench) -> None:
     bench.far.stopped = True
     bench.run(0.3)
-    with raises_code(DriverError, "output", "coolant", "HAL", " s"):
+    with raises_code(DriverError, "output", "coolant", "HAL", "0.30 s"):
         bench.driver.ports.io.write("coolant", True)
     with raises_code(DriverError, "output", "'laser'", "[io.out]"):
         bench.driver.ports.io.write("laser", True)
