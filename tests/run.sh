@@ -23,16 +23,25 @@ export QT_QPA_PLATFORM=offscreen
 unset PYTHONDONTWRITEBYTECODE
 ruff format --check --quiet .
 ruff check --quiet .
-mypy &
+# Types and contracts are checked beside the tests, with what these leave of two cores.
+nice mypy &
 TYPES=$!
-lint-imports
+nice lint-imports &
+CONTRACTS=$!
+finish() {
+    # finish STATUS: the status of the tests, or that of the first other check that failed.
+    status=$1
+    wait "$TYPES" || { [ "$status" != 0 ] || status=1; echo "mypy failed: see above" >&2; }
+    wait "$CONTRACTS" || { [ "$status" != 0 ] || status=1; echo "lint-imports failed: see above" >&2; }
+    exit "$status"
+}
 if [ "${1:-}" = "--quick" ]; then
     shift
-    wait "$TYPES"
     # shellcheck disable=SC2086
-    exec pytest -n 2 -m "not long" $QUICK "$@"
+    pytest -n 2 -m "not long" $QUICK "$@" || finish $?
+    finish 0
 fi
 pytest --collect-only --quiet --quiet >/dev/null || true  # compiled once, before every worker does it for itself
-wait "$TYPES"
-# Two for two cores, and two that begin with what mostly waits: tests/waiting_apart.py.
-pytest -n 4 "$@"
+# Two for two cores, and three that begin with what mostly waits: tests/waiting_apart.py.
+pytest -n 5 "$@" || finish $?
+finish 0

@@ -62,7 +62,7 @@ def test_every_test_runs_once_whoever_is_quick(
     assert all(each.shutting_down for each in made)
 
 
-def test_every_second_worker_begins_with_what_waits_and_helps_then(
+def test_a_worker_for_waits_begins_with_them_and_then_helps(
     pytestconfig: pytest.Config, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     scheduler, (reckons, waiting) = begun(pytestconfig, monkeypatch, 2, HAL + TOLD + RECKON)
