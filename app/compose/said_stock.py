@@ -42,9 +42,11 @@ def said_stock(text: str, around: ProgramBefore) -> Stock | StockSpec:
     try:
         points = path.read_text(encoding="utf-8")
     except OSError as error:
-        raise StockError(f"{path} cannot be read ({error.strerror}); check name and rights") from error
+        raise StockError(
+            f"{path} cannot be read ({error.strerror}); check name and rights", "unreadable"
+        ) from error
     except UnicodeDecodeError as error:
-        raise StockError(f"{path} is no text; a profile is a CSV file of z, r") from error
+        raise StockError(f"{path} is no text; a profile is a CSV file of z, r", "not-text") from error
     return profile_stock(spec.given, points, 25.4, spec.allowance)
 
 
@@ -57,7 +59,7 @@ def _left_by(path: Path, around: ProgramBefore, spec: StockSpec) -> Stock:
     report, part = prove_with_part(source, around.setup, around.machine, around.setting, around.go_on)
     if report.errors or part is None or part.last is None:
         first = f": {report.errors[0].text}" if report.errors else ""
-        raise StockError(f"{spec.given}: {path} leaves no part{first}")
+        raise StockError(f"{spec.given}: {path} leaves no part{first}", "no-part-left")
     outside = tuple((z + spec.allowance, r) for z, r in reversed(part.last.outside))
     bore = tuple((z + spec.allowance, r) for z, r in reversed(part.last.bore or ()))
     return Stock(spec.given, outside, bore)

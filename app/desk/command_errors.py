@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from core.coded_error import CodedError
+
 EXIT_OK, EXIT_ERRORS, EXIT_USAGE = 0, 1, 2
 EXIT_INTERRUPTED = 130  # what a shell tells of Ctrl+C
 
 
-class CommandError(Exception):
+class CommandError(CodedError):
     """The command cannot go on: usage, unreadable file, bad machine file. Ends with status 2."""

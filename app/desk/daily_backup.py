@@ -89,7 +89,9 @@ class DailyBackup:
         wrong = self.check(target)
         if wrong:
             target.unlink(missing_ok=True)
-            raise StoreError(f"it was written, but {wrong[0]}; look at the disk of {self.folder}")
+            raise StoreError(
+                f"it was written, but {wrong[0]}; look at the disk of {self.folder}", "damaged-backup"
+            )
         for old in sorted(self._there(), key=partial(_made_at, target.name))[: -self.keep]:
             old.unlink(missing_ok=True)
         self._look_at_the_disk()

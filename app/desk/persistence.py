@@ -56,15 +56,15 @@ class Persistence:
 
     def keep_person(self, _row: PersonRow) -> None:
         """Somebody new, or another PIN; on a worker. Raises StoreError."""
-        raise StoreError(NOTHING_KEPT)
+        raise StoreError(NOTHING_KEPT, "nothing-stored")
 
     def remove_person(self, _name: str) -> None:
         """He works here no more; on a worker. Raises StoreError."""
-        raise StoreError(NOTHING_KEPT)
+        raise StoreError(NOTHING_KEPT, "nothing-stored")
 
     def remove_people(self) -> None:
         """Nobody is entered any more: there are no levels; on a worker. Raises StoreError."""
-        raise StoreError(NOTHING_KEPT)
+        raise StoreError(NOTHING_KEPT, "nothing-stored")
 
     def parts(self, _program: str) -> int:
         """Parts counted of this program."""
@@ -104,16 +104,16 @@ class Persistence:
 
         Where no versions are kept nothing may be thrown away.
         """
-        raise StoreError(NOTHING_KEPT)
+        raise StoreError(NOTHING_KEPT, "nothing-stored")
 
     def backup(self, _target: Path) -> None:
         """A copy of everything that is kept. Raises StoreError."""
-        raise StoreError(NOTHING_KEPT)
+        raise StoreError(NOTHING_KEPT, "nothing-stored")
 
     def judge(self, _source: Path) -> Verdict:
         """Whether a backup is whole, and how it differs from what is kept; on a worker. Raises StoreError."""
-        raise StoreError(NOTHING_KEPT)
+        raise StoreError(NOTHING_KEPT, "nothing-stored")
 
     def restore(self, _source: Path) -> Path | None:
         """Put a backup in the place of what is kept; answers where that went. Raises StoreError."""
-        raise StoreError(NOTHING_KEPT)
+        raise StoreError(NOTHING_KEPT, "nothing-stored")

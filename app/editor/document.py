@@ -8,6 +8,7 @@ from pathlib import Path
 from app.desk.program_folder import ENDINGS
 from app.editor.versions import Archive
 from app.programs.whole_file import present, write_whole
+from core.coded_error import CodedError
 from core.language.source import SourceError, load_source
 from core.store.program_records import check_name
 from core.store.store_errors import StoreError
@@ -16,7 +17,7 @@ MOST_LINES = 50_000  # the text field takes .7 s of the screen's time for them
 _DOS = "\r\n"
 
 
-class TooLongError(ValueError):
+class TooLongError(CodedError, ValueError):
     """A text that the field would hold up the screen with; the sentence says so."""
 
 
@@ -57,7 +58,8 @@ def open_document(path: Path, samples: Path) -> Document:
     text = _text(path)
     if text.count("\n") >= MOST_LINES:
         raise TooLongError(
-            f"{path.name} has over {MOST_LINES} lines: too long for this editor; split it elsewhere"
+            f"{path.name} has over {MOST_LINES} lines: too long for this editor; split it elsewhere",
+            "too-long",
         )
     line_end = _DOS if _DOS in text else "\n"
     protected = path.resolve().is_relative_to(samples.resolve())

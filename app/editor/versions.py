@@ -37,7 +37,7 @@ class NoArchive:
 
     def text_of(self, name: str, version: int) -> bytes:
         """Raises StoreError: no version is kept."""
-        raise StoreError(f"no version {version} of {name} is kept here")
+        raise StoreError(f"no version {version} of {name} is kept here", "no-version")
 
     def save_version(self, _name: str, _text: bytes, _why: str) -> int:
         """Keeps nothing and answers 0."""

@@ -8,12 +8,13 @@ from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
+from core.coded_error import CodedError, code_of
 from core.file_placing import all_to_disk, folder_to_disk, make_folder, put_in_place
 from core.language.source import SourceError, load_source
 from core.unfinished import unfinished_folder
 
 
-class FileError(Exception):
+class FileError(CodedError):
     """It was not done, and the file is as it was; the sentence says why."""
 
 
@@ -28,18 +29,20 @@ def write_whole(path: Path, data: bytes) -> None:
             make_folder(target.parent)
             draft = stack.enter_context(_beside(target))
         except OSError as error:
-            raise FileError(f"{target.parent} CANNOT BE WRITTEN: {error.strerror}") from error
+            raise FileError(f"{target.parent} CANNOT BE WRITTEN: {error.strerror}", "cannot-write") from error
         try:
             _fill(draft, data)
             if load_source(draft).text.encode("utf-8", "replace") != data:
-                raise FileError("NOT SAVED: THE TEXT HOLDS SIGNS THAT NO PROGRAM FILE CAN KEEP")
+                raise FileError(
+                    "NOT SAVED: THE TEXT HOLDS SIGNS THAT NO PROGRAM FILE CAN KEEP", "unstorable-text"
+                )
             if target.exists():
                 shutil.copymode(target, draft)
             put_in_place(draft, target)
         except OSError as error:
-            raise FileError(f"{target.name} CANNOT BE WRITTEN: {error.strerror}") from error
+            raise FileError(f"{target.name} CANNOT BE WRITTEN: {error.strerror}", "cannot-write") from error
         except SourceError as error:
-            raise FileError(f"NOT SAVED: {error}") from error
+            raise FileError(f"NOT SAVED: {error}", code_of(error)) from error
 
 
 def write_out(target: Path, data: bytes) -> None:
@@ -48,10 +51,13 @@ def write_out(target: Path, data: bytes) -> None:
         with _beside(target) as draft:
             _fill(draft, data)
             if draft.read_bytes() != data:
-                raise FileError(f"{target.name} DOES NOT READ BACK AS IT WAS WRITTEN: TAKE ANOTHER STICK")
+                raise FileError(
+                    f"{target.name} DOES NOT READ BACK AS IT WAS WRITTEN: TAKE ANOTHER STICK",
+                    "read-back-differs",
+                )
             put_in_place(draft, target)
     except OSError as error:
-        raise FileError(f"{target} CANNOT BE WRITTEN: {error.strerror}") from error
+        raise FileError(f"{target} CANNOT BE WRITTEN: {error.strerror}", "cannot-write") from error
 
 
 def write_new(target: Path, data: bytes) -> None:
@@ -59,16 +65,16 @@ def write_new(target: Path, data: bytes) -> None:
     try:
         make_folder(target.parent)
     except OSError as error:
-        raise FileError(f"{target.parent} CANNOT BE WRITTEN: {error.strerror}") from error
+        raise FileError(f"{target.parent} CANNOT BE WRITTEN: {error.strerror}", "cannot-write") from error
     try:
         with _beside(target) as draft:
             _fill(draft, data)
             target.hardlink_to(draft)  # fails where the name is taken
             folder_to_disk(target.parent)
     except FileExistsError as error:
-        raise FileError(f"{target.name} IS THERE ALREADY; TAKE ANOTHER NAME") from error
+        raise FileError(f"{target.name} IS THERE ALREADY; TAKE ANOTHER NAME", "name-in-use") from error
     except OSError as error:
-        raise FileError(f"{target} CANNOT BE WRITTEN: {error.strerror}") from error
+        raise FileError(f"{target} CANNOT BE WRITTEN: {error.strerror}", "cannot-write") from error
 
 
 def settle(folder: Path) -> None:
@@ -76,7 +82,9 @@ def settle(folder: Path) -> None:
     try:
         folder_to_disk(folder)
     except OSError as error:
-        raise FileError(f"{folder} CANNOT BE BROUGHT TO THE DISK: {error.strerror}") from error
+        raise FileError(
+            f"{folder} CANNOT BE BROUGHT TO THE DISK: {error.strerror}", "cannot-write"
+        ) from error
     all_to_disk()
 
 
@@ -87,7 +95,7 @@ def present(path: Path) -> bytes | None:
     except FileNotFoundError:
         return None
     except OSError as error:
-        raise FileError(f"{path.name} CANNOT BE READ: {error.strerror}") from error
+        raise FileError(f"{path.name} CANNOT BE READ: {error.strerror}", "unreadable") from error
 
 
 @contextmanager

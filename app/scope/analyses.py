@@ -242,7 +242,7 @@ def _analysed(kind: Kind, record: Record, arc: int, drives: Mapping[str, Axis]) 
     columns = record.columns
     letters = [each.name[0] for each in record.channels if each.name[1:] == " demand" and each.unit == "mm"]
     if len(letters) < 2 or not len(record.times):
-        raise AnalysisError(tr("the record has no two slides, and so no path"))
+        raise AnalysisError(tr("the record has no two slides, and so no path"), "no-path")
     slides = ("Z", "X") if set(letters) == {"X", "Z"} else tuple(sorted(letters))
     demand = np.column_stack([columns[f"{each} demand"] for each in slides])
     actual = np.column_stack([columns[f"{each} actual"] for each in slides])
@@ -271,7 +271,9 @@ def _ball_bar_found(
         for line, cut in arcs_in(demand[:, pair], lines)
     ]
     if not arcs:
-        raise AnalysisError(tr("there is no arc of 60 degrees or more in this time: record while one is cut"))
+        raise AnalysisError(
+            tr("there is no arc of 60 degrees or more in this time: record while one is cut"), "no-arc"
+        )
     arcs.sort(key=itemgetter(0))
     number = arc % len(arcs)
     _, line, cut, pair = arcs[number]

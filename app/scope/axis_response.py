@@ -91,7 +91,9 @@ def last_move(record: Record, drives: Mapping[str, Axis]) -> AxisResponse:
         if spans and (found is None or spans[-1][1] > found[1]):
             found = (*spans[-1], letter)
     if found is None:
-        raise AnalysisError(tr("no axis moved from rest to rest in this time: make a step on the Jog page"))
+        raise AnalysisError(
+            tr("no axis moved from rest to rest in this time: make a step on the Jog page"), "no-step"
+        )
     first, last, letter = found
     times = record.times
     begin = int(np.searchsorted(times, times[first] - _BEFORE))

@@ -71,11 +71,13 @@ def drive_test_figures(record: Record, path: DriveTestPath, drives: Mapping[str,
     """Worked out of the record of a whole test. Raises AnalysisError."""
     name, axis = f"{path.axis} demand", drives.get(path.axis)
     if axis is None or name not in record.columns:
-        raise AnalysisError(tr("this machine has no axis {axis}").format(axis=path.axis))
+        raise AnalysisError(tr("this machine has no axis {axis}").format(axis=path.axis), "no-axis")
     found = stretches(record.times, record.columns[name])
     ways = len(path.frequencies) if path.shape is Shape.SINE else 2
     if len(found) < ways:
-        raise AnalysisError(tr("the test was let go before its end: hold the key until it has come back"))
+        raise AnalysisError(
+            tr("the test was let go before its end: hold the key until it has come back"), "test-broken-off"
+        )
     found = found[-ways:]
     times, zero = record.times, float(record.times[found[0][0]])
     whole = _about(times, zero - BEFORE, float(times[found[-1][1]]) + _SETTLES)

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import NamedTuple, TypeVar
 
 from app.desk.formats import file_size
+from core.coded_error import CodedError
 from core.file_placing import put_in_place
 from core.records.record import Record
 from core.records.record_file import ENDING
@@ -25,7 +26,7 @@ MOST = 500
 _ROOM = 20_000_000  # bytes that are left free: the store and the log need the disk more
 
 
-class ShelfError(Exception):
+class ShelfError(CodedError):
     """It was not done; the sentence says why and what to do."""
 
 
@@ -128,7 +129,9 @@ class RecordShelf:
         def carefully() -> None:
             self.folder.mkdir(parents=True, exist_ok=True)
             if shutil.disk_usage(self.folder).free < _ROOM:
-                raise ShelfError(f"{path.name} IS NOT WRITTEN: THE DISK IS FULL; DELETE RECORDS OR PROGRAMS")
+                raise ShelfError(
+                    f"{path.name} IS NOT WRITTEN: THE DISK IS FULL; DELETE RECORDS OR PROGRAMS", "disk-full"
+                )
             write()
 
         self._told(path, carefully)
@@ -140,7 +143,7 @@ class RecordShelf:
         except ShelfError:
             raise
         except OSError as error:
-            raise ShelfError(f"{path.name}: {error.strerror or error}") from error
+            raise ShelfError(f"{path.name}: {error.strerror or error}", "unusable") from error
 
 
 def _draft(path: Path) -> _Draft:

@@ -54,11 +54,11 @@ class SpindleResponse:
 def last_run_up(record: Record, model: SpindleModel | None) -> SpindleResponse:
     """The last change to a speed that is not 0. Raises AnalysisError."""
     if model is None:
-        raise AnalysisError(tr("this machine has no spindle"))
+        raise AnalysisError(tr("this machine has no spindle"), "no-spindle")
     nothing = np.full(len(record.times), np.nan)
     asked, turned = (record.columns.get(f"spindle {name}", nothing) for name in ("command", "speed"))
     if not np.isfinite(turned).any():
-        raise AnalysisError(tr("nobody tells the spindle's measured speed here"))
+        raise AnalysisError(tr("nobody tells the spindle's measured speed here"), "no-measured-speed")
     known = np.isfinite(asked) & np.isfinite(turned)
     times, asked, turned = record.times[known], asked[known], turned[known]
     changes = np.flatnonzero(np.abs(np.diff(asked)) > _CHANGE)
@@ -71,7 +71,8 @@ def last_run_up(record: Record, model: SpindleModel | None) -> SpindleResponse:
         end = float(times[groups[number + 1][0]]) if number + 1 < len(groups) else np.inf
         return _response(times, asked, turned, first, last, min(end, times[last] + _MOST), model)
     raise AnalysisError(
-        tr("the spindle was not brought to another speed in this time: start it by a program or in MDI")
+        tr("the spindle was not brought to another speed in this time: start it by a program or in MDI"),
+        "no-step",
     )
 
 

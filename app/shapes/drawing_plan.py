@@ -93,7 +93,9 @@ class Planner:
         try:
             changed = path.stat().st_mtime
         except OSError as error:
-            raise DrawingError(f"{path.name} cannot be read: {error.strerror or error}.") from error
+            raise DrawingError(
+                f"{path.name} cannot be read: {error.strerror or error}.", "unreadable"
+            ) from error
         if self._known is None or self._known[:2] != (path, changed):
             self._known = (path, changed, self._read(path))
         return self._known[2]
@@ -147,7 +149,7 @@ class _Making:
         self.choices["LAYER"] = (ALL, *(layer for layer in self.drawing.layers if layer and layer != ALL))
         layer = self.word("LAYER", ALL)
         if layer not in self.choices["LAYER"]:
-            raise DrawingError(f"{self.drawing.name} has no layer {layer}: choose another.")
+            raise DrawingError(f"{self.drawing.name} has no layer {layer}: choose another.", "no-layer")
         return "" if layer == ALL else layer
 
     def _unit(self) -> float:
@@ -158,7 +160,7 @@ class _Making:
             own = OWN
         said = self.word("DUNIT", own)
         if not said:
-            raise DrawingError(f"{self.drawing.name} does not say its unit: choose MM or INCH.")
+            raise DrawingError(f"{self.drawing.name} does not say its unit: choose MM or INCH.", "no-unit")
         return UNITS.get(said, self.drawing.unit)
 
     def _view(self, layer: str, unit: float) -> None:
@@ -176,11 +178,14 @@ class _Making:
     def _chosen(self, layer: str) -> Profile:
         if not self.nets or self.view is None:
             where = f"on layer {layer}" if layer else "beside this axis"
-            raise DrawingError(f"{self.drawing.name} has no contour {where}: choose another layer or axis.")
+            raise DrawingError(
+                f"{self.drawing.name} has no contour {where}: choose another layer or axis.", "no-contour"
+            )
         number = self.word("CONTOUR", "1")
         if number not in self.choices["CONTOUR"]:
             raise DrawingError(
-                f"{self.drawing.name} has {len(self.nets)} contours: choose 1 to {len(self.nets)}."
+                f"{self.drawing.name} has {len(self.nets)} contours: choose 1 to {len(self.nets)}.",
+                "no-contour-number",
             )
         side = Side(self.word("SIDE", Side.OUTSIDE))
         return profile(self.drawing, self.view, self.nets[int(number) - 1], side)
@@ -193,7 +198,7 @@ class _Making:
         now = asked.setting
         fields = proposed_fields(chosen, given, now.shop.tools, metric=now.metric, dialect=now.dialect)
         if chosen.side is Side.INSIDE and not given.get("HOLE"):
-            raise DrawingError("A bore begins with a hole: type its diameter.")
+            raise DrawingError("A bore begins with a hole: type its diameter.", "no-hole")
         return profile_program(chosen, fields, asked.lines, asked.setting), fields
 
 

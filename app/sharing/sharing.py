@@ -15,6 +15,7 @@ from pathlib import Path
 
 from app.programs.whole_file import FileError, write_new, write_whole
 from app.sharing.program_files import FilesOfMachine, SharedFile
+from core.coded_error import CodedError, code_of
 from core.sharing.shared_place import Found, Published, SharedPlace
 from core.sharing.sharing_errors import Cause, SharingError
 from core.sharing.version_record import DeskState, new_version
@@ -27,7 +28,7 @@ from core.store.store_rows import utc_now
 _AT_ONCE, _BYTES_AT_ONCE = 200, 8 * 2**20  # versions that are published together
 
 
-class TakeError(Exception):
+class TakeError(CodedError):
     """A version was not taken, and the program is as it was; the sentence says why."""
 
 
@@ -227,7 +228,7 @@ class Sharing:
             self._note(store, settled=False)
             family = _family(store, version.key)
             if version.id == family.here:
-                raise TakeError(f"{version.program} is that version already")
+                raise TakeError(f"{version.program} is that version already", "already-current")
             name = self._free_name(version)
             taken = version
             if not family.newer(version):
@@ -240,7 +241,7 @@ class Sharing:
                 (write_whole if family.here else write_new)(target, text)
             except FileError as error:
                 store.write(lambda c: shared_versions.withdraw(c, taken)).result()
-                raise TakeError(str(error)) from error
+                raise TakeError(str(error), code_of(error)) from error
             # Behind the file: a power cut between them leaves a text that the next look knows.
             store.write(lambda c: shared_versions.set_here(c, version.key, taken.id)).result()
             self._tell(store, None, self.now.trouble)
@@ -254,12 +255,16 @@ class Sharing:
             family = _family(store, key)
             here, others = family.versions.get(family.here), [each.id for each in family.elsewhere]
             if here is None or not others:
-                raise TakeError("there is nothing to settle: no other desk has changed it too")
+                raise TakeError(
+                    "there is nothing to settle: no other desk has changed it too", "nothing-to-settle"
+                )
             follows = (here.id, *others)
             with store.read() as connection:
                 text = shared_versions.text_of(connection, here.text)
             if text is None:
-                raise TakeError(f"the text of {here.program} is not as it was saved; save it again")
+                raise TakeError(
+                    f"the text of {here.program} is not as it was saved; save it again", "damaged-text"
+                )
             kept = new_version(here.program, text, follows, self.desk, utc_now(), "kept")
             store.write(partial(_kept, kept)).result()
             self._tell(store, None, self.now.trouble)
@@ -268,7 +273,7 @@ class Sharing:
         """Of the file here that has the name in any letters; else that of the version. Raises TakeError."""
         names = [each for each in self._files.refused if key_of(each) == version.key]
         if names:
-            raise TakeError(f"{names[0]}: {self._files.refused[names[0]]}")
+            raise TakeError(f"{names[0]}: {self._files.refused[names[0]]}", "refused-name")
         file = self._files.look(settled=False).get(version.key)
         return file.name if file is not None else version.program
 

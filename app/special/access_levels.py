@@ -203,13 +203,13 @@ class AccessLevels(SpecialFunction):
     def _named(self, draft: _Draft, text: str) -> None:
         draft.name = check_person(text)
         if self.access.people.named(draft.name) is not None:
-            raise StoreError(f"{draft.name} is entered already; F4 is for another PIN")
+            raise StoreError(f"{draft.name} is entered already; F4 is for another PIN", "name-in-use")
         draft.step = "level" if self.access.people.on else "pin"
         self._ask(draft)
 
     def _levelled(self, draft: _Draft, text: str) -> None:
         if text not in {str(level.value) for level in Level}:
-            raise StoreError("a level is 1, 2 or 3")
+            raise StoreError("a level is 1, 2 or 3", "invalid-level")
         draft.level, draft.step = Level(int(text)), "pin"
         self._ask(draft)
 

@@ -193,14 +193,14 @@ def inner_side(net: Net, gap: float = GAP) -> list[Element]:
     """From the mouth of a bore along its wall to its end. Raises DrawingError, also where there is none."""
     inside = [n for n in _at_front(net, gap) if net.nodes[n][0] > gap and _goes_in(net, n, gap)]
     if not inside:
-        raise DrawingError("has no bore at its face: choose the outside, or another contour.")
+        raise DrawingError("has no bore at its face: choose the outside, or another contour.", "no-bore")
     start = min(inside, key=lambda n: net.nodes[n][0])
     front = _at_front(net, gap)  # the edge of the mouth, seen behind a section, is no wall
     mouth = {number for number, (a, b) in enumerate(net.ends) if a in front and b in front}
     walked = _walk(net, start, math.radians(90.0), -1.0, gap, mouth)
     outer = _walk(net, _foremost(net, gap), math.radians(270.0), 1.0, gap)
     if walked and any(walked[0] == each for each in outer):
-        raise DrawingError("has no bore at its face: choose the outside, or another contour.")
+        raise DrawingError("has no bore at its face: choose the outside, or another contour.", "no-bore")
     return _checked(net, walked, gap)
 
 
@@ -208,7 +208,7 @@ def _foremost(net: Net, gap: float) -> int:
     """The end of an element that is furthest in front, nearest to the axis. Raises DrawingError."""
     front = _at_front(net, gap)
     if not front:
-        raise DrawingError("has its foremost point inside an arc: end the arc there.")
+        raise DrawingError("has its foremost point inside an arc: end the arc there.", "front-in-arc")
     return min(front, key=lambda n: net.nodes[n][0])
 
 
@@ -298,13 +298,14 @@ def _elements(net: Net, start: int, way: Iterable[tuple[int, int]]) -> list[Elem
 
 def _checked(net: Net, walked: list[Element], gap: float) -> list[Element]:
     if not walked:
-        raise DrawingError("has no contour there: choose another.")
+        raise DrawingError("has no contour there: choose another.", "no-contour")
     _no_crossing(walked)
     for end in (walked[0].start, walked[-1].end):
         if end[0] <= gap and any(abs(z - end[1]) <= gap for z in net.crossings):
             behind = net.reach[1] - end[1]
             raise DrawingError(
-                f"has a contour that crosses the axis {behind:.3f} mm behind its face: choose another axis."
+                f"has a contour that crosses the axis {behind:.3f} mm behind its face: choose another axis.",
+                "crosses-axis",
             )
     return walked
 
@@ -323,7 +324,8 @@ def _no_crossing(walked: Sequence[Element]) -> None:
                     behind = walked[0].start[1] - point[1]
                     raise DrawingError(
                         f"has a contour that crosses itself {behind:.3f} mm behind its face "
-                        f"at a diameter of {2 * point[0]:.3f} mm: mend it there."
+                        f"at a diameter of {2 * point[0]:.3f} mm: mend it there.",
+                        "crosses-itself",
                     )
 
 

@@ -8,6 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from core.coded_error import CodedError
 from core.geometry.lines_and_arcs import Arc, Element, Line, Point
 
 MOST_BYTES = 16 * 1024 * 1024
@@ -18,7 +19,7 @@ _FARTHEST = 1e8  # units: beyond it what is a thousandth of a unit is no longer 
 _NONE = 1e-9
 
 
-class DrawingError(ValueError):
+class DrawingError(CodedError, ValueError):
     """A drawing that no contour can be taken from: one sentence with the cause and what to do."""
 
 
@@ -30,7 +31,7 @@ def damaged(path: Path, kind: str, error: Exception) -> DrawingError:
     if isinstance(error, MemoryError) or (isinstance(error, OSError) and error.errno is not None):
         raise error
     why = str(error).splitlines()[0][:120] if str(error) else type(error).__name__
-    return DrawingError(f"{path.name} is damaged or no {kind} ({why}): save the drawing anew.")
+    return DrawingError(f"{path.name} is damaged or no {kind} ({why}): save the drawing anew.", "damaged")
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,11 +110,17 @@ def within_limits(found: Iterable[Drawn], name: str) -> Iterator[Drawn]:
     for count, each in enumerate(found):
         if count >= MOST_ELEMENTS:
             raise DrawingError(
-                f"{name} has more than {MOST_ELEMENTS} lines: leave the layer of the contour in it alone."
+                f"{name} has more than {MOST_ELEMENTS} lines: leave the layer of the contour in it alone.",
+                "too-many-lines",
             )
         values = [v for p in (each.element.start, each.element.end) for v in p]
         if not all(map(math.isfinite, values)):
-            raise DrawingError(f"{name} has a point that is no number: save the drawing anew.")
+            raise DrawingError(
+                f"{name} has a point that is no number: save the drawing anew.", "not-a-number"
+            )
         if max(map(abs, values)) > _FARTHEST:
-            raise DrawingError(f"{name} has a point too far from its zero: move the contour to the zero.")
+            raise DrawingError(
+                f"{name} has a point too far from its zero: move the contour to the zero.",
+                "too-far-from-zero",
+            )
         yield each

@@ -130,12 +130,14 @@ def line_axis(drawing: Drawing, number: int) -> Axis:
     """The line of this number, from 1, as the axis. Raises DrawingError where there is no such line."""
     if not 1 <= number <= len(drawing.drawn):
         raise DrawingError(
-            f"{drawing.name} has {len(drawing.drawn)} lines, none is number {number}: choose one of them."
+            f"{drawing.name} has {len(drawing.drawn)} lines, none is number {number}: choose one of them.",
+            "no-line",
         )
     each = drawing.drawn[number - 1].element
     if not isinstance(each, Line):
         raise DrawingError(
-            f"{drawing.name} has an arc as its line {number}: choose a straight line as the axis."
+            f"{drawing.name} has an arc as its line {number}: choose a straight line as the axis.",
+            "axis-is-arc",
         )
     return _axis(f"LINE {number}", each)
 
@@ -151,7 +153,7 @@ def axis_named(drawing: Drawing, name: str, layer: str = "") -> Axis:
     if found is None:
         there = ", ".join(axis.name for axis in known) or "none"
         raise DrawingError(
-            f"{drawing.name} has no axis {name}: choose {there}, or LINE and the number of a line."
+            f"{drawing.name} has no axis {name}: choose {there}, or LINE and the number of a line.", "no-axis"
         )
     return found
 
@@ -208,7 +210,7 @@ def profile(drawing: Drawing, view: View, net: Net, side: Side = Side.OUTSIDE) -
     try:
         walked = inner_side(net, view.gap) if side is Side.INSIDE else outer_side(net, view.gap)
     except DrawingError as error:
-        raise DrawingError(f"{drawing.name} {error}") from None
+        raise DrawingError(f"{drawing.name} {error}", error.code) from None
     low, high, _ = net.reach
     zero = {Zero.FACE: high, Zero.BACK: low, Zero.ORIGIN: 0.0}[view.zero] - view.shift
     moved = tuple(_along(each, -zero) for each in walked)

@@ -44,7 +44,7 @@ def read_dxf(path: Path) -> Drawing:
     left_out: Counter[str] = Counter()
     drawn = tuple(within_limits(_drawn(document, nearest(unit), left_out, path.name), path.name))
     if not drawn:
-        raise DrawingError(_nothing(path.name, left_out))
+        raise DrawingError(_nothing(path.name, left_out), "nothing-drawn")
     return Drawing(path.name, drawn, unit, dict(left_out))
 
 
@@ -54,7 +54,7 @@ def _document(path: Path) -> Document:
     with path.open("rb") as file:
         begin = file.read(6)
     if begin.startswith(b"AC10"):
-        raise DrawingError(f"{path.name} is a DWG drawing: save it as DXF.")
+        raise DrawingError(f"{path.name} is a DWG drawing: save it as DXF.", "dwg")
     try:
         return readfile(path)
     except Exception as error:
@@ -95,9 +95,9 @@ def _read(read: Reader, entity: Any, near: float, name: str) -> Iterator[Element
         yield from read(entity, near)
     except (ValueError, ArithmeticError, AttributeError, IndexError) as error:
         if isinstance(error, DrawingError):
-            raise DrawingError(f"{name} {error}") from None
+            raise DrawingError(f"{name} {error}", error.code) from None
         what = f"a {entity.dxftype()} of {name} on layer {entity.dxf.get('layer', '0')}"
-        raise DrawingError(f"{what} is damaged: draw it anew.") from error
+        raise DrawingError(f"{what} is damaged: draw it anew.", "damaged") from error
 
 
 def _centre(layer: str, linetype: str) -> bool:
@@ -108,7 +108,9 @@ def _centre(layer: str, linetype: str) -> bool:
 def _taken_apart(entities: Iterable[Any], name: str, depth: int) -> Iterator[Any]:
     """Entities, those of blocks where these are inserted; what has dimensions or texts stays whole."""
     if depth > _DEEPEST:
-        raise DrawingError(f"{name} has blocks in blocks, more than {_DEEPEST} deep: explode them.")
+        raise DrawingError(
+            f"{name} has blocks in blocks, more than {_DEEPEST} deep: explode them.", "nested-blocks"
+        )
     for entity in entities:
         if entity.dxftype() != "INSERT":
             yield entity
@@ -125,14 +127,18 @@ def _facing(entity: Any) -> float:
     """1: drawn as it is seen, -1: mirrored; else it does not lie in the plane of the drawing."""
     x, y, z = entity.dxf.get("extrusion", (0.0, 0.0, 1.0))
     if abs(x) > _FLAT or abs(y) > _FLAT:
-        raise DrawingError("is three-dimensional: save a section or a view of the part in one plane.")
+        raise DrawingError(
+            "is three-dimensional: save a section or a view of the part in one plane.", "three-dimensional"
+        )
     return 1.0 if z > 0.0 else -1.0
 
 
 def _line(entity: Any, _near: float) -> Iterator[Element]:
     a, b = entity.dxf.start, entity.dxf.end
     if abs(a.z - b.z) > _FLAT:
-        raise DrawingError("is three-dimensional: save a section or a view of the part in one plane.")
+        raise DrawingError(
+            "is three-dimensional: save a section or a view of the part in one plane.", "three-dimensional"
+        )
     yield from line((a.x, a.y), (b.x, b.y))
 
 
@@ -162,10 +168,14 @@ def _lwpolyline(entity: Any, _near: float) -> Iterator[Element]:
 
 def _polyline(entity: Any, _near: float) -> Iterator[Element]:
     if not entity.is_2d_polyline and not entity.is_3d_polyline:
-        raise DrawingError("is three-dimensional: save a section or a view of the part in one plane.")
+        raise DrawingError(
+            "is three-dimensional: save a section or a view of the part in one plane.", "three-dimensional"
+        )
     places = [each.dxf.location for each in entity.vertices if not each.dxf.flags & 16]
     if entity.is_3d_polyline and max(p.z for p in places) - min(p.z for p in places) > _FLAT:
-        raise DrawingError("is three-dimensional: save a section or a view of the part in one plane.")
+        raise DrawingError(
+            "is three-dimensional: save a section or a view of the part in one plane.", "three-dimensional"
+        )
     bulges = [each.dxf.get("bulge", 0.0) for each in entity.vertices if not each.dxf.flags & 16]
     points = [(p.x, p.y, bulge) for p, bulge in zip(places, bulges, strict=True)]
     side = 1.0 if entity.is_3d_polyline else _facing(entity)
@@ -189,7 +199,9 @@ def _ellipse(entity: Any, near: float) -> Iterator[Element]:
 def _spline(entity: Any, near: float) -> Iterator[Element]:
     curve = entity.construction_tool()
     if max(p.z for p in curve.control_points) - min(p.z for p in curve.control_points) > _FLAT:
-        raise DrawingError("is three-dimensional: save a section or a view of the part in one plane.")
+        raise DrawingError(
+            "is three-dimensional: save a section or a view of the part in one plane.", "three-dimensional"
+        )
     order = curve.order
     knots = sorted(set(curve.knots()[order - 1 : len(curve.knots()) - order + 1]))
     for begin, end in itertools.pairwise(knots):

@@ -28,7 +28,10 @@ def read_svg(path: Path) -> Drawing:
     drawn = tuple(within_limits(_drawn(shapes, nearest(unit), left_out, path.name), path.name))
     if not drawn:
         what = ", ".join(sorted(left_out)) or "nothing"
-        raise DrawingError(f"{path.name} has no path nor line, only {what[:80]}: draw the contour as a path.")
+        raise DrawingError(
+            f"{path.name} has no path nor line, only {what[:80]}: draw the contour as a path.",
+            "nothing-drawn",
+        )
     return Drawing(path.name, drawn, unit, dict(left_out))
 
 
@@ -42,7 +45,9 @@ def _shapes(path: Path) -> Any:
 
     text = path.read_bytes()
     if b"<!ENTITY" in text:
-        raise DrawingError(f"{path.name} has entities of its own, which are not read: save it as plain SVG.")
+        raise DrawingError(
+            f"{path.name} has entities of its own, which are not read: save it as plain SVG.", "own-entities"
+        )
     try:
         with path.open("rb") as file:
             root = SVG.parse(file, reify=True, ppi=_PIXELS)
@@ -69,7 +74,10 @@ def _drawn(root: Any, near: float, left_out: Counter[str], name: str) -> Iterato
         centre = bool(values.get("stroke-dasharray")) and values.get("stroke-dasharray") != "none"
         for segment in Outline(each):
             if not isinstance(segment, Move | Close) and segment.start is None:
-                raise DrawingError(f"{name} has a path that does not begin with M: save the drawing anew.")
+                raise DrawingError(
+                    f"{name} has a path that does not begin with M: save the drawing anew.",
+                    "path-without-start",
+                )
             for element in _segment(segment, near):
                 yield Drawn(element, layer, centre)
 

@@ -90,7 +90,10 @@ def turning_contour(profile: Profile, reach: Reach) -> TurningContour:
     lit = _seen_from_outside(_monotone(elements), left)
     lit = _without_face(lit)
     if not lit:
-        raise DrawingError("There is nothing to turn on this contour: its face is all of it. Choose another.")
+        raise DrawingError(
+            "There is nothing to turn on this contour: its face is all of it. Choose another.",
+            "nothing-to-turn",
+        )
     kept, grooves = _bridged(lit, reach.fall, left)
     _not_too_steep(kept, reach)
     steepest = max((_fall(each) for each in kept), default=0.0)
@@ -215,7 +218,8 @@ def _not_too_steep(kept: Iterable[Element], reach: Reach) -> None:
         if each.end[0] > each.start[0] + _SAME and _rise(each) > reach.rise + 1e-3:
             raise DrawingError(
                 f"The edge of the tool stands at {math.degrees(reach.rise):.0f} degrees, the contour at "
-                f"Z {each.start[1]:.3f} mm at {math.degrees(_rise(each)):.0f}: take a tool for shoulders."
+                f"Z {each.start[1]:.3f} mm at {math.degrees(_rise(each)):.0f}: take a tool for shoulders.",
+                "too-steep",
             )
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from math import asin, cos, dist, pi, sin, tan
 
+from core.coded_error import CodedError
 from core.geometry.contour_offset import GougeError, offset_element
 from core.geometry.intersections import meetings
 from core.geometry.lines_and_arcs import SAME_POINT, Arc, Element, Line, left_of, turn
@@ -17,7 +18,7 @@ from core.geometry.lines_and_arcs import SAME_POINT, Arc, Element, Line, left_of
 STRAIGHT = 1e-6
 
 
-class CornerError(Exception):
+class CornerError(CodedError):
     """There is no such corner between two lines; ``str()`` says why in a clause."""
 
 
@@ -29,7 +30,7 @@ class CornerTooLargeError(CornerError):
     """The corner takes more of a line than there is. ``needed`` mm of it, and ``first`` tells which line."""
 
     def __init__(self, needed: float, *, first: bool) -> None:
-        super().__init__(f"the {'line itself' if first else 'next line'} is too short")
+        super().__init__(f"the {'line itself' if first else 'next line'} is too short", "line-too-short")
         self.needed = needed
         self.first = first
 
@@ -47,7 +48,7 @@ def chamfer(before: Element, after: Element, leg: float) -> tuple[Element, Line,
     into = last.start_direction if last.length > SAME_POINT else after.end_direction
     cut = between.start_direction
     if turn(out, cut) * angle <= 0.0 or turn(cut, into) * angle <= 0.0:
-        raise CornerError("the chamfer would cross one of them")
+        raise CornerError("the chamfer would cross one of them", "crosses")
     return first, between, last
 
 
@@ -58,10 +59,13 @@ def _turned(before: Element, after: Element) -> float:
             raise CornerTooLargeError(0.0, first=element is before)
     angle = turn(before.end_direction, after.start_direction)
     if abs(angle) < STRAIGHT:
-        raise NoCornerError("they go on in one direction")
+        raise NoCornerError("they go on in one direction", "no-corner")
     if abs(angle) > pi - STRAIGHT:
         lines = isinstance(before, Line) and isinstance(after, Line)
-        raise CornerError("the next line runs straight back" if lines else "the next one runs straight back")
+        raise CornerError(
+            "the next line runs straight back" if lines else "the next one runs straight back",
+            "straight-back",
+        )
     return angle
 
 
@@ -103,12 +107,12 @@ def rounding(before: Element, after: Element, radius: float) -> tuple[Element, A
         return _fillet(before, after, radius)
     angle = turn(before.end_direction, after.start_direction)
     if abs(angle) < STRAIGHT:
-        raise NoCornerError("they go on in one direction")
+        raise NoCornerError("they go on in one direction", "no-corner")
     side = radius if angle > 0 else -radius
     try:
         aside = offset_element(before, side), offset_element(after, side)
     except GougeError as problem:
-        raise CornerError(f"of one of them {problem}") from None
+        raise CornerError(f"of one of them {problem}", "no-arc") from None
     touched = [(before.along(centre), after.along(centre), centre) for centre in meetings(*aside)]
     fitting = [
         (before.length - end + start, end, start, centre)
@@ -117,7 +121,7 @@ def rounding(before: Element, after: Element, radius: float) -> tuple[Element, A
         and -SAME_POINT <= start <= after.length - _left(after)
     ]
     if not fitting:
-        raise CornerError("no arc of that radius touches both between their ends")
+        raise CornerError("no arc of that radius touches both between their ends", "no-touching-arc")
     _, end, start, centre = min(fitting)
     first = before.part(before.start, before.point(end))
     last = after.part(after.point(start), after.end)
@@ -150,7 +154,7 @@ def leg_of(before: Element, after: Element, length: float) -> float:
     for step in range(1, _STEPS + 1):
         if _width(before, after, most * step / _STEPS) >= length:
             return _found(before, after, length, most * (step - 1) / _STEPS, most * step / _STEPS)
-    raise CornerError("they are too short for a chamfer of that length")
+    raise CornerError("they are too short for a chamfer of that length", "too-short")
 
 
 def _found(before: Element, after: Element, length: float, short: float, long: float) -> float:

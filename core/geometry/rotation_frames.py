@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import math
 
+from core.coded_error import CodedError
+
 Vector = tuple[float, float, float]
 Matrix = tuple[Vector, Vector, Vector]
 
@@ -22,7 +24,7 @@ SMALLEST_SINE = 1e-6  # of the angle at the first point; a flatter triangle give
 _QUARTERS = ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))
 
 
-class NoFrameError(ValueError):
+class NoFrameError(CodedError, ValueError):
     """Points that define no plane; ``str()`` says why."""
 
 
@@ -103,14 +105,14 @@ def from_points(p1: Vector, p2: Vector, p3: Vector) -> Matrix:
     u, v = minus(p2, p1), minus(p3, p1)
     along, aside = math.hypot(*u), math.hypot(*v)
     if along < SHORTEST:
-        raise NoFrameError("the first and the second point are the same")
+        raise NoFrameError("the first and the second point are the same", "first-and-second-point-equal")
     if aside < SHORTEST:
-        raise NoFrameError("the first and the third point are the same")
+        raise NoFrameError("the first and the third point are the same", "first-and-third-point-equal")
     x = scaled(u, 1.0 / along)
     normal = cross(x, scaled(v, 1.0 / aside))
     sine = math.hypot(*normal)
     if sine < SMALLEST_SINE:
-        raise NoFrameError("the three points lie on one line")
+        raise NoFrameError("the three points lie on one line", "points-on-one-line")
     z = scaled(normal, 1.0 / sine)
     return transposed((x, cross(z, x), z))
 
@@ -132,12 +134,12 @@ def from_vectors(base: Vector, normal: Vector) -> Matrix:
     """
     long, wide = math.hypot(*normal), math.hypot(*base)
     if long < SHORTEST or wide < SHORTEST:
-        raise NoFrameError("a vector has no length")
+        raise NoFrameError("a vector has no length", "vector-without-length")
     z = scaled(normal, 1.0 / long)
     y = cross(z, scaled(base, 1.0 / wide))
     sine = math.hypot(*y)
     if sine < SMALLEST_SINE:
-        raise NoFrameError("both vectors have one direction")
+        raise NoFrameError("both vectors have one direction", "parallel-vectors")
     y = scaled(y, 1.0 / sine)
     return transposed((cross(y, z), y, z))
 
@@ -149,7 +151,7 @@ def from_projections(first: float, second: float, rotation: float) -> Matrix:
     """
     (c1, s1), (c2, s2) = cos_sin(first), cos_sin(second)
     if min(abs(c1), abs(c2)) < SMALLEST_SINE:
-        raise NoFrameError("a projection angle is 90 degrees")
+        raise NoFrameError("a projection angle is 90 degrees", "projection-angle")
     along, aside = (c1, 0.0, s1), (0.0, c2, s2)
     return product(from_vectors(along, cross(along, aside)), turned(Z_AXIS, rotation))
 

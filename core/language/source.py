@@ -9,6 +9,7 @@ from enum import StrEnum
 from functools import cached_property
 from pathlib import Path, PurePath
 
+from core.coded_error import CodedError
 from core.language.diagnostics import Diagnostic, refusal
 
 
@@ -70,11 +71,11 @@ class Source:
         return tuple(lines)
 
 
-class SourceError(Exception):
+class SourceError(CodedError):
     """A file holds no program text; ``str()`` is the sentence for the operator."""
 
     def __init__(self, diagnostic: Diagnostic) -> None:
-        super().__init__(diagnostic.message)
+        super().__init__(diagnostic.message, diagnostic.code)
         self.diagnostic = diagnostic
 
 

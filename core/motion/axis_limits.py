@@ -10,8 +10,10 @@ from typing import Protocol
 import numpy as np
 import numpy.typing as npt
 
+from core.coded_error import CodedError
 
-class MotionError(Exception):
+
+class MotionError(CodedError):
     """A movement cannot be planned; one sentence says which block, what is wrong and what to do."""
 
 
@@ -59,7 +61,9 @@ class MotionLimits:
                 _demand_positive(f"{name} of axis {number}", value)
         _demand_positive("interval", self.interval)
         if not 0.0 <= self.grain < math.inf:
-            raise MotionError(f"The step of the slides is {self.grain} mm; give a positive number, or 0.")
+            raise MotionError(
+                f"The step of the slides is {self.grain} mm; give a positive number, or 0.", "grain"
+            )
 
     @classmethod
     def of(cls, axes: Sequence[AxisLike], interval: float, corner_tolerance: float = 0.0) -> MotionLimits:
@@ -98,4 +102,6 @@ class MotionLimits:
 
 def _demand_positive(what: str, value: float) -> None:
     if not (math.isfinite(value) and value > 0.0):
-        raise MotionError(f"Motion limit {what} is {value}; give a positive number in the machine file.")
+        raise MotionError(
+            f"Motion limit {what} is {value}; give a positive number in the machine file.", "axis-limit"
+        )

@@ -162,7 +162,9 @@ def _travels(blocks: Sequence[MotionBlock]) -> tuple[FloatArray, FloatArray, Flo
     """Start and end (m, axes) and length (m,) of blocks that tell of all axes."""
     travels = [block.travel for block in blocks if block.travel is not None]
     if len(travels) != len(blocks):
-        raise MotionError(f"Block {blocks[0].n} tells of all axes, another behind it does not.")
+        raise MotionError(
+            f"Block {blocks[0].n} tells of all axes, another behind it does not.", "axes-differ"
+        )
     start, end = (np.array([getattr(t, name) for t in travels], order="F") for name in ("start", "end"))
     return start, end, np.array([t.length for t in travels])
 
@@ -172,7 +174,9 @@ def _kinds(blocks: Sequence[MotionBlock]) -> FloatArray:
         return np.array([KINDS[b.kind] for b in blocks], dtype=np.float64)
     except KeyError:
         block = next(b for b in blocks if b.kind not in KINDS)
-        raise MotionError(f"Block {block.n}: a {block.kind} block has no time law of its own.") from None
+        raise MotionError(
+            f"Block {block.n}: a {block.kind} block has no time law of its own.", "no-time-law"
+        ) from None
 
 
 def _demand_finite(table: FloatArray) -> None:
@@ -181,7 +185,7 @@ def _demand_finite(table: FloatArray) -> None:
         row = table[bad.argmax()]
         names = (*_COLUMNS, "per_rev", "clockwise", "offset_c", "c_locked")
         name = names[int(np.argmax(~np.isfinite(row)))]
-        raise MotionError(f"Block {row[0]:.0f}: {name} is not a number; correct the block.")
+        raise MotionError(f"Block {row[0]:.0f}: {name} is not a number; correct the block.", "not-a-number")
 
 
 def _surface(blocks: Sequence[MotionBlock], rpm_max: float) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -191,7 +195,8 @@ def _surface(blocks: Sequence[MotionBlock], rpm_max: float) -> tuple[FloatArray,
         if block.css is not None:
             if not 0.0 <= block.css < math.inf:
                 raise MotionError(
-                    f"Block {block.n}: css is {block.css} mm/s; program a surface speed with S."
+                    f"Block {block.n}: css is {block.css} mm/s; program a surface speed with S.",
+                    "surface-speed",
                 )
             surface[i], lo[i] = block.css, block.modal.css_min
             hi[i] = rpm_max if block.modal.css_max is None else min(block.modal.css_max, rpm_max)

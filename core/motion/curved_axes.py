@@ -143,7 +143,8 @@ def _slide_by_c(piece: Pieces, table: BlockTable, index: int) -> Pieces:
     needed, turn = way / feed * 360.0, float(end[2] - start[2])
     if abs(turn) < needed * (1.0 - _ROUNDING):
         raise MotionError(
-            f"Block {table.n[index]:.0f}: the slide needs {needed:g} degrees of C; it turns {abs(turn):g}."
+            f"Block {table.n[index]:.0f}: the slide needs {needed:g} degrees of C; it turns {abs(turn):g}.",
+            "rotary-range",
         )
     there = end.copy()
     there[2] = start[2] + np.copysign(min(needed, abs(turn)), turn)

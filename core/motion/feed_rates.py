@@ -19,23 +19,36 @@ def constant_rates(table: BlockTable) -> FloatArray:
 
     Raises MotionError for a feed that is not positive and for a feed per revolution with the spindle still.
     """
-    _refuse(table, ~(table.feed > 0.0), "the feed is not above zero; program an F")
+    _refuse(table, ~(table.feed > 0.0), "the feed is not above zero; program an F", "no-feed")
     surface = by_radius(table)
     middle = 0.5 * (table.start[:, 0] + table.end[:, 0]) - table.axis
     rpm = np.where(surface, surface_rpms(table, middle), table.rpm)
     _refuse(
-        table, table.per_rev & ~(rpm > 0.0), "feed per revolution with the spindle stopped; start it first"
+        table,
+        table.per_rev & ~(rpm > 0.0),
+        "feed per revolution with the spindle stopped; start it first",
+        "spindle-stopped",
     )
     on_axis = (table.start[:, 0] - table.axis) * (table.end[:, 0] - table.axis) <= 0.0
     endless = surface & on_axis & np.isinf(table.hi)
-    _refuse(table, endless, "the spindle speed on the axis has no upper limit; give G77 or rpm_max")
+    _refuse(
+        table,
+        endless,
+        "the spindle speed on the axis has no upper limit; give G77 or rpm_max",
+        "no-speed-limit",
+    )
     rate = np.where(table.per_rev, table.feed * rpm / 60.0, table.feed)
     return rate * _per_lead(table) if table.thread.any() else rate
 
 
 def _per_lead(table: BlockTable) -> FloatArray:
     """Way (m,) per way along Z, 1 save in threads: a lead counts along the axis of the thread."""
-    _refuse(table, table.thread & (table.start[:, 1] == table.end[:, 1]), "a thread does not advance along Z")
+    _refuse(
+        table,
+        table.thread & (table.start[:, 1] == table.end[:, 1]),
+        "a thread does not advance along Z",
+        "no-lead",
+    )
     way = np.hypot(table.end[:, 0] - table.start[:, 0], table.end[:, 1] - table.start[:, 1])
     along = np.where(table.thread, np.abs(table.end[:, 1] - table.start[:, 1]), 1.0)
     return np.where(table.thread, way / along, 1.0)
@@ -53,9 +66,9 @@ def surface_rpms(table: BlockTable, radius: FloatArray) -> FloatArray:
     return np.clip(rpm, table.lo, table.hi)
 
 
-def _refuse(table: BlockTable, wrong: BoolArray, why: str) -> None:
+def _refuse(table: BlockTable, wrong: BoolArray, why: str, code: str) -> None:
     if wrong.any():
-        raise MotionError(f"Block {table.n[wrong.argmax()]:.0f}: {why}.")
+        raise MotionError(f"Block {table.n[wrong.argmax()]:.0f}: {why}.", code)
 
 
 def split_by_radius(pieces: Pieces, table: BlockTable, index: int) -> Pieces:

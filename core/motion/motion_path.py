@@ -58,7 +58,7 @@ class Path:
         """Distances at which block ``n`` starts and ends. Raises MotionError when it is not on this path."""
         i = int(np.searchsorted(self.blocks, n))
         if i == len(self.blocks) or self.blocks[i] != n:
-            raise MotionError(f"Block {n} is not on the planned path.")
+            raise MotionError(f"Block {n} is not on the planned path.", "block-not-on-path")
         return float(self.s[self.first[i]]), float(self.s[self.first[i + 1]])
 
     def piece_at(self, s: FloatArray) -> IntArray:
@@ -115,7 +115,9 @@ class PathBuilder:
         """``add`` for blocks that come as lists and rows, none of them empty."""
         table = table_of(batch, self.rpm_max)
         if self._closed:
-            raise MotionError(f"Block {table.n[0]:.0f} comes after the end of the path; begin another path.")
+            raise MotionError(
+                f"Block {table.n[0]:.0f} comes after the end of the path; begin another path.", "path-ended"
+            )
         _demand_unbroken(table, self._end)
         pieces, counts = _pieces(table, self._limits)
         if self._start is None:
@@ -171,7 +173,7 @@ class PathBuilder:
 
     def _make(self) -> Path:
         if self._start is None:
-            raise MotionError("There is no block to plan a path of; add the blocks first.")
+            raise MotionError("There is no block to plan a path of; add the blocks first.", "no-block")
         pieces = joined(self._parts)
         cap, a, corner = piece_limits(pieces, self._limits, more=not self._closed)
         return Path(
@@ -211,5 +213,6 @@ def _demand_unbroken(table: BlockTable, end: FloatArray | None) -> None:
         i = int(gap.max(axis=1).argmax()) + len(table.n) - len(before)
         raise MotionError(
             f"Block {table.n[i]:.0f} starts {gap.max():.4f} mm from the end of the block before it; "
-            "plan it from where the machine stands."
+            "plan it from where the machine stands.",
+            "broken-path",
         )

@@ -274,7 +274,8 @@ def _braked_into(run: _Run, allowed: FloatArray, square: float, slack: float) ->
     if not len(fits):
         raise MotionError(
             f"A speed of {math.sqrt(square):.3f} mm/s cannot come to rest within the "
-            f"{run.length.sum():.4f} mm that are left; plan from a state of this path."
+            f"{run.length.sum():.4f} mm that are left; plan from a state of this path.",
+            "cannot-stop",
         )
     k = int(fits[0])
     _demand_passable(braked[:k], run.hard[:k], slack)
@@ -289,7 +290,8 @@ def _demand_passable(braked: FloatArray, hard: FloatArray, slack: float) -> None
         i = int(over.argmax())
         raise MotionError(
             f"A speed of {math.sqrt(braked[i]):.3f} mm/s is too high for what follows, which allows "
-            f"{math.sqrt(hard[i]):.3f} mm/s; plan from a state of this path."
+            f"{math.sqrt(hard[i]):.3f} mm/s; plan from a state of this path.",
+            "too-fast",
         )
 
 
@@ -319,7 +321,8 @@ def _brake(path: Path, at: float, v: float, first: int) -> Profile:
 def _rest(path: Path, v: float) -> Profile:
     if v * v > 2.0 * NEAR * float(path.a.max(initial=1.0)):
         raise MotionError(
-            f"A speed of {v:.3f} mm/s at the end of the path cannot come to rest; plan before it."
+            f"A speed of {v:.3f} mm/s at the end of the path cannot come to rest; plan before it.",
+            "cannot-stop-at-end",
         )
     return at_rest(path, float(path.s[-1]))
 
@@ -327,13 +330,18 @@ def _rest(path: Path, v: float) -> Profile:
 def _start(path: Path, start_s: float | None) -> float:
     at = float(path.s[0]) if start_s is None else start_s
     if not path.s[0] - NEAR <= at <= path.s[-1] + NEAR:
-        raise MotionError(f"Distance {at} is not on the path from {path.s[0]:.6f} to {path.s[-1]:.6f} mm.")
+        raise MotionError(
+            f"Distance {at} is not on the path from {path.s[0]:.6f} to {path.s[-1]:.6f} mm.", "not-on-path"
+        )
     return min(max(at, float(path.s[0])), float(path.s[-1]))
 
 
 def _demand_sane(start_v: float, feed_scale: float, rapid_scale: float) -> None:
     if not (math.isfinite(start_v) and start_v >= 0.0):
-        raise MotionError(f"The present speed is {start_v}; it must be zero or above.")
+        raise MotionError(f"The present speed is {start_v}; it must be zero or above.", "negative-speed")
     for name, scale in (("feed", feed_scale), ("rapid", rapid_scale)):
         if not 0.0 <= scale <= OVERRIDE_MAX:
-            raise MotionError(f"The {name} override is {scale}; it must lie between 0 and {OVERRIDE_MAX}.")
+            raise MotionError(
+                f"The {name} override is {scale}; it must lie between 0 and {OVERRIDE_MAX}.",
+                f"{name}-override",
+            )

@@ -142,7 +142,8 @@ def _settled_centre(table: BlockTable, arc: IntArray) -> FloatArray:
         worst = int(off.argmax())
         raise MotionError(
             f"Block {table.n[arc[worst]]:.0f}: start and end of the arc lie {radii[0][worst]:.4f} and "
-            f"{radii[1][worst]:.4f} mm from its centre; correct the centre or the end point."
+            f"{radii[1][worst]:.4f} mm from its centre; correct the centre or the end point.",
+            "arc-radii-differ",
         )
     chord = end - start
     size = np.hypot(chord[:, 0], chord[:, 1])[:, None]

@@ -39,7 +39,9 @@ class ChunkPlanner:
 
     def __init__(self, limits: MotionLimits, *, rpm_max: float = math.inf, window: int = 20_000) -> None:
         if window < 1:
-            raise MotionError(f"A planning window of {window} blocks holds nothing; give at least 1.")
+            raise MotionError(
+                f"A planning window of {window} blocks holds nothing; give at least 1.", "empty-window"
+            )
         self._limits = limits
         self._rpm_max = rpm_max
         self._window = window
@@ -112,7 +114,9 @@ def sample_positions(
     is not above zero.
     """
     if not dt > 0.0:
-        raise MotionError(f"A sampling interval of {dt} s gives no samples; give a time above zero.")
+        raise MotionError(
+            f"A sampling interval of {dt} s gives no samples; give a time above zero.", "sampling-interval"
+        )
     count = max(math.ceil((profile.duration - t_offset) / dt), 0)
     t: FloatArray = t_offset + dt * np.arange(count, dtype=np.float64)
     t = t[t < profile.duration]

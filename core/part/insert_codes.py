@@ -14,10 +14,12 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import radians, sin, tan
 
+from core.coded_error import CodedError
+
 MM_PER_INCH = 25.4
 
 
-class InsertCodeError(ValueError):
+class InsertCodeError(CodedError, ValueError):
     """A code that means nothing; the text says which character."""
 
 
@@ -177,11 +179,15 @@ def _check_letters(code: str, head: str, *, older: bool) -> None:
         if len(head) < place:
             if older:
                 return
-            raise InsertCodeError(f"{code}: character {place} is missing; it is the {what}")
+            raise InsertCodeError(
+                f"{code}: character {place} is missing; it is the {what}", "character-missing"
+            )
         if head[place - 1] not in known:
             raise _meaningless(code, place, head[place - 1], what, known)
     if len(head) > len(_LETTERS):
-        raise InsertCodeError(f"{code}: character 5, {head[4]}, means nothing; the size begins there")
+        raise InsertCodeError(
+            f"{code}: character 5, {head[4]}, means nothing; the size begins there", "unknown-character"
+        )
 
 
 @dataclass(slots=True)
@@ -198,7 +204,8 @@ class _Size:
         if not found or len(found) < len(min(known, key=len)):
             place, figures = self.place + len(found) + 1, " ".join(sorted(known))
             raise InsertCodeError(
-                f"{self.code}: character {place} is missing; there stands the {what}: {figures}"
+                f"{self.code}: character {place} is missing; there stands the {what}: {figures}",
+                "character-missing",
             )
         if found not in known:
             raise _meaningless(self.code, self.place + 1, found, what, known)
@@ -211,7 +218,9 @@ def _meaningless(code: str, place: int, found: str, what: str, known: Iterable[s
     where = f"character {place}, {found}, means"
     if len(found) > 1:
         where = f"characters {place} and {place + len(found) - 1}, {found}, mean"
-    return InsertCodeError(f"{code}: {where} nothing as {what}; known: {' '.join(sorted(known))}")
+    return InsertCodeError(
+        f"{code}: {where} nothing as {what}; known: {' '.join(sorted(known))}", "unknown-character"
+    )
 
 
 def _metric(size: _Size) -> tuple[float, float, float]:
@@ -242,7 +251,8 @@ def _inch(size: _Size) -> tuple[float, float, float]:
     nose = size.take(corner, "corner radius (1/64 in)", _SIXTY_FOURTHS)
     if size.left[:1].isdigit():
         raise InsertCodeError(
-            f"{size.code}: character {size.place + 1}, {size.left[0]}, is one figure too many"
+            f"{size.code}: character {size.place + 1}, {size.left[0]}, is one figure too many",
+            "too-many-characters",
         )
     return circle * MM_PER_INCH, thickness * MM_PER_INCH, nose * MM_PER_INCH
 

@@ -11,6 +11,7 @@ import re
 from dataclasses import dataclass
 from itertools import pairwise
 
+from core.coded_error import CodedError
 from core.part.stock import Point, Stock
 from core.part.stock_forms import FORMS
 
@@ -20,7 +21,7 @@ _LARGEST = 1000.0  # mm
 _BEHIND = 10.0  # mm of stock behind the last cut where no length is said
 
 
-class StockError(ValueError):
+class StockError(CodedError, ValueError):
     """The words say no stock; the message is a sentence."""
 
 
@@ -52,11 +53,11 @@ def stock_spec(text: str) -> StockSpec:
     kind, _, rest = text.strip().partition(":")
     if kind in {"profile", "after"}:
         if not rest:
-            raise StockError(f"{text!r} names no file; say {kind}:FILE")
+            raise StockError(f"{text!r} names no file; say {kind}:FILE", "no-file")
         name, allowance = _file_and_allowance(rest)
         return StockSpec(text, allowance=allowance, **{kind: name})  # type: ignore[arg-type]
     if kind not in {"bar", "tube"}:
-        raise StockError(f"{text!r} is no stock; say one of {FORMS}")
+        raise StockError(f"{text!r} is no stock; say one of {FORMS}", "unknown-form")
     sizes, plus, extra = rest.partition("+")
     allowance = _length(extra, text) if plus else 0.0
     lengths = [_length(each, text) for each in sizes.split(":")]
@@ -66,15 +67,17 @@ def stock_spec(text: str) -> StockSpec:
 def _round_stock(text: str, kind: str, lengths: list[float], allowance: float) -> StockSpec:
     diameters = 1 if kind == "bar" else 2
     if not diameters <= len(lengths) <= diameters + 1:
-        raise StockError(f"{text!r} has {len(lengths)} sizes; say one of {FORMS}")
+        raise StockError(f"{text!r} has {len(lengths)} sizes; say one of {FORMS}", "size-count")
     diameter, bore = lengths[0], lengths[1] if kind == "tube" else 0.0
     if not 0.0 < diameter <= _LARGEST:
-        raise StockError(f"{text!r}: a diameter is more than 0 and up to {_LARGEST / _INCH:.0f} in")
+        raise StockError(
+            f"{text!r}: a diameter is more than 0 and up to {_LARGEST / _INCH:.0f} in", "diameter"
+        )
     if kind == "tube" and not 0.0 < bore < diameter:
-        raise StockError(f"{text!r}: the bore of a tube is more than 0 and less than its diameter")
+        raise StockError(f"{text!r}: the bore of a tube is more than 0 and less than its diameter", "bore")
     length = lengths[diameters] if len(lengths) > diameters else 0.0
     if len(lengths) > diameters and not 0.0 < length <= 10.0 * _LARGEST:
-        raise StockError(f"{text!r}: a length is more than 0")
+        raise StockError(f"{text!r}: a length is more than 0", "length")
     return StockSpec(text, diameter, bore, length, allowance)
 
 
@@ -90,7 +93,7 @@ def _length(text: str, whole: str) -> float:
     """mm."""
     found = _LENGTH.fullmatch(text.strip())
     if found is None:
-        raise StockError(f"{whole!r}: {text!r} is no length; say 1.25 (inches) or 30mm")
+        raise StockError(f"{whole!r}: {text!r} is no length; say 1.25 (inches) or 30mm", "not-a-length")
     return float(found[1]) * (1.0 if (found[2] or "").lower() == "mm" else _INCH)
 
 
@@ -98,15 +101,15 @@ def profile_stock(given: str, text: str, scale: float, allowance: float) -> Stoc
     """A blank by the points of a CSV text: Z, r (, bore r) in units of ``scale`` mm. Raises StockError."""
     rows = _rows(text)
     if len(rows) < 2:
-        raise StockError("a profile needs two points at least: z, r in each row")
+        raise StockError("a profile needs two points at least: z, r in each row", "too-few-points")
     if len({len(row) for row in rows}) > 1:
-        raise StockError("a profile has z, r, or z, r, bore in every row alike")
+        raise StockError("a profile has z, r, or z, r, bore in every row alike", "rows-differ")
     if rows[0][0] > rows[-1][0]:
         rows.reverse()
     if any(a[0] > b[0] for a, b in pairwise(rows)):
-        raise StockError("the points of a profile go one way along Z")
+        raise StockError("the points of a profile go one way along Z", "turns-back")
     if any(row[1] < 0.0 for row in rows) or any(len(row) > 2 and not 0.0 <= row[2] <= row[1] for row in rows):
-        raise StockError("radii of a profile are not negative, and a bore is within its outside")
+        raise StockError("radii of a profile are not negative, and a bore is within its outside", "radius")
     outside: tuple[Point, ...] = tuple((row[0] * scale + allowance, row[1] * scale) for row in rows)
     bore: tuple[Point, ...] = tuple(
         (row[0] * scale + allowance, row[2] * scale) for row in rows if len(row) > 2
@@ -129,7 +132,11 @@ def _numbers(row: list[str], number: int) -> list[float]:
     try:
         values = [float(each) for each in row]
     except ValueError as error:
-        raise StockError(f"row {number} of the profile is no numbers: {','.join(row)}") from error
+        raise StockError(
+            f"row {number} of the profile is no numbers: {','.join(row)}", "not-numbers"
+        ) from error
     if not 2 <= len(values) <= 3:
-        raise StockError(f"row {number} of the profile has {len(values)} numbers; it has z, r (, bore)")
+        raise StockError(
+            f"row {number} of the profile has {len(values)} numbers; it has z, r (, bore)", "number-count"
+        )
     return values

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from core.coded_error import CodedError
 
-class QualityError(ValueError):
+
+class QualityError(CodedError, ValueError):
     """Figures from which nothing can be told; the text says which and what to do."""

@@ -31,7 +31,9 @@ def pareto(stops: Iterable[Stop]) -> tuple[ReasonShare, ...]:
     counts: dict[str, tuple[int, float]] = {}
     for stop in stops:
         if stop.seconds < 0.0:
-            raise QualityError(f"{stop.reason}: a stop that ends before it begins; the clock was set back")
+            raise QualityError(
+                f"{stop.reason}: a stop that ends before it begins; the clock was set back", "clock-set-back"
+            )
         count, seconds = counts.get(stop.reason, (0, 0.0))
         counts[stop.reason] = count + 1, seconds + stop.seconds
     total = sum(seconds for _, seconds in counts.values())

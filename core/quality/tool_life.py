@@ -77,10 +77,13 @@ class ToolLife:
 def check_life(life: ToolLife) -> None:
     """Raises QualityError for limits that nobody can mean."""
     if not 0 <= life.limit_parts <= PARTS_MOST:
-        raise QualityError(f"T{life.number}: a life is 0 to {PARTS_MOST} parts, 0: no limit")
+        raise QualityError(
+            f"T{life.number}: a life is 0 to {PARTS_MOST} parts, 0: no limit", "limit-in-parts"
+        )
     if not (math.isfinite(life.limit_seconds) and 0.0 <= life.limit_seconds <= SECONDS_MOST):
         raise QualityError(
-            f"T{life.number}: a life is 0 to {SECONDS_MOST / 60.0:g} cutting minutes, 0: no limit"
+            f"T{life.number}: a life is 0 to {SECONDS_MOST / 60.0:g} cutting minutes, 0: no limit",
+            "limit-in-minutes",
         )
     if not 0.0 < life.warn <= 1.0:
-        raise QualityError(f"T{life.number}: it is warned at 1 to 100 % of the life")
+        raise QualityError(f"T{life.number}: it is warned at 1 to 100 % of the life", "warning-share")

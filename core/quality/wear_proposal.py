@@ -54,13 +54,14 @@ def propose(
     """
     rule = rule or CorrectionRule()
     if not readings:
-        raise QualityError(f"{feature.name}: no part was measured since the last correction")
+        raise QualityError(f"{feature.name}: no part was measured since the last correction", "no-readings")
     newest = np.asarray(readings[-rule.last :], dtype=np.float64)
     if not np.isfinite(newest).all():
-        raise QualityError(f"{feature.name}: a reading is no number; take it out")
+        raise QualityError(f"{feature.name}: a reading is no number; take it out", "not-a-number")
     if float(np.abs(newest - feature.middle).max()) > _FAR * feature.width:
         raise QualityError(
-            f"{feature.name}: a reading is more than {_FAR:g} tolerances off; that is no wear, measure again"
+            f"{feature.name}: a reading is more than {_FAR:g} tolerances off; that is no wear, measure again",
+            "reading-too-far",
         )
     mean = float(newest.mean())
     deviation = mean - feature.middle
@@ -71,7 +72,10 @@ def propose(
         return _nothing(feature, len(newest), mean, "less than the smallest step: nothing to correct")
     at_offset = change / 2.0 if feature.axis == "x" else change
     if abs(at_offset) > WEAR_MOST:
-        raise QualityError(f"{feature.name}: a correction of {change:.4f} mm is no wear; touch the tool off")
+        raise QualityError(
+            f"{feature.name}: a correction of {change:.4f} mm is no wear; touch the tool off",
+            "correction-too-large",
+        )
     return Proposal(feature, len(newest), mean, change, at_offset, mean + feature.grows * change, "")
 
 

@@ -94,14 +94,15 @@ def path_error(
 def _check(programmed: FloatArray, lines: IntArray, measured: FloatArray, due: IntArray) -> None:
     if len(measured) < LEAST or len(programmed) < 2:
         raise AnalysisError(
-            f"a path error needs {LEAST} samples of a path at least; record while a program runs"
+            f"a path error needs {LEAST} samples of a path at least; record while a program runs",
+            "too-few-samples",
         )
     if len(lines) != len(programmed) or len(due) != len(measured):
-        raise AnalysisError("points and lines of the path do not belong together")
+        raise AnalysisError("points and lines of the path do not belong together", "lengths-differ")
     if not (np.isfinite(programmed).all() and np.isfinite(measured).all()):
-        raise AnalysisError(UNTOLD)
+        raise AnalysisError(UNTOLD, "no-positions")
     if not (np.ptp(programmed, axis=0) > _SAME).any():
-        raise AnalysisError(STOOD)
+        raise AnalysisError(STOOD, "at-rest")
 
 
 def of_samples(
@@ -113,13 +114,14 @@ def of_samples(
     """
     if len(demand) < LEAST:
         raise AnalysisError(
-            f"a path error needs {LEAST} samples of a path at least; record while a program runs"
+            f"a path error needs {LEAST} samples of a path at least; record while a program runs",
+            "too-few-samples",
         )
     if not (np.isfinite(demand).all() and np.isfinite(actual).all()):
-        raise AnalysisError(UNTOLD)
+        raise AnalysisError(UNTOLD, "no-positions")
     moved = np.append(True, (np.abs(np.diff(demand, axis=0)) > _SAME).any(axis=1))
     if moved.sum() < 2:
-        raise AnalysisError(STOOD)
+        raise AnalysisError(STOOD, "at-rest")
     due = np.cumsum(moved) - 1
     known = np.where(np.isfinite(lines), lines, 0.0).astype(np.int64)
     path = demand[moved]

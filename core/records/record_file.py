@@ -91,22 +91,26 @@ def _read(path: Path, data: io.BytesIO) -> Record:
         raise RecordError(
             f"{path} is cut off; it cannot be read"
             if part
-            else f"{path} is no record of the scope; name one of the folder records, {ENDING} or .ring"
+            else f"{path} is no record of the scope; name one of the folder records, {ENDING} or .ring",
+            "cut-off" if part else "not-a-record",
         )
     data.seek(0)
     try:
         with np.load(data, allow_pickle=False) as archive:
             if _ABOUT not in archive.files:
-                raise RecordError(f"{path} is no record of the scope; name a file that ends in {ENDING}")
+                raise RecordError(
+                    f"{path} is no record of the scope; name a file that ends in {ENDING}", "not-a-record"
+                )
             told = json.loads(archive[_ABOUT].tobytes())
             version = told["version"]
             if version > _VERSION:
                 raise RecordError(
-                    f"{path} was written by a newer TurnDesk (version {version}); open it with that one"
+                    f"{path} was written by a newer TurnDesk (version {version}); open it with that one",
+                    "newer-version",
                 )
             return _record(told, lambda name: archive[name])
     except _DAMAGE as error:
-        raise RecordError(f"{path} is damaged and cannot be read ({error})") from error
+        raise RecordError(f"{path} is damaged and cannot be read ({error})", "damaged") from error
 
 
 def _record(told: dict[str, object], column: Callable[[str], object]) -> Record:

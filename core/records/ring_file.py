@@ -102,7 +102,7 @@ def _lock(file: int, path: Path) -> None:
     try:
         lock(file)
     except OSError as error:
-        raise RecordError(f"{path} is being written by another TurnDesk") from error
+        raise RecordError(f"{path} is being written by another TurnDesk", "in-use") from error
 
 
 def _allocate(file: int, size: int) -> None:
@@ -192,10 +192,14 @@ def read_ring(path: Path, begin: float = -np.inf, end: float = np.inf) -> Record
 
 def _described(path: Path, start: bytes, read: Callable[[int], bytes]) -> _Found:
     if len(start) < _START.size or not start.startswith(_MAGIC):
-        raise RecordError(f"{path} is no record of TurnDesk; name a file of the folder records")
+        raise RecordError(
+            f"{path} is no record of TurnDesk; name a file of the folder records", "not-a-record"
+        )
     _, version, length, head = _START.unpack(start)
     if version > _VERSION:
-        raise RecordError(f"{path} was written by a newer TurnDesk (version {version}); open it with that")
+        raise RecordError(
+            f"{path} was written by a newer TurnDesk (version {version}); open it with that", "newer-version"
+        )
     try:
         told = json.loads(read(length))
         recorded = Recorded(
@@ -210,7 +214,9 @@ def _described(path: Path, start: bytes, read: Callable[[int], bytes]) -> _Found
         )
         samples, ticks = (int(room) for room in told["rooms"])
     except (ValueError, KeyError, TypeError, AttributeError) as error:
-        raise RecordError(f"{path} is damaged at its beginning; there is nothing to read in it") from error
+        raise RecordError(
+            f"{path} is damaged at its beginning; there is nothing to read in it", "damaged"
+        ) from error
     return _Found(recorded, (samples, ticks), head)
 
 
@@ -220,7 +226,9 @@ def _rings(path: Path, found: _Found, read: Callable[[int], bytes]) -> Iterator[
         size = room * (width + 1) * 8
         data = read(size)
         if len(data) != size:
-            raise RecordError(f"{path} is cut off: {len(data)} of {size} bytes are there; it cannot be read")
+            raise RecordError(
+                f"{path} is cut off: {len(data)} of {size} bytes are there; it cannot be read", "cut-off"
+            )
         yield np.frombuffer(data, dtype="<f8").reshape(room, width + 1)
 
 

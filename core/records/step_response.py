@@ -44,7 +44,10 @@ def step_response(times: FloatArray, request: FloatArray, response: FloatArray, 
     _check(times, request, response)
     way = float(request[-1] - request[0])
     if abs(way) <= 2.0 * band:
-        raise AnalysisError(f"a step of {abs(way):.4f} is no larger than its window of {band:.4f}: take more")
+        raise AnalysisError(
+            f"a step of {abs(way):.4f} is no larger than its window of {band:.4f}: take more",
+            "step-too-small",
+        )
     asked = (request - request[0]) / way
     done = (response - response[0]) / way
     half, tenth, most = (_crossing(times, done, share) for share in (0.5, 0.1, 0.9))
@@ -85,11 +88,11 @@ def sine_response(
     _check(times, request, response)
     waves = math.floor((times[-1] - times[0]) * frequency + 1e-6)
     if waves < 1:
-        raise AnalysisError("the record holds less than one wave of the sine; take more")
+        raise AnalysisError("the record holds less than one wave of the sine; take more", "too-short")
     cut = times <= times[0] + waves / frequency
     asked, got = (_wave(times[cut], each[cut], frequency) for each in (request, response))
     if abs(asked) < 1e-9:
-        raise AnalysisError(f"the request has no sine of {frequency:g} Hz")
+        raise AnalysisError(f"the request has no sine of {frequency:g} Hz", "no-sine")
     ratio = got / asked
     return SineResponse(frequency, abs(ratio), -math.degrees(np.angle(ratio)), abs(asked - got))
 
@@ -124,7 +127,7 @@ def ramp_response(times: FloatArray, request: FloatArray, response: FloatArray) 
     top = float(speeds[np.argmax(np.abs(speeds))])
     even = np.flatnonzero(np.abs(speeds - top) <= 0.01 * abs(top))
     if abs(top) < 1e-9 or len(even) < LEAST:
-        raise AnalysisError("the request has no ramp of even speed; take a longer one")
+        raise AnalysisError("the request has no ramp of even speed; take a longer one", "no-ramp")
     late = even[len(even) // 2 :]
     error = float(np.mean(request[late] - response[late]))
     sign = math.copysign(1.0, top)
@@ -133,9 +136,13 @@ def ramp_response(times: FloatArray, request: FloatArray, response: FloatArray) 
 
 def _check(times: FloatArray, request: FloatArray, response: FloatArray) -> None:
     if len(times) < LEAST:
-        raise AnalysisError(f"a response needs {LEAST} samples at least; this driver gives too few")
+        raise AnalysisError(
+            f"a response needs {LEAST} samples at least; this driver gives too few", "too-few-samples"
+        )
     if not (np.isfinite(request).all() and np.isfinite(response).all()):
-        raise AnalysisError("the driver does not tell where the slide is; there is no response to see")
+        raise AnalysisError(
+            "the driver does not tell where the slide is; there is no response to see", "no-positions"
+        )
 
 
 def _crossing(times: FloatArray, share: FloatArray, level: float) -> float:

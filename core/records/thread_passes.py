@@ -81,18 +81,26 @@ def find_thread(
     ``lead`` mm a turn where it is known; else that of the passes that were alike. Raises AnalysisError.
     """
     if len(turns) < 100:
-        raise AnalysisError("the passes of a thread need 100 samples at least; record while one is cut")
+        raise AnalysisError(
+            "the passes of a thread need 100 samples at least; record while one is cut", "too-few-samples"
+        )
     if not np.isfinite(turns).all():
-        raise AnalysisError("the spindle has no encoder that is counted: its angle is not in the record")
+        raise AnalysisError(
+            "the spindle has no encoder that is counted: its angle is not in the record", "no-encoder"
+        )
     if abs(turns[-1] - turns[0]) < LEAST_TURNS:
-        raise AnalysisError("the spindle does not turn in this time; record while a thread is cut")
+        raise AnalysisError(
+            "the spindle does not turn in this time; record while a thread is cut", "spindle-stopped"
+        )
     runs = _runs(turns, along)
     if lead is not None:
         runs = [each for each in runs if abs(each[2] - lead) <= _EVEN * abs(lead)]
     else:
         runs = _alike(runs)
     if not runs:
-        raise AnalysisError("there is no pass of a thread in this time: nothing goes two turns evenly")
+        raise AnalysisError(
+            "there is no pass of a thread in this time: nothing goes two turns evenly", "no-pass"
+        )
     if lead is None:
         slopes = [np.polyfit(turns[a : b + 1] - turns[a], along[a : b + 1], 1)[0] for a, b, *_ in runs]
         lead = float(np.median(slopes))

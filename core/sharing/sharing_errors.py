@@ -5,6 +5,8 @@ from __future__ import annotations
 import errno
 from enum import Enum
 
+from core.coded_error import CodedError
+
 _FULL = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EFBIG})
 _NO_RIGHT = frozenset({errno.EACCES, errno.EPERM, errno.EROFS})
 _NOT_THERE = frozenset({errno.ENOENT, errno.ENOTDIR})
@@ -45,14 +47,19 @@ class Cause(Enum):
         "or, where that computer is gone: turndesk share publish --claim"
     )
 
+    @property
+    def code(self) -> str:
+        """Return the code of the error: the name in kebab case, such as ``no-right``."""
+        return "disk-full" if self is Cause.FULL else self.name.lower().replace("_", "-")
+
     def error(self, place: str, why: object = "") -> SharingError:
         """The sentence for it, on one line."""
-        made = SharingError(self.value.format(place=place, why=" ".join(str(why).split())))
+        made = SharingError(self.value.format(place=place, why=" ".join(str(why).split())), self.code)
         made.cause = self
         return made
 
 
-class SharingError(Exception):
+class SharingError(CodedError):
     """Sharing cannot do what it was asked; nothing that was there has changed."""
 
     cause: Cause

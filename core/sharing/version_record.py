@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from hashlib import sha256
 
+from core.coded_error import CodedError
 from core.store.program_records import check_name
 from core.store.shared_versions import SharedVersion
 from core.store.store_errors import StoreError
@@ -18,7 +19,7 @@ _TEXTS = ("program", "text", "desk", "saved", "why")
 _HEX = frozenset("0123456789abcdef")
 
 
-class RecordError(Exception):
+class RecordError(CodedError):
     """It is no record of ours: garbage, half written, or damaged."""
 
 
@@ -40,30 +41,33 @@ def written(version: SharedVersion) -> bytes:
 def read_version(name: str, record: bytes) -> SharedVersion:
     """The version whose record is kept under this id. Raises RecordError."""
     if sha256(record).hexdigest() != name:
-        raise RecordError("it is not what was published under its name")
+        raise RecordError("it is not what was published under its name", "not-as-published")
     values = _object(record)
     texts = [values.get(key) for key in _TEXTS]
     size, follows = values.get("size"), values.get("follows")
     if values.get("format") != FORMAT or not isinstance(size, int) or not isinstance(follows, list):
-        raise RecordError("it is no record of this format")
+        raise RecordError("it is no record of this format", "not-this-format")
     if not all(isinstance(each, str) and each.isprintable() for each in texts) or not all(
         map(is_id, follows)
     ):
-        raise RecordError("it is no record of a version")
+        raise RecordError("it is no record of a version", "not-a-version")
     program, text, desk, saved, why = map(str, texts)
     try:
         check_name(program)
     except StoreError as error:
-        raise RecordError(str(error)) from error
+        raise RecordError(str(error), "invalid-name") from error
     if not is_id(text) or not 0 <= size <= MOST_BYTES:
-        raise RecordError("it is no record of a text")
+        raise RecordError("it is no record of a text", "not-a-text")
     return SharedVersion(name, program, text, size, tuple(follows), desk, saved, why)
 
 
 def checked_text(version: SharedVersion, text: bytes) -> bytes:
     """The text, when it is that of the version. Raises RecordError."""
     if sha256(text).hexdigest() != version.text:
-        raise RecordError(f"the text of {version.program} by {version.desk} is not what was published")
+        raise RecordError(
+            f"the text of {version.program} by {version.desk} is not what was published",
+            "text-not-as-published",
+        )
     return text
 
 
@@ -89,9 +93,9 @@ def read_state(home: str, data: bytes) -> DeskState:
     values = _object(data)
     desk, at, has = values.get("desk"), values.get("at"), values.get("has")
     if not is_home(home) or not isinstance(desk, str) or not isinstance(at, str) or not isinstance(has, dict):
-        raise RecordError("it is not what a desk tells of itself")
+        raise RecordError("it is not what a desk tells of itself", "not-a-desk")
     if not desk.isprintable() or not at.isprintable():
-        raise RecordError("it is not what a desk tells of itself")
+        raise RecordError("it is not what a desk tells of itself", "not-a-desk")
     return DeskState(home, desk, at, {name: each for name, each in has.items() if is_id(each)})
 
 
@@ -109,9 +113,9 @@ def _object(data: bytes) -> dict[str, object]:
     try:
         values = json.loads(data)
     except (ValueError, RecursionError) as error:
-        raise RecordError("it is no text of ours") from error
+        raise RecordError("it is no text of ours", "not-ours") from error
     if not isinstance(values, dict):
-        raise RecordError("it is no text of ours")
+        raise RecordError("it is no text of ours", "not-ours")
     return values
 
 

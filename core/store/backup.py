@@ -64,14 +64,18 @@ def backup(folder: Path, target: Path) -> None:
     """
     path = folder / FILE_NAME
     if not has_store(folder):
-        raise StoreError(f"there is no store in {folder} yet, so there is nothing to back up")
+        raise StoreError(f"there is no store in {folder} yet, so there is nothing to back up", "no-store")
     if _is_there(target):
         if target.samefile(path):
-            raise StoreError(f"{target} is the store itself; name another file for the backup")
+            raise StoreError(
+                f"{target} is the store itself; name another file for the backup", "store-itself"
+            )
         database.check_header(target)
     found = problems(path)
     if found:
-        raise StoreError(f"{path}: {found[0]}; a backup of it would be no use. Restore an older backup")
+        raise StoreError(
+            f"{path}: {found[0]}; a backup of it would be no use. Restore an older backup", "damaged"
+        )
     _copy(path, target)
 
 
@@ -82,12 +86,15 @@ def restore(folder: Path, source: Path) -> Path | None:
     """
     found = problems(source)
     if found:
-        raise StoreError(f"{source} cannot be restored: {found[0]}; nothing was changed. Take another backup")
+        raise StoreError(
+            f"{source} cannot be restored: {found[0]}; nothing was changed. Take another backup",
+            "damaged-backup",
+        )
     make_folder(folder)
     path = folder / FILE_NAME
     with closing(WriterLock(folder)):
         if path.exists() and path.samefile(source):
-            raise StoreError(f"{source} is the store itself; name a backup")
+            raise StoreError(f"{source} is the store itself; name a backup", "store-itself")
         kept = _keep(path) if path.exists() else None
         for leftover in database.companions(path):
             leftover.unlink(missing_ok=True)
@@ -127,7 +134,9 @@ def _empty_log(path: Path) -> None:
     with suppress(sqlite3.Error, StoreError), closing(database.connect(path, read_only=False)) as connection:
         busy = connection.execute("PRAGMA wal_checkpoint(TRUNCATE)").fetchone()[0]
     if busy:
-        raise StoreError(f"{path} is being read by another program; close that one, then restore again")
+        raise StoreError(
+            f"{path} is being read by another program; close that one, then restore again", "in-use"
+        )
 
 
 def _copy(source: Path, target: Path) -> None:
@@ -148,4 +157,6 @@ def _copy(source: Path, target: Path) -> None:
 def _unwritable(target: Path, error: Exception) -> StoreError:
     if isinstance(error, OSError | sqlite3.Error) and cause_of(target, error) in {Cause.FULL, Cause.LOCKED}:
         return why(target, error)
-    return StoreError(f"{target} cannot be written ({said(error)}); check the folder, its space and rights")
+    return StoreError(
+        f"{target} cannot be written ({said(error)}); check the folder, its space and rights", "cannot-write"
+    )

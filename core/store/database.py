@@ -52,10 +52,14 @@ def check_header(path: Path) -> None:
         raise why(path, error) from error
     if len(header) < 100 or not header.startswith(_MAGIC):
         raise StoreError(
-            f"{path} is not a database; it is left as it is. Restore a backup: turndesk store restore FILE"
+            f"{path} is not a database; it is left as it is. Restore a backup: turndesk store restore FILE",
+            "not-a-database",
         )
     if int.from_bytes(header[68:72], "big") != APPLICATION_ID:
-        raise StoreError(f"{path} is a database of another program; it is left as it is. Name another file")
+        raise StoreError(
+            f"{path} is a database of another program; it is left as it is. Name another file",
+            "foreign-database",
+        )
 
 
 def connect(path: Path, *, read_only: bool) -> sqlite3.Connection:
@@ -138,7 +142,8 @@ def _checked(path: Path, *, thorough: bool) -> tuple[int, list[str]]:
     if version > newest:
         raise StoreError(
             f"{path} was written by a newer TurnDesk (store version {version}, this one knows {newest}); "
-            "it is left as it is. Use the newer TurnDesk"
+            "it is left as it is. Use the newer TurnDesk",
+            "newer-version",
         )
     damage = [text for text in wrong if not _MENDABLE.search(text)]
     if damage:
@@ -183,9 +188,10 @@ def migrate(connection: sqlite3.Connection, scripts: Sequence[str]) -> None:
         except sqlite3.Error as error:
             if connection.in_transaction:
                 connection.rollback()
+            fault = why(_path_of(connection), error)
             raise StoreError(
-                f"the store cannot be brought to version {number}, and stays at the one before: "
-                f"{why(_path_of(connection), error)}"
+                f"the store cannot be brought to version {number}, and stays at the one before: {fault}",
+                fault.code,
             ) from error
     if len(scripts) >= row_sums.SINCE:
         row_sums.watch(connection)
@@ -255,7 +261,9 @@ class WriterLock:
             os.close(self._file)
             who = f" (process {owner})" if owner else ""
             raise StoreError(
-                f"the store in {folder} is in use by another TurnDesk{who}; close that one, or enter it there"
+                f"the store in {folder} is in use by another TurnDesk{who}; close that one, "
+                "or enter it there",
+                "in-use",
             ) from error
         self._folder = folder.resolve()
         with suppress(OSError):  # a courtesy to whoever finds it taken; a full disk has no room for it
@@ -322,7 +330,9 @@ def open_to_read(folder: Path) -> Opened:
         return Opened(path, empty())
     version = check_file(path, thorough=False)
     if version < len(migrations()):
-        raise StoreError(f"{path} is from an older TurnDesk; bring it up to date: turndesk store upgrade")
+        raise StoreError(
+            f"{path} is from an older TurnDesk; bring it up to date: turndesk store upgrade", "older-version"
+        )
     reader = connect(path, read_only=True)
     try:
         check_log(path, reader)
@@ -364,7 +374,8 @@ def check_log(path: Path, reader: sqlite3.Connection) -> None:
     if lost:
         raise StoreError(
             f"{path}: its log is damaged, and {_changes(lost)} saved last cannot be read; start turndesk "
-            "once, which keeps the log beside and goes on with what was there before, or restore a backup"
+            "once, which keeps the log beside and goes on with what was there before, or restore a backup",
+            "damaged-log",
         )
 
 
@@ -415,7 +426,8 @@ def make_folder(folder: Path) -> None:
         if cause_of(folder, error) is Cause.FULL:
             raise why(folder, error) from error
         raise StoreError(
-            f"the folder {folder} cannot be made ({error.strerror}); set TURNDESK_HOME to a folder of yours"
+            f"the folder {folder} cannot be made ({error.strerror}); set TURNDESK_HOME to a folder of yours",
+            "cannot-make-folder",
         ) from error
 
 
@@ -424,7 +436,8 @@ def _refuse_lost_file(path: Path) -> None:
     if _has_log(path):
         log, _ = companions(path)
         raise StoreError(
-            f"{path} has gone but its log {log.name} is still there; put the file back, or move the log away"
+            f"{path} has gone but its log {log.name} is still there; put the file back, or move the log away",
+            "database-gone",
         )
 
 

@@ -55,7 +55,7 @@ def setting_text(key: str, value: object) -> str:
     try:
         return json.dumps(value, allow_nan=False)
     except (TypeError, ValueError) as error:
-        raise StoreError(f"the setting {key} cannot be stored: {error}") from error
+        raise StoreError(f"the setting {key} cannot be stored: {error}", "unstorable-setting") from error
 
 
 def events_between(

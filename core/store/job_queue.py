@@ -87,7 +87,7 @@ def add(connection: sqlite3.Connection, program: str, wanted: int, note: str = "
     _check(wanted, note)
     count, last = connection.execute("SELECT count(*), coalesce(max(place), 0) FROM jobs").fetchone()
     if count >= MOST_JOBS:
-        raise StoreError(f"there are {MOST_JOBS} jobs already; take those away that are done")
+        raise StoreError(f"there are {MOST_JOBS} jobs already; take those away that are done", "queue-full")
     done = connection.execute(
         "INSERT INTO jobs (place, program, wanted, note, added) VALUES (?, ?, ?, ?, ?)",
         (last + 1, program, wanted, note, utc_now()),
@@ -134,7 +134,9 @@ def begin(connection: sqlite3.Connection, job: int) -> None:
     put_away(connection)
     row = next((row for row in jobs(connection) if row.id == job), None)
     if row is None:
-        raise StoreError("that job is not as it was saved; clear it from the queue and enter it anew")
+        raise StoreError(
+            "that job is not as it was saved; clear it from the queue and enter it anew", "damaged-job"
+        )
     connection.execute("UPDATE jobs SET base = ? WHERE id = ?", (row.counted, job))
 
 
@@ -154,11 +156,11 @@ def count_reset(connection: sqlite3.Connection, program: str) -> None:
 
 def _check(wanted: int, note: str) -> None:
     if not 1 <= wanted <= MOST_PARTS:
-        raise StoreError(f"a job has 1 to {MOST_PARTS} parts, not {wanted}")
+        raise StoreError(f"a job has 1 to {MOST_PARTS} parts, not {wanted}", "part-count")
     if len(note) > NOTE_LONGEST or not note.isprintable():
-        raise StoreError(f"the note of a job has {NOTE_LONGEST} letters at most, on one line")
+        raise StoreError(f"the note of a job has {NOTE_LONGEST} letters at most, on one line", "invalid-note")
 
 
 def _demand(connection: sqlite3.Connection, job: int) -> None:
     if connection.execute("SELECT 1 FROM jobs WHERE id = ?", (job,)).fetchone() is None:
-        raise StoreError("that job is not in the queue any more")
+        raise StoreError("that job is not in the queue any more", "job-gone")

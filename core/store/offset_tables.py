@@ -145,11 +145,12 @@ def change(
     old = rows.get(number)
     _check_edge(kind, number, rows, wanted)
     if old is None and wanted.get("master") and not {"x", "z"} <= wanted.keys():
-        raise StoreError(never_set(number))
+        raise StoreError(never_set(number), "never-set")
     new = changed(kind, number, old, wanted)
     if isinstance(new, ShapeRow) and not new.kind:
         raise StoreError(
-            f"{edge_name(number)} has no shape yet; enter its kind first: {FIELDS[kind]['kind'].range}"
+            f"{edge_name(number)} has no shape yet; enter its kind first: {FIELDS[kind]['kind'].range}",
+            "no-shape",
         )
     if new != old:
         changes: dict[int, tuple[Row | None, Row | None]] = {number: (old, new)}
@@ -164,9 +165,13 @@ def _check_edge(kind: Kind, number: int, rows: Mapping[int, Row], wanted: Mappin
     if kind is not Kind.TOOL or tool_of(number) == number:
         return
     if tool_of(number) not in rows:
-        raise StoreError(f"{edge_name(tool_of(number))} was never set; set its D1 before {edge_name(number)}")
+        raise StoreError(
+            f"{edge_name(tool_of(number))} was never set; set its D1 before {edge_name(number)}", "never-set"
+        )
     if wanted.get("master"):
-        raise StoreError(f"{edge_name(number)} is a further edge; a tool is the master by its D1")
+        raise StoreError(
+            f"{edge_name(number)} is a further edge; a tool is the master by its D1", "not-first-edge"
+        )
 
 
 def _other_masters(rows: Mapping[int, Row], number: int) -> list[tuple[int, ToolRow]]:
@@ -184,11 +189,13 @@ def check_number(kind: Kind, number: int) -> None:
     if number in table.numbers:
         return
     if kind is Kind.ZERO:
-        raise StoreError(f"G{number} does not exist; settable offsets are G54…G59")
+        raise StoreError(f"G{number} does not exist; settable offsets are G54…G59", "unknown-number")
     if kind in {Kind.MILL_TOOL, Kind.PRESET}:
         last = MILL_TOOLS[-1] if kind is Kind.MILL_TOOL else PRESETS[-1]
-        raise StoreError(f"{table.letter}{number} does not exist; they are 1…{last}")
-    raise StoreError(f"{table.letter}{number} does not exist; offsets are {table.letter}1…32")
+        raise StoreError(f"{table.letter}{number} does not exist; they are 1…{last}", "unknown-number")
+    raise StoreError(
+        f"{table.letter}{number} does not exist; offsets are {table.letter}1…32", "unknown-number"
+    )
 
 
 def changed(kind: Kind, number: int, old: Row | None, wanted: Mapping[str, Value]) -> Row:
@@ -201,7 +208,7 @@ def changed(kind: Kind, number: int, old: Row | None, wanted: Mapping[str, Value
             whose = edge_name(number) if table.letter == "T" else f"{table.letter}{number}"
             told = f"{whose} {word} {shown}"
             accepted = field.range if field else ", ".join(fields)
-            raise StoreError(f"{told} is out of range; enter {accepted}")
+            raise StoreError(f"{told} is out of range; enter {accepted}", "out-of-range")
     before = old or table.row()
     return _row(kind, [wanted.get(name, getattr(before, name)) for name in fields])
 
@@ -236,7 +243,9 @@ def remove(connection: sqlite3.Connection, kind: Kind, number: int, reason: Reas
     old = rows.get(number)
     edges = [edge_name(n) for n in rows if kind is Kind.TOOL and n != number and tool_of(n) == number]
     if edges:
-        raise StoreError(f"{edge_name(number)} has further edges; clear {', '.join(edges)} first")
+        raise StoreError(
+            f"{edge_name(number)} has further edges; clear {', '.join(edges)} first", "has-further-edges"
+        )
     if old is not None:
         apply(connection, kind, {number: (old, None)}, reason)
     return old is not None
@@ -329,7 +338,7 @@ def _undo(connection: sqlite3.Connection, reason: Reason, log: _Log, kind: Kind 
     for entry in row_sums.broken(connection, log.name, first):  # of this step, or a later one that it hides
         raise _damaged_entry(entry)
     if not rows:
-        raise StoreError(log.nothing_left)
+        raise StoreError(log.nothing_left, "nothing-to-undo")
     backward = {row.number: (row.new, row.old) for row in rows}
     return apply(connection, rows[0].kind, backward, reason, undoes=step)
 
@@ -420,7 +429,8 @@ def _select(
 def _damaged_entry(entry: object) -> StoreError:
     return StoreError(
         f"entry {entry} of the history of offsets is damaged; the offsets themselves are looked at by their "
-        "own sums. Restore a backup for the history"
+        "own sums. Restore a backup for the history",
+        "damaged-history",
     )
 
 

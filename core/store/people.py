@@ -51,7 +51,7 @@ def check_person(name: str) -> str:
     """The name as it is kept, in capitals. Raises StoreError for what names nobody."""
     name = " ".join(name.split()).upper()
     if not name or len(name) > NAME_LONGEST or not name.isprintable():
-        raise StoreError(f"a name has 1 to {NAME_LONGEST} letters")
+        raise StoreError(f"a name has 1 to {NAME_LONGEST} letters", "invalid-name")
     return name
 
 
@@ -66,7 +66,7 @@ def keep_person(connection: sqlite3.Connection, row: PersonRow) -> None:
 def remove_person(connection: sqlite3.Connection, name: str) -> None:
     """He works here no more. Raises StoreError where nobody of the highest level would stay among others."""
     if not connection.execute("DELETE FROM people WHERE name = ?", (name,)).rowcount:
-        raise StoreError(f"{name} is not among the people")
+        raise StoreError(f"{name} is not among the people", "unknown-person")
     _demand_service(connection)
 
 
@@ -79,4 +79,6 @@ def _demand_service(connection: sqlite3.Connection) -> None:
     """Somebody has to be able to enter the next one."""
     levels = {level for (level,) in connection.execute("SELECT level FROM people")}
     if levels and max(levels) < 3:
-        raise StoreError("one of SERVICE level has to stay, who enters the others; enter one first")
+        raise StoreError(
+            "one of SERVICE level has to stay, who enters the others; enter one first", "last-service-person"
+        )

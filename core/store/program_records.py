@@ -18,7 +18,9 @@ def check_name(name: str) -> None:
     """Raises StoreError for a name that could not be a file's on every disk it may be exported to."""
     clean = name.strip() == name and name not in ("", ".", "..")
     if not clean or not name.isprintable() or _FORBIDDEN & set(name) or len(name.encode()) > _NAME_BYTES:
-        raise StoreError(f"{name!r} cannot name a program; take letters, digits, dot, dash and blank")
+        raise StoreError(
+            f"{name!r} cannot name a program; take letters, digits, dot, dash and blank", "invalid-name"
+        )
 
 
 def save(connection: sqlite3.Connection, name: str, text: bytes, why: str, who: str = "") -> int:
@@ -73,11 +75,16 @@ def load(connection: sqlite3.Connection, name: str, version: int | None) -> byte
     ).fetchone()
     if row is None:
         which = "" if version is None else f" version {version}"
-        raise StoreError(f"the store has no program {name!r}{which}; see the list of programs and versions")
+        raise StoreError(
+            f"the store has no program {name!r}{which}; see the list of programs and versions", "no-program"
+        )
     number, text, digest = row
     if not _is_whole(text, digest):
         shown = _in_line(number)
-        raise StoreError(f"{name!r} version {shown} is not what was saved; load another version or a backup")
+        raise StoreError(
+            f"{name!r} version {shown} is not what was saved; load another version or a backup",
+            "damaged-version",
+        )
     return bytes(text)
 
 

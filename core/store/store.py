@@ -115,7 +115,9 @@ class Store:
                 with _one_moment(self._reader) as connection:
                     yield connection
             except sqlite3.ProgrammingError as error:
-                raise StoreError(f"{self.path} is closed; nothing can be read from it any more") from error
+                raise StoreError(
+                    f"{self.path} is closed; nothing can be read from it any more", "closed"
+                ) from error
             except sqlite3.Error as error:
                 raise why(self.path, error) from error
             except UnicodeDecodeError as error:  # the name of a column
@@ -228,7 +230,7 @@ class Store:
     def write(self, operation: Operation[T]) -> Future[T]:
         """Posts one transaction to the writer. Raises StoreError in a read-only store."""
         if self._writer is None:
-            raise StoreError(f"{self.path} is open for reading only; nothing can be stored")
+            raise StoreError(f"{self.path} is open for reading only; nothing can be stored", "read-only")
         return self._writer.post(operation)
 
     def keep(self, keeping: Keeping) -> Future[None]:
@@ -237,7 +239,7 @@ class Store:
         The future is answered when it is on the disk, and with StoreError when it is held for later.
         """
         if self._writer is None:
-            raise StoreError(f"{self.path} is open for reading only; nothing can be stored")
+            raise StoreError(f"{self.path} is open for reading only; nothing can be stored", "read-only")
         return self._writer.keep(keeping)
 
     def set_offset(

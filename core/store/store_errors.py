@@ -7,8 +7,10 @@ import sqlite3
 from enum import Enum
 from pathlib import Path
 
+from core.coded_error import CodedError
 
-class StoreError(Exception):
+
+class StoreError(CodedError):
     """The store cannot do what it was asked; the sentence says what, where and what to do.
 
     ``passing``: what is in the way may go by itself, as a full disk or another program's lock does.
@@ -36,12 +38,27 @@ class Cause(Enum):
     )
     OTHER = "{path} cannot be used ({error}); it is left as it is"
 
+    @property
+    def code(self) -> str:
+        """Return the code of the error."""
+        return _CODES[self]
+
     def error(self, path: Path, error: object) -> StoreError:
         """The sentence for it."""
-        made = StoreError(self.value.format(path=path, error=" ".join(str(error).split())))
+        made = StoreError(self.value.format(path=path, error=" ".join(str(error).split())), self.code)
         made.passing = self in {Cause.FULL, Cause.LOCKED}
         return made
 
+
+_CODES = {
+    Cause.FULL: "disk-full",
+    Cause.LOCKED: "locked",
+    Cause.FORBIDDEN: "forbidden",
+    Cause.GONE: "not-found",
+    Cause.FAILING: "disk-failing",
+    Cause.DAMAGED: "damaged",
+    Cause.OTHER: "unusable",
+}
 
 _BY_CODE = {
     sqlite3.SQLITE_FULL: Cause.FULL,

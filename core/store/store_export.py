@@ -38,7 +38,7 @@ def export(store: Store, folder: Path) -> int:
     """
     try:
         if folder.exists() and any(folder.iterdir()):
-            raise StoreError(f"{folder} is not empty; name a new folder for the export")
+            raise StoreError(f"{folder} is not empty; name a new folder for the export", "folder-not-empty")
         with unfinished_folder(folder) as scratch:
             unfinished = scratch / folder.name
             count = _write_all(store, unfinished)
@@ -47,7 +47,8 @@ def export(store: Store, folder: Path) -> int:
         if cause_of(folder, error) is Cause.FULL:
             raise why(folder, error) from error
         raise StoreError(
-            f"{folder} cannot be written ({said(error)}); check the folder, its space and rights"
+            f"{folder} cannot be written ({said(error)}); check the folder, its space and rights",
+            "cannot-write",
         ) from error
     return count
 
@@ -73,7 +74,9 @@ def _file_name(name: object) -> str:
     """
     if isinstance(name, str) and name and Path(name).name == name and "\0" not in name:
         return name
-    raise StoreError(f"the store has a program under the name {name!r}, which is none; restore a backup")
+    raise StoreError(
+        f"the store has a program under the name {name!r}, which is none; restore a backup", "invalid-name"
+    )
 
 
 def _offset_lines(store: Store) -> Iterator[str]:
@@ -141,7 +144,7 @@ def _rows(path: Path, kind: Kind) -> dict[int, dict[str, Value]]:
         with path.open(encoding="utf-8", newline="") as file:
             table = list(csv.DictReader(file))
     except (OSError, UnicodeDecodeError, csv.Error) as error:
-        raise StoreError(f"{path} cannot be read ({error}); export it again") from error
+        raise StoreError(f"{path} cannot be read ({error}); export it again", "unreadable-export") from error
     return dict(_numbered(path, line, row, kind) for line, row in enumerate(table, start=2))
 
 
@@ -159,7 +162,7 @@ def _numbered(path: Path, line: int, row: dict[str, str], kind: Kind) -> tuple[i
         text = (
             f"{path} line {line}: {error}; each row has a number and figures, as 'store export' writes them"
         )
-        raise StoreError(text) from error
+        raise StoreError(text, "unreadable-export") from error
 
 
 def _number(field: Field, text: str) -> Value:
@@ -172,5 +175,6 @@ def program_files(folder: Path) -> dict[str, bytes]:
         return {path.name: path.read_bytes() for path in sorted((folder / PROGRAMS).iterdir())}
     except OSError as error:
         raise StoreError(
-            f"{folder} is no exported folder ({said(error)}); name one that 'store export' wrote"
+            f"{folder} is no exported folder ({said(error)}); name one that 'store export' wrote",
+            "not-an-export",
         ) from error

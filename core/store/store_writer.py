@@ -218,7 +218,7 @@ class StoreWriter:
     def _put(self, task: Keeping) -> None:
         with self._closing:
             if self._closed:
-                raise StoreError("the store is closed; nothing can be written any more")
+                raise StoreError("the store is closed; nothing can be written any more", "closed")
             self._queue.put(task)
 
     def close(self) -> None:
@@ -287,7 +287,8 @@ class StoreWriter:
         if not isinstance(error, sqlite3.Error):
             return error
         if isinstance(error, sqlite3.IntegrityError):
-            return StoreError(f"nothing was stored ({error})")  # nothing is wrong with the disk
+            return StoreError(f"nothing was stored ({error})", "constraint")  # nothing is wrong with the disk
         self.trouble = str(why(self._path, error))
-        told = StoreError(f"nothing was stored: {self.trouble}, then enter it again")
-        return StoreError(self.trouble) if cause_of(self._path, error) is Cause.DAMAGED else told
+        cause = cause_of(self._path, error)
+        told = StoreError(f"nothing was stored: {self.trouble}, then enter it again", cause.code)
+        return StoreError(self.trouble, cause.code) if cause is Cause.DAMAGED else told

@@ -98,4 +98,6 @@ def insert_changes(connection: sqlite3.Connection, limit: int) -> tuple[InsertCh
 def _demand_tool(number: int, kind: Kind) -> None:
     numbers = _NUMBERS[kind]
     if number not in numbers:
-        raise StoreError(f"there is no tool T{number}; tools are T{numbers[0]} to T{numbers[-1]}")
+        raise StoreError(
+            f"there is no tool T{number}; tools are T{numbers[0]} to T{numbers[-1]}", "unknown-tool"
+        )

@@ -40,7 +40,7 @@ def touch_off(
     rows = offset_tables.tools(connection)
     old = rows.get(number)
     if old is None and (touch.x is None or touch.z is None):
-        raise StoreError(f"{edge_name(number)} was never set; touch both X and Z")
+        raise StoreError(f"{edge_name(number)} was never set; touch both X and Z", "needs-both-axes")
     geometry = {name: value for name, value in (("x", touch.x), ("z", touch.z)) if value is not None}
     new = _tool(number, old, {**geometry, **{f"wear_{name}": 0.0 for name in geometry}})
     changes: dict[int, tuple[Row | None, Row | None]] = {number: (old, new)}
@@ -71,7 +71,7 @@ def choose_master(connection: sqlite3.Connection, number: int, reason: Reason) -
     """Makes a tool the master, 0: none; no offset changes. Raises StoreError for one never set."""
     rows = offset_tables.tools(connection)
     if number and number not in rows:
-        raise StoreError(offset_tables.never_set(number))
+        raise StoreError(offset_tables.never_set(number), "never-set")
     changes: dict[int, tuple[Row | None, Row | None]] = {
         n: (row, row._replace(master=n == number))
         for n, row in rows.items()

@@ -6,6 +6,7 @@ offsets or machines, so that it can be tried with any numbers.
 
 from __future__ import annotations
 
+from core.coded_error import CodedError
 from core.language.sinumerik.sinumerik_words import Form
 
 TURN = 360.0
@@ -18,11 +19,11 @@ NO_ROTARY = {Form.DC: 16800, Form.ACP: 16810, Form.ACN: 16820}
 """Alarms of the forms that only a modulo rotary axis takes."""
 
 
-class TargetError(Exception):
+class TargetError(CodedError):
     """No such target; ``number`` of the alarm, ``str()`` says why."""
 
     def __init__(self, number: int, text: str) -> None:
-        super().__init__(text)
+        super().__init__(text, str(number))
         self.number = number
 
 
