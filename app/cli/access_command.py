@@ -13,6 +13,7 @@ from app.cli.store_command import opened_store
 from app.cli.who_changes import add_as_option, asked_pin, who_changes
 from app.desk.command_errors import EXIT_OK, CommandError
 from core.access.access_table import RULES, Act, Level
+from core.coded_error import code_of
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
@@ -83,14 +84,18 @@ def _add(store: Store, args: argparse.Namespace) -> str:
 
     level, name = _LEVELS[args.level], check_person(args.name)
     if store.people().named(name) is not None:
-        raise CommandError(f"{name} is entered already; 'turndesk access pin' is for another PIN")
+        raise CommandError(
+            f"{name} is entered already; 'turndesk access pin' is for another PIN", "name-in-use"
+        )
     return _kept(store, args, name, level, "entered")
 
 
 def _pin(store: Store, args: argparse.Namespace) -> str:
     row = store.people().named(args.name)
     if row is None:
-        raise CommandError(f"{args.name} is not among the people; 'turndesk access list' names them")
+        raise CommandError(
+            f"{args.name} is not among the people; 'turndesk access list' names them", "unknown-person"
+        )
     return _kept(store, args, row.name, Level(row.level), "has another PIN")
 
 
@@ -104,9 +109,9 @@ def _kept(store: Store, args: argparse.Namespace, name: str, level: Level, done:
     try:
         check_pin(pin)
     except PinError as error:
-        raise CommandError(str(error)) from error
+        raise CommandError(str(error), code_of(error)) from error
     if asked_pin("the same again: ") != pin:
-        raise CommandError("those were two different PINs; nothing was kept")
+        raise CommandError("those were two different PINs; nothing was kept", "pins-differ")
     row = people.PersonRow(name, level, *hashed(pin))
     store.write(lambda c: people.keep_person(c, row)).result()
     store.log_event("access", f"{name} {done}: {level.name}", who=who).result()
@@ -118,7 +123,9 @@ def _remove(store: Store, args: argparse.Namespace) -> str:
 
     row = store.people().named(args.name)
     if row is None:
-        raise CommandError(f"{args.name} is not among the people; 'turndesk access list' names them")
+        raise CommandError(
+            f"{args.name} is not among the people; 'turndesk access list' names them", "unknown-person"
+        )
     who = who_changes(store, args, Act.PEOPLE)
     store.write(lambda c: people.remove_person(c, row.name)).result()
     store.log_event("access", f"{row.name} taken away", who=who).result()
@@ -131,11 +138,13 @@ def _remove(store: Store, args: argparse.Namespace) -> str:
 def _demand_own_keyboard() -> None:
     """Raises CommandError where nobody sits at a terminal of this machine, and means it."""
     if not sys.stdin.isatty() or os.environ.get("SSH_CONNECTION"):
-        raise CommandError("the service reset is typed at the machine's own keyboard, in a terminal there")
+        raise CommandError(
+            "the service reset is typed at the machine's own keyboard, in a terminal there", "not-a-terminal"
+        )
     sys.stdout.write(f"All people and PINs are taken away, which is logged. Type {_WORD} to do it: ")
     sys.stdout.flush()
     if sys.stdin.readline().strip() != _WORD:
-        raise CommandError("nothing was changed")
+        raise CommandError("nothing was changed", "not-confirmed")
 
 
 def _reset(store: Store, _args: argparse.Namespace) -> str:

@@ -30,7 +30,9 @@ def run(args: argparse.Namespace) -> int:
         known = {entry.number for entry in CATALOGUE.values()}
         missing = [str(number) for number in args.number if number not in known]
         if missing:
-            raise CommandError(f"there is no alarm {', '.join(missing)}; 'turndesk alarms' lists them all")
+            raise CommandError(
+                f"there is no alarm {', '.join(missing)}; 'turndesk alarms' lists them all", "unknown-alarm"
+            )
         chosen = [(code, entry) for code, entry in chosen if entry.number in args.number]
     if args.json:
         sys.stdout.write(json.dumps([_object(*each) for each in chosen], indent=1) + "\n")

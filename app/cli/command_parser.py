@@ -130,19 +130,23 @@ def settled(args: argparse.Namespace) -> argparse.Namespace:
     if args.version and (
         command or args.demo or args.kiosk or any(getattr(args, f"before_{name}") for name in BEFORE)
     ):
-        raise CommandError("--version stands alone")
+        raise CommandError("--version stands alone", "version-alone")
     for name in ("demo", "kiosk"):
         if command and getattr(args, name):
-            raise CommandError(f"--{name} opens the screen; leave it out before {command}")
+            raise CommandError(f"--{name} opens the screen; leave it out before {command}", "screen-option")
     for name in BEFORE:
         before = getattr(args, f"before_{name}")
         if not command:
             setattr(args, name, before)
         elif before is not None:
             if not hasattr(args, name):
-                raise CommandError(_not_there(command, getattr(args, "action", ""), name))
+                raise CommandError(
+                    _not_there(command, getattr(args, "action", ""), name), "option-before-command"
+                )
             if getattr(args, name) is not None:
-                raise CommandError(f"--{name} is given twice, before and behind {command}; keep one")
+                raise CommandError(
+                    f"--{name} is given twice, before and behind {command}; keep one", "option-twice"
+                )
             setattr(args, name, before)
     return args
 

@@ -32,7 +32,7 @@ def _under(variable: str, otherwise: str) -> Path:
     try:
         return Path(named) if named else Path.home() / otherwise
     except RuntimeError as error:
-        raise CommandError(f"this user has no home folder; name a folder in {variable}") from error
+        raise CommandError(f"this user has no home folder; name a folder in {variable}", "no-home") from error
 
 
 def _places() -> tuple[Path, Path, Path]:
@@ -72,7 +72,7 @@ def install(*, autostart: bool) -> list[Path]:
         if autostart:
             start.write_text(_ENTRY.format(command=f"{_command()} --kiosk"), encoding="utf-8")
     except OSError as error:
-        raise CommandError(f"{error.filename} cannot be written: {error.strerror}") from error
+        raise CommandError(f"{error.filename} cannot be written: {error.strerror}", "cannot-write") from error
     return [entry, icon, *([start] if autostart else [])]
 
 
@@ -83,5 +83,5 @@ def remove() -> list[Path]:
         try:
             path.unlink()
         except OSError as error:
-            raise CommandError(f"{path} cannot be removed: {error.strerror}") from error
+            raise CommandError(f"{path} cannot be removed: {error.strerror}", "cannot-remove") from error
     return there

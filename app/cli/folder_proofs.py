@@ -90,7 +90,8 @@ class _Run:
                     self._add(unit.index, self._kept(unit, made))
         except CancelledError as error:
             raise CommandError(
-                f"--scheduler {self._args.scheduler} has gone; what it has proved is kept, start again"
+                f"--scheduler {self._args.scheduler} has gone; what it has proved is kept, start again",
+                "scheduler-gone",
             ) from error
         finally:
             results.close()

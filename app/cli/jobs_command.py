@@ -92,7 +92,9 @@ def _add(store: Store, args: argparse.Namespace) -> str:
     folder = data_folder() / "programs"
     path = ProgramFolders((folder, samples())).find(args.name)
     if path is None or path.parent not in {folder, samples()}:
-        raise CommandError(f"{args.name} is not among the programs of {folder}; put it there first")
+        raise CommandError(
+            f"{args.name} is not among the programs of {folder}; put it there first", "not-a-program"
+        )
     store.write(lambda c: job_queue.add(c, path.name, args.parts, args.note)).result()
     return f"{path.name}, {args.parts} parts, is job {len(store.jobs())}\n"
 
@@ -125,7 +127,9 @@ def _at(store: Store, place: int) -> JobRow:
     jobs = store.jobs()
     if not 1 <= place <= len(jobs):
         known = f"there are {len(jobs)}" if jobs else "the queue is empty"
-        raise CommandError(f"there is no job {place}: {known}; 'turndesk jobs list' numbers them")
+        raise CommandError(
+            f"there is no job {place}: {known}; 'turndesk jobs list' numbers them", "unknown-job"
+        )
     return jobs[place - 1]
 
 

@@ -16,6 +16,7 @@ from app.cli.machine_hal import add_hal_parser, write_hal
 from app.cli.who_changes import COMMAND_LINE, add_as_option, who_changes
 from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, EXIT_USAGE, CommandError
 from core.access.access_table import Act
+from core.coded_error import code_of
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
@@ -159,7 +160,9 @@ def demand_accepted(machine: Machine) -> None:
         lines.append(f"… and {len(told) - MOST} more: turndesk machine check {machine.source}")
     if real_time(machine):
         why = f"{machine.source} has changed since it was accepted ({'; '.join(lines)})"
-        raise CommandError(f"{why}; turndesk machine accept {machine.source}, or F10 on the screen")
+        raise CommandError(
+            f"{why}; turndesk machine accept {machine.source}, or F10 on the screen", "not-accepted"
+        )
     sys.stderr.write("".join(f"{machine.source} has changed: {line}\n" for line in lines))
 
 
@@ -201,7 +204,7 @@ def write_model(file: str) -> int:
     try:
         sys.stdout.write(device_model(machine, datetime.now(UTC)))
     except DriverError as error:
-        raise CommandError(str(error)) from error
+        raise CommandError(str(error), code_of(error)) from error
     if not told_to_agents(machine):
         sys.stderr.write(f"turndesk: {file}: [mtconnect] enabled = false: no agent will find the adapter\n")
     return EXIT_OK
@@ -221,7 +224,7 @@ def play(file: str) -> int:
     if play_it is None:
         there = " and ".join(playable())
         why = f"machine.backend is {machine.backend}: nothing to be a peer of; {there} have one"
-        raise CommandError(f"{file}: {why}")
+        raise CommandError(f"{file}: {why}", "no-peer")
     ended = False
 
     def end(_signal: int, _frame: FrameType | None) -> None:
@@ -233,7 +236,7 @@ def play(file: str) -> int:
     try:
         play_it(machine, lambda: not ended, _say, _typed())
     except DriverError as error:
-        raise CommandError(str(error)) from error
+        raise CommandError(str(error), code_of(error)) from error
     return EXIT_OK
 
 

@@ -81,10 +81,12 @@ def _keep(out: Path, text: str, beside: Mapping[str, str]) -> None:
     files = {out: text, **{out.parent / name: more for name, more in beside.items()}}
     for path in files:
         if path.exists():
-            raise CommandError(f"{path} is there already and is never replaced; take another name or folder")
+            raise CommandError(
+                f"{path} is there already and is never replaced; take another name or folder", "file-exists"
+            )
     for path, content in files.items():
         try:
             with path.open("x", encoding="utf-8") as opened:
                 opened.write(content)
         except OSError as error:
-            raise CommandError(f"{path} cannot be written: {error.strerror}") from error
+            raise CommandError(f"{path} cannot be written: {error.strerror}", "cannot-write") from error

@@ -18,6 +18,7 @@ from app.cli.crash_report import report_crash, report_thread
 from app.desk.command_errors import EXIT_INTERRUPTED, EXIT_OK, EXIT_USAGE, CommandError
 from app.desk.data_folder import DataFolderError, check_data_folder
 from app.desk.standard_input import nothing_taken
+from core.coded_error import CodedError
 
 # Modules with add_parser(subparsers) and run(args) -> exit status; importing one costs next to nothing.
 COMMANDS = (
@@ -85,8 +86,7 @@ def main(argv: Sequence[str] | None = None) -> int:
             dropped_interrupt.look()
             return status
     except (CommandError, DataFolderError) as error:
-        sys.stderr.write(f"turndesk: {error}\n")
-        return EXIT_USAGE
+        return refused(error)
     except ImportError as error:
         if not _library_missing(error):
             raise
@@ -106,6 +106,12 @@ def main(argv: Sequence[str] | None = None) -> int:
         sys.stderr.write(f"turndesk: stdout cannot be written: {error.strerror}\n")
         _write_no_more()
         return EXIT_USAGE
+
+
+def refused(error: CodedError) -> int:
+    """Print why the command cannot continue; return its exit status."""
+    sys.stderr.write(f"turndesk: {error}\n")
+    return EXIT_USAGE
 
 
 def _library_missing(error: ImportError) -> bool:
@@ -158,7 +164,7 @@ def _screen(args: argparse.Namespace) -> int:
     from app.screen.display import trouble
 
     if why := trouble():
-        raise CommandError(f"the screen cannot be opened: {why}. {WITHOUT}")
+        raise CommandError(f"the screen cannot be opened: {why}. {WITHOUT}", "no-screen")
     program = args.program
     if args.demo:
         from app.compose.demo_store import demo_program, open_demo

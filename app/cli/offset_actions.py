@@ -156,17 +156,20 @@ def _check_shape(store: Store, number: int, shape: dict[str, Value], offset: dic
     row = with_fields(store.shapes().get(number, ShapeRow()), shape)
     if not row.kind:
         kinds = FIELDS[Kind.SHAPE]["kind"].range
-        raise CommandError(f"{edge_name(number)} has no shape yet; give its kind too: kind= one of {kinds}")
+        raise CommandError(
+            f"{edge_name(number)} has no shape yet; give its kind too: kind= one of {kinds}", "no-shape"
+        )
     tools = store.tools()
     if offset and number not in tools and not {"x", "z"} <= offset.keys():
         text = (
             f"{edge_name(number)} was never set, and {' and '.join(offset)} would stand beside an offset of 0"
         )
-        raise CommandError(f"{text}; give x and z too, or touch it off first")
+        raise CommandError(f"{text}; give x and z too, or touch it off first", "needs-both-axes")
     tool = with_fields(tools.get(number, ToolRow()), offset)
     if mistakes := row_mistakes(row, tool):
         raise CommandError(
-            f"{edge_name(number)}: " + "; ".join(f"{wrong.field}: {wrong.text}" for wrong in mistakes)
+            f"{edge_name(number)}: " + "; ".join(f"{wrong.field}: {wrong.text}" for wrong in mistakes),
+            "invalid-shape",
         )
 
 
@@ -186,8 +189,8 @@ def _named(text: str) -> tuple[Kind, int]:
     if match and int(match[2]) in (ZERO_CODES if kind is Kind.ZERO else OFFSETS):
         return kind, int(match[2])
     if match and kind is Kind.ZERO:
-        raise CommandError(f"{text} is no settable offset; name G54…G59")
-    raise CommandError(f"{text} is no offset; name {_NAMES}")
+        raise CommandError(f"{text} is no settable offset; name G54…G59", "unknown-zero")
+    raise CommandError(f"{text} is no offset; name {_NAMES}", "unknown-offset")
 
 
 def _values(kind: Kind, entries: list[str]) -> dict[str, Value]:
@@ -198,14 +201,14 @@ def _values(kind: Kind, entries: list[str]) -> dict[str, Value]:
         key = key.strip().lower()
         if not equals:
             such = _SUCH.get(kind, "x=1.25")
-            raise CommandError(f"{entry} sets nothing; write KEY=VALUE, such as {such}")
+            raise CommandError(f"{entry} sets nothing; write KEY=VALUE, such as {such}", "no-value")
         fields = TOOL_KEYS if kind is Kind.TOOL else FIELDS[kind]
         aliases = _ALIASES.get(kind, {})
         field = fields.get(aliases.get(key, key))
         if field is None:
-            raise CommandError(unknown(key, fields))
+            raise CommandError(unknown(key, fields), "unknown-key")
         if field.name in values:
-            raise CommandError(f"{key} is given twice; give it once")
+            raise CommandError(f"{key} is given twice; give it once", "key-twice")
         values[field.name] = _entered(field, text)
     return values
 
@@ -217,7 +220,7 @@ def _entered(field: Field, text: str) -> Value:
     if field.sort in {Sort.METRIC, Sort.ANGLE, Sort.MINUTES}:
         return value  # of a zero offset, or of a mill: the store tells its range
     if mistake := out_of_range(field, value):
-        raise CommandError(f"{field.name} = {shown(_typed(field, value))} {mistake}")
+        raise CommandError(f"{field.name} = {shown(_typed(field, value))} {mistake}", "out-of-range")
     return value
 
 
@@ -225,7 +228,7 @@ def _chosen(field: Field, word: str) -> str:
     """One of the field's choices. Raises CommandError with the nearest."""
     known = (*field.choices, NO_SHAPE) if field.name == "kind" else field.choices
     if word not in known:
-        raise CommandError(f"{field.name}: {unknown(word, known)}")
+        raise CommandError(f"{field.name}: {unknown(word, known)}", "unknown-word")
     return word
 
 
@@ -239,13 +242,13 @@ def _value(field: Field, text: str) -> Value:
     if field.sort is Sort.TEXT:
         return text.strip()
     if field.sort is Sort.FLAG and text.strip().lower() not in _FLAGS:
-        raise CommandError(f"{field.name} = {text} is neither 1 nor 0")
+        raise CommandError(f"{field.name} = {text} is neither 1 nor 0", "not-a-flag")
     if field.sort is Sort.FLAG:
         return _FLAGS[text.strip().lower()]
     try:
         value = value_of(text)
     except EntryError as error:
-        raise CommandError(f"{field.name}: {error}") from error
+        raise CommandError(f"{field.name}: {error}", "not-a-number") from error
     if field.sort is Sort.WHOLE:
         return int(value) if value.is_integer() else value
     return value * MM_PER_INCH if field.sort is Sort.LENGTH else value
@@ -274,7 +277,7 @@ def _clear(args: argparse.Namespace) -> int:
 
 def _history(args: argparse.Namespace) -> int:
     if args.limit < 1:
-        raise CommandError(f"--limit {args.limit} shows nothing; give 1 or more")
+        raise CommandError(f"--limit {args.limit} shows nothing; give 1 or more", "limit")
     with opened_store(read_only=True) as store:
         changes = (
             store.history(Kind(args.table), limit=args.limit)

@@ -12,6 +12,7 @@ from app.cli.figures import MM_PER_INCH
 from app.cli.program_options import STDIN, circumstances, read_source
 from app.desk.command_errors import CommandError
 from app.desk.kept_part import lasting
+from core.coded_error import code_of
 from core.part.stock_forms import FORMS
 
 if TYPE_CHECKING:
@@ -47,7 +48,7 @@ def part_setting(args: argparse.Namespace, around: Circumstances) -> PartSetting
     setting = known_part(around.machine, around.setup.tools, _shapes(args), stick_out)
     if args.stock is None:
         if args.keep_stock:
-            raise CommandError("--keep-stock needs --stock, which says what is to be kept")
+            raise CommandError("--keep-stock needs --stock, which says what is to be kept", "nothing-to-keep")
         return setting
     return replace(setting, stock=_said(args.stock, args, around, setting))
 
@@ -58,7 +59,10 @@ def with_kept_stock(setting: PartSetting, program: str, args: argparse.Namespace
 
     if args.keep_stock:
         if program == STDIN:
-            raise CommandError("--keep-stock keeps it with a program that has a name; - (stdin) has none")
+            raise CommandError(
+                "--keep-stock keeps it with a program that has a name; - (stdin) has none",
+                "stdin-has-no-name",
+            )
         from app.cli.store_command import opened_store
         from app.cli.who_changes import who_changes
         from core.access.access_table import Act
@@ -82,7 +86,9 @@ def with_kept(setting: PartSetting, program: str, kept: KeptPart, args: argparse
         return replace(setting, stock=_said(kept.stock, args, around, setting))
     except CommandError as error:
         way = "say another with --stock and --keep-stock"
-        raise CommandError(f"the stock that is kept with {program} cannot be used: {error}; {way}") from error
+        raise CommandError(
+            f"the stock that is kept with {program} cannot be used: {error}; {way}", "kept-stock"
+        ) from error
 
 
 def _said(
@@ -97,7 +103,7 @@ def _said(
     try:
         return said_stock(text, ProgramBefore(read, around.setup, around.machine, setting))
     except StockError as error:
-        raise CommandError(f"--stock {error}") from error
+        raise CommandError(f"--stock {error}", code_of(error)) from error
 
 
 def _shapes(args: argparse.Namespace) -> Mapping[int, ToolShape]:
@@ -115,7 +121,9 @@ def _stick_out(args: argparse.Namespace, machine: Machine) -> float | None:
         return None
     stick_out = float(args.stick_out) * MM_PER_INCH
     if not machine.clamping.diameter:
-        raise CommandError(f"--stick-out {args.stick_out:g} needs [clamping] diameter in the machine file")
+        raise CommandError(
+            f"--stick-out {args.stick_out:g} needs [clamping] diameter in the machine file", "no-clamping"
+        )
     if not 0.0 < stick_out <= _LONGEST:
-        raise CommandError(f"--stick-out {args.stick_out:g} is not between 0 and 40 in")
+        raise CommandError(f"--stick-out {args.stick_out:g} is not between 0 and 40 in", "stick-out")
     return stick_out

@@ -52,7 +52,9 @@ def _names(store: Store, wanted: str | None) -> list[str]:
     if wanted is None:
         return sorted(known)
     if wanted not in known:
-        raise CommandError(f"nothing is kept of {wanted}; 'turndesk parts' lists what there is")
+        raise CommandError(
+            f"nothing is kept of {wanted}; 'turndesk parts' lists what there is", "unknown-program"
+        )
     return [wanted]
 
 

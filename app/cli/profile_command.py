@@ -13,6 +13,7 @@ from app.cli.store_command import opened_store
 from app.cli.who_changes import add_as_option, note_change, who_may
 from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError
 from core.access.access_table import Act
+from core.coded_error import code_of
 from core.language.source import Dialect, dialect_of
 from core.shapes.cutting_data import MATERIALS
 
@@ -89,7 +90,7 @@ def run(args: argparse.Namespace) -> int:
     try:
         return _run(args)
     except DrawingError as error:
-        raise CommandError(str(error)) from error
+        raise CommandError(str(error), code_of(error)) from error
 
 
 def _run(args: argparse.Namespace) -> int:
@@ -99,24 +100,30 @@ def _run(args: argparse.Namespace) -> int:
     machine = read_machine(args.machine)
     if args.out is not None and not args.list:
         if Path(args.out).exists():
-            raise CommandError(f"{args.out} is there already and is never replaced; take another name")
+            raise CommandError(
+                f"{args.out} is there already and is never replaced; take another name", "file-exists"
+            )
         if not Path(args.out).parent.is_dir():
-            raise CommandError(f"{args.out}: cannot be written: its folder is not there")
+            raise CommandError(f"{args.out}: cannot be written: its folder is not there", "no-folder")
         args.who = who_may(opened_store, args, Act.PROGRAMS)
     if args.side == "bore" and args.hole is None and not args.list:
-        raise CommandError("a bore begins with a hole: say its diameter with --hole")
+        raise CommandError("a bore begins with a hole: say its diameter with --hole", "no-hole")
     args.metric = args.metric or not machine.inch
     args.dialect = _language(args, machine)
     drawing = read_drawing(Path(args.file))
     if args.layer and args.layer not in drawing.layers:
-        raise CommandError(f"{drawing.name} has no layer {args.layer}: say {', '.join(drawing.layers)}")
+        raise CommandError(
+            f"{drawing.name} has no layer {args.layer}: say {', '.join(drawing.layers)}", "no-layer"
+        )
     view = _view(drawing, args)
     found = _contours(drawing, view, args)
     if args.list:
         _list(drawing, view, found, as_json=args.json)
         return EXIT_OK
     if not 1 <= args.contour <= len(found):
-        raise CommandError(f"{drawing.name} has {len(found)} contours: say --contour 1 to {len(found)}")
+        raise CommandError(
+            f"{drawing.name} has {len(found)} contours: say --contour 1 to {len(found)}", "which-contour"
+        )
     return _make(drawing, view, found[args.contour - 1], args, machine)
 
 
@@ -126,7 +133,9 @@ def _language(args: argparse.Namespace, machine: Machine) -> Dialect:
         return Dialect.SINUMERIK if machine.language == Dialect.SINUMERIK else Dialect.OMNITURN
     said = dialect_of(Path(args.out).name)
     if said is Dialect.KLARTEXT:
-        raise CommandError(f"{args.out}: a turned profile is OmniTurn or SINUMERIK; name it .nc or .mpf")
+        raise CommandError(
+            f"{args.out}: a turned profile is OmniTurn or SINUMERIK; name it .nc or .mpf", "wrong-language"
+        )
     return said
 
 
@@ -136,10 +145,10 @@ def _view(drawing: Drawing, args: argparse.Namespace) -> View:
 
     unit = UNITS[args.unit] if args.unit else drawing.unit
     if not unit:
-        raise CommandError(f"{drawing.name} does not say its unit: say --unit mm or --unit inch")
+        raise CommandError(f"{drawing.name} does not say its unit: say --unit mm or --unit inch", "no-unit")
     gap = GAP if args.gap is None else args.gap
     if not 0.0 < gap <= 1.0:
-        raise CommandError(f"--gap {gap:g}: ends are joined up to 1 mm; say .001 to 1")
+        raise CommandError(f"--gap {gap:g}: ends are joined up to 1 mm; say .001 to 1", "gap")
     shift = args.shift * (1.0 if args.metric else 25.4)
     front, zero = Front(args.front.upper()), Zero(args.zero.upper())
     return View(axis_named(drawing, args.axis, args.layer), unit, front, zero, shift, gap)
@@ -151,7 +160,9 @@ def _contours(drawing: Drawing, view: View, args: argparse.Namespace) -> list[Ne
     found = contours(drawing, view, args.layer)
     if not found:
         where = f"on layer {args.layer}" if args.layer else "beside its axis"
-        raise CommandError(f"{drawing.name} has no contour {where}: say another --layer or --axis")
+        raise CommandError(
+            f"{drawing.name} has no contour {where}: say another --layer or --axis", "no-contour"
+        )
     return found
 
 
@@ -199,7 +210,7 @@ def _make(drawing: Drawing, view: View, net: Net, args: argparse.Namespace, mach
     typed = _typed(chosen, args, shapes)
     made = _program(chosen, typed, args, machine, shapes)
     if made.refusals:
-        raise CommandError(f"{drawing.name}: {made.refusals[0].text}")
+        raise CommandError(f"{drawing.name}: {made.refusals[0].text}", "refused-shape")
     text = "\n".join([*made.lines, "M30"]) + "\n"
     bar = float(typed["BAR"]) * mm
     stock = TrialStock(bar, float(typed.get("STOCK", 0.0)) * mm, (args.hole or 0.0) * mm)
@@ -259,7 +270,7 @@ def _write(text: str, args: argparse.Namespace) -> None:
     try:
         write_new(Path(args.out), text.encode("ascii"))
     except FileError as error:
-        raise CommandError(str(error)) from error
+        raise CommandError(str(error), code_of(error)) from error
     note_change(opened_store, args.who, f"program {Path(args.out).name} made of {Path(args.file).name}")
 
 

@@ -32,7 +32,9 @@ def program_files(names: Iterable[str]) -> ProgramFiles:
         there = list(_files(path))
         programs = {each for each in there if _is_program(each)}
         if not programs:
-            raise CommandError(f"{path} holds no programs{_among(len(there))}; name another folder")
+            raise CommandError(
+                f"{path} holds no programs{_among(len(there))}; name another folder", "no-programs"
+            )
         found |= programs
         others += len(there) - len(programs)
     return ProgramFiles(tuple(sorted(found, key=_by_name)), others)
@@ -42,7 +44,9 @@ def _named(names: Iterable[str]) -> Iterator[str]:
     """They, unless one is empty, as a script's variable may be: that would be the folder one stands in."""
     for name in names:
         if not name:
-            raise CommandError("an empty name is no file; say . for the programs of this folder")
+            raise CommandError(
+                "an empty name is no file; say . for the programs of this folder", "empty-name"
+            )
         yield name
 
 
@@ -62,7 +66,9 @@ def _files(folder: Path) -> Iterator[Path]:
 
 
 def _unreadable(error: OSError) -> None:
-    raise CommandError(f"{error.filename} cannot be read ({error.strerror}); check its rights") from error
+    raise CommandError(
+        f"{error.filename} cannot be read ({error.strerror}); check its rights", "unreadable"
+    ) from error
 
 
 def _is_program(path: Path) -> bool:

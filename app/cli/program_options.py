@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from app.desk.command_errors import CommandError
 from app.desk.standard_input import DASH, standard_input
+from core.coded_error import code_of
 from core.language.source import Dialect, dialect_of
 
 if TYPE_CHECKING:
@@ -84,7 +85,9 @@ def read_source(path: Path, args: argparse.Namespace) -> Source:
     dialect = Dialect(args.dialect) if args.dialect else dialect_of(path.name)
     for option, what in (("strict", "they have no tolerated lines"), ("inputs", "they ask no inputs")):
         if getattr(args, option) and dialect is not Dialect.OMNITURN:
-            raise CommandError(f"{path}: --{option} is for OmniTurn programs alone; in {dialect} {what}")
+            raise CommandError(
+                f"{path}: --{option} is for OmniTurn programs alone; in {dialect} {what}", "omniturn-only"
+            )
     try:
         source = (
             source_of(STDIN, standard_input("program"), dialect)
@@ -93,7 +96,7 @@ def read_source(path: Path, args: argparse.Namespace) -> Source:
         )
     except SourceError as error:
         # The screen calls a program by its name; a script that proves many needs the folder too.
-        raise CommandError(str(error).replace(path.name, str(path), 1)) from error
+        raise CommandError(str(error).replace(path.name, str(path), 1), code_of(error)) from error
     from core.language.called_files import with_called_files
 
     return with_called_files(source, [path.parent])

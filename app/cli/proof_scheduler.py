@@ -24,12 +24,15 @@ class Scheduler:
 
     def __init__(self, address: str) -> None:
         if not (found := _ADDRESS.fullmatch(address)) or int(found[2]) > 65535:
-            raise CommandError(f"--scheduler {address} is no HOST:PORT; write it as 192.168.1.20:8786")
+            raise CommandError(
+                f"--scheduler {address} is no HOST:PORT; write it as 192.168.1.20:8786", "scheduler-address"
+            )
         try:
             import distributed
         except ImportError as error:
             raise CommandError(
-                "--scheduler needs dask.distributed, which is not installed; install turndesk[scheduler]"
+                "--scheduler needs dask.distributed, which is not installed; install turndesk[scheduler]",
+                "no-dask",
             ) from error
         logging.getLogger("distributed").setLevel(logging.CRITICAL)  # what it has to say is told by us
         self.killed: type[BaseException] = distributed.scheduler.KilledWorker
@@ -37,7 +40,8 @@ class Scheduler:
             self._client = distributed.Client(address, timeout=_ANSWER)
         except OSError as error:
             raise CommandError(
-                f"--scheduler {address}: nothing answers there; start it, or correct the address"
+                f"--scheduler {address}: nothing answers there; start it, or correct the address",
+                "no-scheduler",
             ) from error
         if not self._client.ncores():
             sys.stderr.write(f"turndesk: {address} has no workers yet; waiting for one\n")

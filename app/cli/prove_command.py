@@ -94,13 +94,22 @@ def _for_workers(args: argparse.Namespace) -> bool:
     given = args.jobs is not None or args.scheduler is not None
     many = given or any(Path(name).is_dir() for name in args.files)
     if "-" in args.files and (many or len(args.files) > 1):
-        raise CommandError("- (stdin) is one program, proved here: name it alone, without folders and --jobs")
+        raise CommandError(
+            "- (stdin) is one program, proved here: name it alone, without folders and --jobs", "stdin-alone"
+        )
     if args.no_cache and not many:
-        raise CommandError("--no-cache is for folders and --jobs; one program is always proved anew")
+        raise CommandError(
+            "--no-cache is for folders and --jobs; one program is always proved anew", "no-cache"
+        )
     if args.keep_stock and many:
-        raise CommandError("--keep-stock is for files, not for folders and --jobs; name each program")
+        raise CommandError(
+            "--keep-stock is for files, not for folders and --jobs; name each program", "keep-stock-of-many"
+        )
     if args.jobs is not None and args.scheduler is not None:
-        raise CommandError("--jobs and --scheduler exclude each other: the scheduler has its own workers")
+        raise CommandError(
+            "--jobs and --scheduler exclude each other: the scheduler has its own workers",
+            "jobs-and-scheduler",
+        )
     return many
 
 

@@ -108,7 +108,7 @@ def report_file(args: argparse.Namespace) -> Iterator[ReportFile | None]:
     """The report of --report, None without one. What is refused is refused before anything is proved."""
     if args.report is None:
         if args.paper is not None:
-            raise CommandError("--paper is for --report FILE.pdf")
+            raise CommandError("--paper is for --report FILE.pdf", "paper-is-for-pdf")
         yield None
         return
     path = _named(args)
@@ -133,11 +133,13 @@ def _named(args: argparse.Namespace) -> Path:
     ending = path.suffix.lower()
     if ending not in _HTML | _PDF:
         way = f"name it {path.stem}.html or {path.stem}.pdf"
-        raise CommandError(f"--report {path}: reports are HTML or PDF files; {way}")
+        raise CommandError(f"--report {path}: reports are HTML or PDF files; {way}", "report-ending")
     if args.paper is not None and ending not in _PDF:
-        raise CommandError(f"--paper is for PDF: a browser that prints {path.name} asks for its paper")
+        raise CommandError(
+            f"--paper is for PDF: a browser that prints {path.name} asks for its paper", "paper-is-for-pdf"
+        )
     if path.is_dir():
-        raise CommandError(f"--report {path} is a folder; name a file")
+        raise CommandError(f"--report {path} is a folder; name a file", "report-is-folder")
     return path
 
 
@@ -151,5 +153,5 @@ def _now() -> str:
 
 def _unwritable(path: Path, error: OSError) -> CommandError:
     return CommandError(
-        f"--report {path} cannot be written ({error.strerror}); check folder, rights and disk"
+        f"--report {path} cannot be written ({error.strerror}); check folder, rights and disk", "cannot-write"
     )

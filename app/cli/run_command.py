@@ -54,7 +54,9 @@ def run(args: argparse.Namespace) -> int:
 
     path = Path(args.file)
     if not args.headless:
-        raise CommandError(f"add --headless, or open the screen with: turndesk --program {path}")
+        raise CommandError(
+            f"add --headless, or open the screen with: turndesk --program {path}", "needs-headless"
+        )
     around = circumstances(args)
     job = make_job(read_source(path, args), around.setup)
     report = _proved(args, around, job)

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from app.desk.command_errors import EXIT_OK, CommandError
+from core.coded_error import code_of
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
@@ -38,7 +39,9 @@ def run(args: argparse.Namespace) -> int:
     from core.records.record_file import open_record, save_csv, write_csv
 
     if args.json and args.csv == _STDOUT:
-        raise CommandError("--json needs --csv OUT: without it the samples themselves go to stdout")
+        raise CommandError(
+            "--json needs --csv OUT: without it the samples themselves go to stdout", "json-needs-file"
+        )
     path = Path(args.file)
     try:
         record = open_record(path)
@@ -48,7 +51,7 @@ def run(args: argparse.Namespace) -> int:
         if args.csv is not None:
             save_csv(record, Path(args.csv))
     except RecordError as error:
-        raise CommandError(str(error)) from error
+        raise CommandError(str(error), code_of(error)) from error
     told = json.dumps(_object(path, record, args.csv)) if args.json else _text(path, record, args.csv)
     sys.stdout.write(told + "\n")
     return EXIT_OK

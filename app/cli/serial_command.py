@@ -11,6 +11,7 @@ from app.cli.store_command import opened_store
 from app.cli.who_changes import add_as_option, note_change, who_may
 from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError
 from core.access.access_table import Act
+from core.coded_error import code_of
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
@@ -113,7 +114,7 @@ def _ports() -> int:
     try:
         found = serial_ports()
     except DriverError as error:
-        raise CommandError(str(error)) from error
+        raise CommandError(str(error), code_of(error)) from error
     sys.stdout.write("".join(f"{device}  {what}".rstrip() + "\n" for device, what in found))
     if not found:
         sys.stderr.write("turndesk: this computer has no serial port; plug the adapter in\n")
@@ -133,11 +134,11 @@ def _settings(args: argparse.Namespace, machine: Machine) -> DncModel:
         said["eol"] = _EOL[args.eol]
     model = replace(model, **said)
     if not model.port:
-        raise CommandError("no port: say --port, or give the machine file a [dnc] table")
+        raise CommandError("no port: say --port, or give the machine file a [dnc] table", "no-port")
     if not 110 <= model.baud <= 1_000_000:
-        raise CommandError(f"--baud {model.baud}: expected 110 to 1000000")
+        raise CommandError(f"--baud {model.baud}: expected 110 to 1000000", "baud")
     if not 0 <= model.leader <= 2000:
-        raise CommandError(f"--leader {model.leader}: expected 0 to 2000")
+        raise CommandError(f"--leader {model.leader}: expected 0 to 2000", "leader")
     return model
 
 
@@ -160,7 +161,7 @@ def _check_readable(path: Path) -> None:
         with path.open("rb") as file:
             file.read(1)
     except OSError as error:
-        raise CommandError(f"{path} cannot be read: {error.strerror}") from error
+        raise CommandError(f"{path} cannot be read: {error.strerror}", "unreadable") from error
 
 
 def _receive(args: argparse.Namespace, machine: Machine, settings: DncModel) -> int:

@@ -75,7 +75,10 @@ def _desktop(args: argparse.Namespace) -> int:
     from app.cli.desktop_entry import install, remove
 
     if args.remove and args.autostart:
-        raise CommandError("--remove takes the menu entry and the autostart away; leave --autostart out")
+        raise CommandError(
+            "--remove takes the menu entry and the autostart away; leave --autostart out",
+            "remove-and-autostart",
+        )
     paths = remove() if args.remove else install(autostart=args.autostart)
     verb = "removed" if args.remove else "written"
     sys.stdout.write("".join(f"{verb}: {path}\n" for path in paths) or "there is no entry to remove\n")

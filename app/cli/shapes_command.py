@@ -13,6 +13,7 @@ from app.cli.store_command import opened_store
 from app.cli.who_changes import add_as_option, note_change, who_may
 from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError
 from core.access.access_table import Act
+from core.coded_error import code_of
 from core.language.source import Dialect, Source, dialect_of
 
 if TYPE_CHECKING:
@@ -68,7 +69,7 @@ def run(args: argparse.Namespace) -> int:
     if args.list:
         return _list(dialect, as_json=args.json)
     if args.file is None:
-        raise CommandError("name the file with the steps; --list says what may stand in it")
+        raise CommandError("name the file with the steps; --list says what may stand in it", "no-file")
     who = _may_write(args)
     made = _written(args, machine, dialect)
     text = "\n".join(made.lines) + "\n"
@@ -83,7 +84,10 @@ def _language(out: str | None, machine: Machine) -> Dialect:
     """By the name of the program, without one that of the machine."""
     said = Dialect(machine.language) if out is None else dialect_of(Path(out).name)
     if said is Dialect.KLARTEXT:
-        raise CommandError(f"{out or machine.source}: shapes are OmniTurn or SINUMERIK; name it .nc or .mpf")
+        raise CommandError(
+            f"{out or machine.source}: shapes are OmniTurn or SINUMERIK; name it .nc or .mpf",
+            "wrong-language",
+        )
     return said
 
 
@@ -91,9 +95,11 @@ def _may_write(args: argparse.Namespace) -> str:
     if args.out is None:
         return ""
     if Path(args.out).exists():
-        raise CommandError(f"{args.out} is there already and is never replaced; take another name")
+        raise CommandError(
+            f"{args.out} is there already and is never replaced; take another name", "file-exists"
+        )
     if not Path(args.out).parent.is_dir():
-        raise CommandError(f"{args.out}: cannot be written: its folder is not there")
+        raise CommandError(f"{args.out}: cannot be written: its folder is not there", "no-folder")
     return who_may(opened_store, args, Act.PROGRAMS)
 
 
@@ -116,7 +122,7 @@ def _written(args: argparse.Namespace, machine: Machine, dialect: Dialect) -> Wr
     try:
         return written(steps, new)
     except StepError as error:
-        raise CommandError(f"{args.file}: {error}") from error
+        raise CommandError(f"{args.file}: {error}", "invalid-step") from error
 
 
 def _steps(path: Path) -> list[Step]:
@@ -127,7 +133,7 @@ def _steps(path: Path) -> list[Step]:
     steps = data.get("step")
     if not isinstance(steps, list) or not steps or not all(isinstance(each, dict) for each in steps):
         raise CommandError(
-            f'{path} has no steps; each is a table [[step]] with a kind, such as kind = "head"'
+            f'{path} has no steps; each is a table [[step]] with a kind, such as kind = "head"', "no-steps"
         )
     return steps
 
@@ -146,7 +152,7 @@ def _write(args: argparse.Namespace, text: str, who: str) -> None:
     try:
         write_new(Path(args.out), text.encode("ascii"))
     except FileError as error:
-        raise CommandError(str(error)) from error
+        raise CommandError(str(error), code_of(error)) from error
     note_change(opened_store, who, f"program {Path(args.out).name} made of {Path(args.file).name}")
 
 

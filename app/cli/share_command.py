@@ -13,6 +13,7 @@ from app.cli.store_command import opened_store
 from app.cli.who_changes import add_as_option, note_change, who_may
 from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError
 from core.access.access_table import Act
+from core.coded_error import code_of
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
@@ -54,7 +55,8 @@ def run(args: argparse.Namespace) -> int:
         sharing = sharing_of(machine, lambda: store)
         if sharing is None:
             raise CommandError(
-                "the machine file has no [sharing]; name a folder, a git remote or a database there"
+                "the machine file has no [sharing]; name a folder, a git remote or a database there",
+                "no-sharing",
             )
         status = answered(sharing.place, lambda: _ACTIONS[args.action](sharing, args))
     if acts:
@@ -79,7 +81,7 @@ def _refusals() -> Iterator[None]:
     try:
         yield
     except (SharingError, TakeError) as error:
-        raise CommandError(str(error)) from error
+        raise CommandError(str(error), code_of(error)) from error
 
 
 # --- the actions -----------------------------------------------------------------------------------------
@@ -104,7 +106,7 @@ def _publish(sharing: Sharing, args: argparse.Namespace) -> int:
         _claim(sharing)
     shared = _looked(sharing)
     if shared.trouble:
-        raise CommandError(shared.trouble)
+        raise CommandError(shared.trouble, "not-shared")
     count = sum(bool(family.here) for family in shared.families.values())
     programs = "the one program" if count == 1 else f"all {count} programs"
     _say(args, f"{sharing.place.name} has {programs} of {sharing.desk}", told(sharing, shared))
@@ -184,21 +186,27 @@ def _chosen(shared: Shared, args: argparse.Namespace) -> SharedVersion:
     family = shared.families.get(key_of(args.name))
     if family is None:
         raise CommandError(
-            f"no desk shares a program {args.name}; {shared.trouble or 'see turndesk share status'}"
+            f"no desk shares a program {args.name}; {shared.trouble or 'see turndesk share status'}",
+            "not-shared-program",
         )
     if args.id:
         found = [each for each in family.versions.values() if each.id.startswith(args.id)]
         if len(found) != 1:
             which = "no version" if not found else f"{len(found)} versions"
             raise CommandError(
-                f"{which} of {args.name} begin with {args.id}; see turndesk share status --json"
+                f"{which} of {args.name} begin with {args.id}; see turndesk share status --json",
+                "no-one-version",
             )
         return found[0]
     if not family.elsewhere:
-        raise CommandError(f"{args.name} is nowhere newer than here; {shared.trouble or 'nothing to take'}")
+        raise CommandError(
+            f"{args.name} is nowhere newer than here; {shared.trouble or 'nothing to take'}", "nothing-newer"
+        )
     if len(family.elsewhere) > 1:
         which = ", ".join(f"{each.id[:8]} of {each.desk}" for each in family.elsewhere)
-        raise CommandError(f"{args.name} has {len(family.elsewhere)} newest versions: {which}; say --id ID")
+        raise CommandError(
+            f"{args.name} has {len(family.elsewhere)} newest versions: {which}; say --id ID", "many-versions"
+        )
     return family.elsewhere[0]
 
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from app.cli.store_command import opened_store
 from app.desk.command_errors import EXIT_OK, CommandError
+from core.coded_error import code_of
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
@@ -46,7 +47,7 @@ def run(args: argparse.Namespace) -> int:
     from app.quality.shift_figures import shift_figures
 
     if args.metric and not args.report:
-        raise CommandError("--metric is for the page; give --report FILE with it")
+        raise CommandError("--metric is for the page; give --report FILE with it", "metric-needs-report")
     with opened_store(read_only=True) as store:
         found = shift_figures(store, _shift(store, args), datetime.now().timestamp())
     if args.report:
@@ -62,16 +63,18 @@ def _shift(store: Store, args: argparse.Namespace) -> Shift:
     from app.quality.shift_times import SETTING, between, hours_of, shift_of
 
     if (args.since is None) != (args.until is None):
-        raise CommandError("--from and --to belong together; give both")
+        raise CommandError("--from and --to belong together; give both", "from-and-to")
     if args.since is not None:
         if args.back:
-            raise CommandError("--back counts shifts, --from and --to name times; take one of them")
+            raise CommandError(
+                "--back counts shifts, --from and --to name times; take one of them", "back-and-times"
+            )
         try:
             return between(args.since, args.until)
         except ValueError as error:
-            raise CommandError(str(error)) from error
+            raise CommandError(str(error), code_of(error)) from error
     if not 0 <= args.back <= 10_000:
-        raise CommandError(f"--back {args.back}: so many shifts ago, 0 to 10000")
+        raise CommandError(f"--back {args.back}: so many shifts ago, 0 to 10000", "back")
     return shift_of(hours_of(store.setting(SETTING)), datetime.now().astimezone(), args.back)
 
 
@@ -83,7 +86,7 @@ def _write(found: ShiftFigures, path: Path, *, metric: bool) -> None:
     try:
         write_out(path, shift_html(found, "", made, metric=metric).encode("utf-8", "backslashreplace"))
     except (FileError, OSError) as error:
-        raise CommandError(str(error)) from error
+        raise CommandError(str(error), code_of(error)) from error
     sys.stdout.write(f"{path} has the report: {found.parts} parts\n")
 
 

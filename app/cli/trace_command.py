@@ -53,7 +53,9 @@ def run(args: argparse.Namespace) -> int:
 
     path = Path(args.file)
     if args.json and args.out is None:
-        raise CommandError("--json needs --out FILE: without it the setpoints themselves go to stdout")
+        raise CommandError(
+            "--json needs --out FILE: without it the setpoints themselves go to stdout", "json-needs-file"
+        )
     around = circumstances(args)
     source = read_source(path, args)
     timeline = Timeline.of(source, around.setup, around.machine)
@@ -110,7 +112,7 @@ def _write_file(timeline: Timeline, table: _Table, args: argparse.Namespace, sou
         if not timeline.errors:
             put_in_place(partial, out)
     except OSError as error:
-        raise CommandError(f"{out}: cannot be written: {error.strerror}") from error
+        raise CommandError(f"{out}: cannot be written: {error.strerror}", "cannot-write") from error
     finally:  # also by Ctrl+C
         with contextlib.suppress(OSError):
             partial.unlink(missing_ok=True)

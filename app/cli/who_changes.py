@@ -47,12 +47,15 @@ def who_changes(store: Store, args: argparse.Namespace, *acts: Act) -> str:
     name, needed = args.as_name or getpass.getuser(), level_for(act)
     row = people.named(name)
     if row is None and (args.as_name or needed > Level.OPERATOR):
-        raise CommandError(f"{_needs(act)}; {name} is not among the people: {_remedy(people, needed)}")
+        raise CommandError(
+            f"{_needs(act)}; {name} is not among the people: {_remedy(people, needed)}", "unknown-person"
+        )
     if row is None:
         return name
     if row.level < needed:
         raise CommandError(
-            f"{_needs(act)}; {row.name} is of {Level(row.level).name}: {_remedy(people, needed)}"
+            f"{_needs(act)}; {row.name} is of {Level(row.level).name}: {_remedy(people, needed)}",
+            "level-too-low",
         )
     _demand_pin(store, row)
     return row.name
@@ -85,7 +88,9 @@ def _demand_pin(store: Store, row: PersonRow) -> None:
         return
     told = f"wrong PIN for {row.name}, {wrong + 1} in a row, on the command line"
     store.log_event("access", told, who=getpass.getuser()).result()
-    raise CommandError(f"that is not the PIN of {row.name}; nothing was changed, and it is in the log")
+    raise CommandError(
+        f"that is not the PIN of {row.name}; nothing was changed, and it is in the log", "wrong-pin"
+    )
 
 
 def asked_pin(question: str) -> str:

@@ -30,7 +30,9 @@ def open_demo(machine_file: str | None) -> Path:
     """
     machine = read_machine(machine_file)
     if not played(machine) or has_inverter(machine):
-        raise CommandError(f"--demo is for simulated machines, and {machine.source} drives a real one")
+        raise CommandError(
+            f"--demo is for simulated machines, and {machine.source} drives a real one", "real-machine"
+        )
     folder = data_folder() / FOLDER
     if not has_store(folder):
         _seed(folder)
@@ -57,4 +59,4 @@ def _seed(folder: Path) -> None:
                     store.set_offset(Kind.MILL_TOOL, number, _WHY, values).result()
             store.set_setting(SCREEN, {"first_job": True}).result()
     except StoreError as error:
-        raise CommandError(f"the demo has no store: {error}") from error
+        raise CommandError(f"the demo has no store: {error}", "no-demo-store") from error

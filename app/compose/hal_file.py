@@ -66,11 +66,13 @@ def hal_file(machine: Machine) -> HalFile:
     hal, board = machine.hardware.table(HalTable), machine.hardware.table(BoardTable)
     if hal is None or machine.backend != "hal":
         raise CommandError(
-            f'{machine.source}: machine.backend is {machine.backend}: only "hal" has a HAL file'
+            f'{machine.source}: machine.backend is {machine.backend}: only "hal" has a HAL file', "not-hal"
         )
     if board is None:
         kinds = ", ".join(f'"{kind}"' for kind in board_table.KINDS)
-        raise CommandError(f"{machine.source}: [board] is missing: kind = {kinds} says what to write for")
+        raise CommandError(
+            f"{machine.source}: [board] is missing: kind = {kinds} says what to write for", "no-board"
+        )
     if machine.hardware.spindle_driver != "hal":  # an inverter on a line of its own
         board = replace(board, spindle=replace(board.spindle, full_speed=0.0, pwm="", channel=-1))
     axes = [

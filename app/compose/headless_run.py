@@ -16,6 +16,7 @@ from app.desk.command_errors import CommandError
 from app.desk.data_folder import RECORDS, data_folder
 from app.desk.run_without_screen import HeadlessRun
 from app.quality.parts_book import tools_of
+from core.coded_error import code_of
 from core.executor.executor import Executor
 from core.executor.interrupted_job import InterruptedJob
 from core.executor.interruption_watch import Note
@@ -99,7 +100,7 @@ def _connected(machine: Machine, paced: bool) -> Iterator[tuple[RealClock | Step
     try:
         connected = connect(machine, clock)
     except DriverError as error:
-        raise CommandError(str(error)) from error
+        raise CommandError(str(error), code_of(error)) from error
     try:
         yield clock, connected
     finally:
@@ -115,7 +116,7 @@ def _remembered(
     Simulated slides cut nothing, and leave nothing interrupted.
     """
     if played(machine) and anew:
-        raise CommandError("--anew: a simulated run remembers no interrupted job")
+        raise CommandError("--anew: a simulated run remembers no interrupted job", "nothing-interrupted")
     if played(machine) and not paced:
         yield None, lambda _what: None
         return
@@ -141,7 +142,8 @@ def _demand_anew(left: InterruptedJob, *, anew: bool) -> None:
         raise CommandError(
             f"a job was interrupted, {left.words}; {edge_name(left.tool)} may stand in the part."
             " Go on there with the screen (SEARCHTO), or clear the tool and give --anew to begin at the first"
-            " line"
+            " line",
+            "job-interrupted",
         )
 
 
@@ -182,10 +184,12 @@ def _palms(machine: Machine, connected: Connected, say: Callable[[str], None]) -
 
 def _set_inputs(connected: Connected, inputs: Mapping[str, bool]) -> None:
     if inputs and connected.set_input is None:
-        raise CommandError("--inputs: this machine is not simulated; its inputs are wires")
+        raise CommandError(
+            "--inputs: this machine is not simulated; its inputs are wires", "inputs-are-wires"
+        )
     try:
         for name, on in inputs.items():
             assert connected.set_input is not None
             connected.set_input(name, on)
     except DriverError as error:
-        raise CommandError(f"--inputs: {error}") from error
+        raise CommandError(f"--inputs: {error}", "unknown-input") from error

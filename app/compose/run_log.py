@@ -46,7 +46,9 @@ class EventLog:
             folder.mkdir(parents=True, exist_ok=True)
             file = path.open("x", encoding="utf-8")
         except OSError as error:
-            raise CommandError(f"{path}: the event log cannot be written: {error.strerror}") from error
+            raise CommandError(
+                f"{path}: the event log cannot be written: {error.strerror}", "cannot-write"
+            ) from error
         forget_oldest(folder, path)
         log = cls(path, file)
         try:

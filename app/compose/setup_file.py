@@ -20,6 +20,7 @@ from app.compose.journal import UNDER_WAY
 from app.compose.machine_setup import read_machine
 from app.desk.command_errors import CommandError
 from app.desk.data_folder import data_folder
+from core.coded_error import code_of
 from core.file_placing import make_folder, put_in_place, write_in_place
 from core.store import backup
 from core.store.store import Store
@@ -57,7 +58,9 @@ def save_setup(target: Path, machine_file: str | None) -> SetupTold:
     """Write the setup of this desk. Raises CommandError; then nothing is left under the name."""
     folder, machine = data_folder(), _machine_members(machine_file)
     if target.is_file() and not zipfile.is_zipfile(target):
-        raise CommandError(f"{target} is there already and is no setup file; take another name")
+        raise CommandError(
+            f"{target} is there already and is no setup file; take another name", "not-replaced"
+        )
     with tempfile.TemporaryDirectory(prefix="turndesk-") as name:
         made, part = Path(name) / "setup", target.with_name(target.name + ".part")
         members = {STORE: _copy_of_store(folder, Path(name))}
@@ -70,7 +73,7 @@ def save_setup(target: Path, machine_file: str | None) -> SetupTold:
         except OSError as error:
             with suppress(OSError):
                 part.unlink(missing_ok=True)
-            raise CommandError(f"{target} cannot be written: {error.strerror}") from error
+            raise CommandError(f"{target} cannot be written: {error.strerror}", "cannot-write") from error
     return _told(list(members))
 
 
@@ -84,7 +87,7 @@ def _copy_of_store(folder: Path, beside: Path) -> Path:
             store.set_setting(UNDER_WAY, None).result()
         backup.backup(home, beside / STORE)
     except StoreError as error:
-        raise CommandError(str(error)) from error
+        raise CommandError(str(error), code_of(error)) from error
     return beside / STORE
 
 
@@ -101,7 +104,9 @@ def _machine_members(named: str | None) -> dict[str, Path]:
     path = Path(named)
     read_machine(str(path))
     if not path.is_file():
-        raise CommandError(f"{named} is shipped with every TurnDesk; leave --machine out, or name a file")
+        raise CommandError(
+            f"{named} is shipped with every TurnDesk; leave --machine out, or name a file", "shipped-machine"
+        )
     beside = [path.with_suffix(ending) for ending in _BESIDE]
     return {f"{MACHINE}/{each.name}": each for each in (path, *beside) if each.is_file()}
 
@@ -118,8 +123,10 @@ def _write(made: Path, members: dict[str, Path]) -> None:
                 file.write(path, name)
     except OSError as error:
         if error.errno in _NO_ROOM:
-            raise CommandError(f"{made.parent.parent} has no room for a setup; make room there") from error
-        raise CommandError(f"{error.filename} cannot be read: {error.strerror}") from error
+            raise CommandError(
+                f"{made.parent.parent} has no room for a setup; make room there", "disk-full"
+            ) from error
+        raise CommandError(f"{error.filename} cannot be read: {error.strerror}", "unreadable") from error
 
 
 def _told(names: list[str], placed: Path | None = None) -> SetupTold:
@@ -153,10 +160,10 @@ def load_setup(source: Path) -> tuple[SetupTold, Path | None]:
             kept = backup.restore(folder, Path(name) / STORE)
             beside.take_places()
         except StoreError as error:
-            raise CommandError(str(error)) from error
+            raise CommandError(str(error), code_of(error)) from error
         except OSError as error:
             where = error.filename or folder  # a full disk does not say which file it was
-            raise CommandError(f"{where} cannot be written: {error.strerror}") from error
+            raise CommandError(f"{where} cannot be written: {error.strerror}", "cannot-write") from error
     return _told(names, beside.machine), kept
 
 
@@ -213,16 +220,18 @@ def _unpacked(source: Path, folder: Path) -> list[str]:
             names = _checked(source, file, folder)
     except OSError as error:
         if error.errno in _NO_ROOM:
-            raise CommandError(f"{folder.parent} has no room to unpack {source}; make room there") from error
-        raise CommandError(f"{source} cannot be read: {error.strerror or error}") from error
+            raise CommandError(
+                f"{folder.parent} has no room to unpack {source}; make room there", "disk-full"
+            ) from error
+        raise CommandError(f"{source} cannot be read: {error.strerror or error}", "unreadable") from error
     except _NOT_WHOLE as error:
-        raise CommandError(f"{source} is no setup file that can be read: {error}") from error
+        raise CommandError(f"{source} is no setup file that can be read: {error}", "damaged-setup") from error
     try:
         found = backup.problems(folder / STORE)
     except StoreError as error:
-        raise CommandError(f"{source}: {error}") from error
+        raise CommandError(f"{source}: {error}", code_of(error)) from error
     if found:
-        raise CommandError(f"{source}: {found[0]}; make it anew with 'turndesk setup save'")
+        raise CommandError(f"{source}: {found[0]}; make it anew with 'turndesk setup save'", "damaged-store")
     for name in names:
         if _is_machine_file(PurePosixPath(name).parent.name, PurePosixPath(name)):
             read_machine(str(folder / name))
@@ -233,10 +242,14 @@ def _hashes(source: Path, told: object) -> dict[str, str]:
     """Of every member, by the manifest. Raises CommandError where it is none of this kind."""
     form = told.get("format") if isinstance(told, dict) else None
     if isinstance(form, str) and form.startswith(_KIND) and form != FORMAT:
-        raise CommandError(f"{source} was saved by another TurnDesk ({form}, here {FORMAT}); use that one")
+        raise CommandError(
+            f"{source} was saved by another TurnDesk ({form}, here {FORMAT}); use that one", "other-version"
+        )
     hashes = told.get("sha256") if isinstance(told, dict) else None
     if form != FORMAT or not isinstance(hashes, dict) or STORE not in hashes:
-        raise CommandError(f"{source} is no setup of this kind ({FORMAT}); make it anew with 'setup save'")
+        raise CommandError(
+            f"{source} is no setup of this kind ({FORMAT}); make it anew with 'setup save'", "not-a-setup"
+        )
     return {str(name): str(value) for name, value in hashes.items()}
 
 
@@ -246,12 +259,16 @@ def _checked(source: Path, file: zipfile.ZipFile, folder: Path) -> list[str]:
         at = PurePosixPath(name)
         top = at.parts[0] if len(at.parts) > 1 else ""
         if name != STORE and (top not in {PROGRAMS, MACHINE} or ".." in at.parts or "\\" in name):
-            raise CommandError(f"{source} holds {name}, which has no place in a setup")
+            raise CommandError(f"{source} holds {name}, which has no place in a setup", "foreign-member")
         if file.getinfo(name).file_size > MOST:
-            raise CommandError(f"{source} holds {name}, which is larger than a setup can be")
+            raise CommandError(
+                f"{source} holds {name}, which is larger than a setup can be", "member-too-large"
+            )
         data = file.read(name)
         if hashlib.sha256(data).hexdigest() != expected:
-            raise CommandError(f"{source}: {name} is not what was saved; copy the file again")
+            raise CommandError(
+                f"{source}: {name} is not what was saved; copy the file again", "damaged-member"
+            )
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
         (folder / name).write_bytes(data)
     return list(hashes)

@@ -129,7 +129,7 @@ def home_of(folder: Path) -> str:
             return text
         return claim(folder, secrets.token_hex(16))
     except (OSError, UnicodeDecodeError) as error:
-        raise CommandError(f"{path} cannot be used: {error}") from error
+        raise CommandError(f"{path} cannot be used: {error}", "unusable") from error
 
 
 def claim(folder: Path, home: str) -> str:

@@ -5,12 +5,14 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
+from core.coded_error import CodedError
+
 HOME = "TURNDESK_HOME"
 BACKUPS = "backups"  # the folder of backups, within it
 RECORDS = "records"  # the folder of what the scope has recorded, within it
 
 
-class DataFolderError(Exception):
+class DataFolderError(CodedError):
     """TURNDESK_HOME names no folder, or has to; ``str()`` is the sentence for whoever can set it."""
 
 
@@ -27,7 +29,8 @@ def check_data_folder() -> None:
     if there.exists() and not there.is_dir():
         what = "is" if there == folder else f"lies below {there}, which is"
         raise DataFolderError(
-            f"TURNDESK_HOME: {folder} {what} a file and no folder; name a folder, or unset it"
+            f"TURNDESK_HOME: {folder} {what} a file and no folder; name a folder, or unset it",
+            "not-a-folder",
         )
 
 
@@ -44,4 +47,6 @@ def data_folder() -> Path:
 
         return user_data_path("turndesk", appauthor=False)
     except RuntimeError as error:
-        raise DataFolderError("this user has no home folder; name a folder in TURNDESK_HOME") from error
+        raise DataFolderError(
+            "this user has no home folder; name a folder in TURNDESK_HOME", "no-home"
+        ) from error

@@ -25,11 +25,13 @@ def read_toml(path: Path) -> dict[str, object]:
         text = _bytes_of(path).decode("utf-8").replace("\r\n", "\n")
         return tomllib.loads(_POINT_FIRST.sub(_with_nought, text))
     except OSError as error:
-        raise CommandError(f"{path} cannot be read ({error.strerror}); check name and rights") from error
+        raise CommandError(
+            f"{path} cannot be read ({error.strerror}); check name and rights", "unreadable"
+        ) from error
     except UnicodeDecodeError as error:
-        raise CommandError(f"{path} is not UTF-8 text; save it as such") from error
+        raise CommandError(f"{path} is not UTF-8 text; save it as such", "not-utf8") from error
     except tomllib.TOMLDecodeError as error:
-        raise CommandError(f"{path} is no TOML: {error}") from error
+        raise CommandError(f"{path} is no TOML: {error}", "not-toml") from error
 
 
 def _with_nought(found: re.Match[str]) -> str:
@@ -44,7 +46,9 @@ def _bytes_of(path: Path) -> bytes:
         with path.open("rb") as file:
             data = file.read(_MOST_BYTES + 1)
     if len(data) > _MOST_BYTES:
-        raise CommandError(f"{path} is over 16 MB, so it is no file of this kind; look at its name")
+        raise CommandError(
+            f"{path} is over 16 MB, so it is no file of this kind; look at its name", "too-large"
+        )
     return data
 
 
@@ -58,4 +62,4 @@ def unknown(key: str, known: Iterable[str]) -> str:
 def refuse(path: Path, mistakes: list[str]) -> None:
     """Raises CommandError when there are mistakes."""
     if mistakes:
-        raise CommandError(f"{path}: " + "; ".join(mistakes))
+        raise CommandError(f"{path}: " + "; ".join(mistakes), "mistakes")

@@ -188,10 +188,10 @@ def migrate(connection: sqlite3.Connection, scripts: Sequence[str]) -> None:
         except sqlite3.Error as error:
             if connection.in_transaction:
                 connection.rollback()
-            fault = why(_path_of(connection), error)
             raise StoreError(
-                f"the store cannot be brought to version {number}, and stays at the one before: {fault}",
-                fault.code,
+                f"the store cannot be brought to version {number}, and stays at the one before: "
+                f"{why(_path_of(connection), error)}",
+                "migration-failed",
             ) from error
     if len(scripts) >= row_sums.SINCE:
         row_sums.watch(connection)
