@@ -8,6 +8,9 @@ from typing import Any
 
 import pytest
 
+from app.cli import main as command
+from core.coded_error import CodedError
+
 
 @contextmanager
 def raises_code(kind: type[Exception], code: str, *values: object) -> Iterator[pytest.ExceptionInfo[Any]]:
@@ -18,3 +21,16 @@ def raises_code(kind: type[Exception], code: str, *values: object) -> Iterator[p
     assert error.code == code, f"{error.code}: {error}"
     for value in values:
         assert str(value) in str(error)
+
+
+def recorded_refusals(monkeypatch: pytest.MonkeyPatch) -> list[CodedError]:
+    """Return a list that receives every error that ends a command of this process from now on."""
+    refusals = list[CodedError]()
+    refused = command.refused
+
+    def record(error: CodedError) -> int:
+        refusals.append(error)
+        return refused(error)
+
+    monkeypatch.setattr(command, "refused", record)
+    return refusals

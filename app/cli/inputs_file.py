@@ -9,7 +9,8 @@ from __future__ import annotations
 from collections.abc import Collection
 from pathlib import Path
 
-from app.desk.toml_file import read_toml, refuse, unknown
+from app.desk.toml_file import read_toml, refuse, unknown_key
+from core.coded_error import CodedError
 
 
 def read_inputs(path: Path, known: Collection[str] = ()) -> dict[str, bool]:
@@ -18,17 +19,17 @@ def read_inputs(path: Path, known: Collection[str] = ()) -> dict[str, bool]:
     Raises CommandError naming every mistake.
     """
     data = read_toml(path)
-    mistakes = [unknown(key, ("inputs",)) for key in data if key != "inputs"]
+    mistakes = [unknown_key(key, ("inputs",)) for key in data if key != "inputs"]
     table = data.get("inputs")
     if not isinstance(table, dict):
-        refuse(path, [*mistakes, "the table [inputs] is missing"])
+        refuse(path, [*mistakes, CodedError("the table [inputs] is missing", "no-table")])
         return {}
     mistakes += [
-        f"inputs.{name} must be true (closed) or false (open)"
+        CodedError(f"inputs.{name} must be true (closed) or false (open)", "wrong-type")
         for name, state in table.items()
         if not isinstance(state, bool)
     ]
-    mistakes += [f"[inputs] {unknown(name, known)}" for name in table if known and name not in known]
+    mistakes += [unknown_key(name, known, "inputs") for name in table if known and name not in known]
     refuse(path, mistakes)
     also = "7" in table and (not known or "TB2-9" in known)
     return {"TB2-9": table["7"], **table} if also else dict(table)

@@ -126,10 +126,10 @@ def _written(args: argparse.Namespace, machine: Machine, dialect: Dialect) -> Wr
 
 
 def _steps(path: Path) -> list[Step]:
-    from app.desk.toml_file import read_toml, refuse, unknown
+    from app.desk.toml_file import read_toml, refuse, unknown_key
 
     data = read_toml(path)
-    refuse(path, [unknown(key, ["step"]) for key in data if key != "step"])
+    refuse(path, [unknown_key(key, ["step"]) for key in data if key != "step"])
     steps = data.get("step")
     if not isinstance(steps, list) or not steps or not all(isinstance(each, dict) for each in steps):
         raise CommandError(

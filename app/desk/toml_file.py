@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from app.desk.command_errors import CommandError
 from app.desk.standard_input import DASH, standard_input
+from core.coded_error import CodedError
 from core.nearest import nearest
 
 _MOST_BYTES = 16 * 1024 * 1024
@@ -59,7 +60,13 @@ def unknown(key: str, known: Iterable[str]) -> str:
     return f"{key} is unknown; " + (f"did you mean {near}?" if near else f"known here: {', '.join(names)}")
 
 
-def refuse(path: Path, mistakes: list[str]) -> None:
-    """Raises CommandError when there are mistakes."""
+def unknown_key(key: str, known: Iterable[str], table: str = "") -> CodedError:
+    """Return the mistake of a key that nothing reads, with the table that holds it."""
+    return CodedError(f"[{table}] {unknown(key, known)}" if table else unknown(key, known), "unknown-key")
+
+
+def refuse(path: Path, mistakes: Sequence[CodedError]) -> None:
+    """Raise CommandError with the texts and the codes of all mistakes, in their order, if there are any."""
     if mistakes:
-        raise CommandError(f"{path}: " + "; ".join(mistakes), "mistakes")
+        text = "; ".join(str(each) for each in mistakes)
+        raise CommandError(f"{path}: {text}", " ".join(each.code for each in mistakes))

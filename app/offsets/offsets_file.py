@@ -11,7 +11,8 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from app.desk.toml_file import read_toml, refuse, unknown
+from app.desk.toml_file import read_toml, refuse, unknown, unknown_key
+from core.coded_error import CodedError
 from core.store.offset_fields import MM_PER_INCH, Field, Sort
 from core.store.store_rows import (
     FIELDS,
@@ -63,12 +64,17 @@ def read_rows(path: Path) -> tuple[dict[int, ToolRow], dict[int, SecondaryRow], 
     }
     masters = [f"tool.{n}" for n, row in tools.items() if row.master]
     mistakes += [
-        f"[tool.{tool_of(n)}.d{edge_of(n)}] is an edge of T{tool_of(n)}, which has no X and Z of its own"
+        CodedError(
+            f"[tool.{tool_of(n)}.d{edge_of(n)}] is an edge of T{tool_of(n)}, which has no X and Z of its own",
+            "edge-without-tool",
+        )
         for n in tools
         if tool_of(n) not in tools
     ]
     if len(masters) > 1:
-        mistakes.append(f"{' and '.join(masters)} are both master; one tool at most is")
+        mistakes.append(
+            CodedError(f"{' and '.join(masters)} are both master; one tool at most is", "two-masters")
+        )
     refuse(path, mistakes)
     zero = {code: with_fields(ZeroRow(), values) for code, values in _table(data, Kind.ZERO, mistakes)}
     refuse(path, mistakes)
@@ -101,8 +107,8 @@ def read_tool_shapes(path: Path) -> dict[int, ToolShape]:
     return tool_shapes(found.shapes, found.rows)
 
 
-def _unknown_tables(data: dict[str, object]) -> list[str]:
-    return [unknown(key, _KINDS) for key in data if key not in {*_KINDS, Kind.ZERO}]
+def _unknown_tables(data: dict[str, object]) -> list[CodedError]:
+    return [unknown_key(key, _KINDS) for key in data if key not in {*_KINDS, Kind.ZERO}]
 
 
 class _Tools(NamedTuple):
@@ -113,7 +119,7 @@ class _Tools(NamedTuple):
     shapes: dict[int, ShapeRow]
 
 
-def _tools(data: dict[str, object], mistakes: list[str]) -> _Tools:
+def _tools(data: dict[str, object], mistakes: list[CodedError]) -> _Tools:
     found = _Tools({}, {}, {})
     for number, values in _table(data, Kind.TOOL, mistakes):
         shape = {name: value for name, value in values.items() if name in FIELDS[Kind.SHAPE]}
@@ -127,28 +133,32 @@ def _tools(data: dict[str, object], mistakes: list[str]) -> _Tools:
     return found
 
 
-def _shape_mistakes(number: int, row: ShapeRow, tool: ToolRow) -> Iterator[str]:
+def _shape_mistakes(number: int, row: ShapeRow, tool: ToolRow) -> Iterator[CodedError]:
     from app.desk.stored_shapes import row_mistakes
 
     if not row.kind:
         kinds = FIELDS[Kind.SHAPE]["kind"].range
-        yield f"[tool.{number}] has no kind, and a shape is nothing without; it is one of {kinds}"
+        text = f"[tool.{number}] has no kind, and a shape is nothing without; it is one of {kinds}"
+        yield CodedError(text, "no-kind")
         return
-    yield from (f"tool.{number}.{wrong.field}: {wrong.text}" for wrong in row_mistakes(row, tool))
+    for wrong in row_mistakes(row, tool):
+        yield CodedError(f"tool.{number}.{wrong.field}: {wrong.text}", "invalid-shape")
 
 
 def _table(
-    data: dict[str, object], kind: Kind, mistakes: list[str]
+    data: dict[str, object], kind: Kind, mistakes: list[CodedError]
 ) -> Iterator[tuple[int, dict[str, Value]]]:
     table, (numbers, those) = data.get(kind.value, {}), _NUMBERS[kind]
     if not isinstance(table, dict):
-        mistakes.append(f"{kind} must hold tables such as [{kind}.{next(iter(numbers))}]")
+        mistakes.append(
+            CodedError(f"{kind} must hold tables such as [{kind}.{next(iter(numbers))}]", "not-tables")
+        )
         return
     for name, entry in table.items():
         if name not in numbers:
-            mistakes.append(f"[{kind}.{name}] does not exist; {those}")
+            mistakes.append(CodedError(f"[{kind}.{name}] does not exist; {those}", "unknown-number"))
         elif not isinstance(entry, dict):
-            mistakes.append(f"{kind}.{name} must be a table, [{kind}.{name}]")
+            mistakes.append(CodedError(f"{kind}.{name} must be a table, [{kind}.{name}]", "not-a-table"))
         else:
             edges = _edges(entry) if kind is Kind.TOOL else {}
             own = {key: value for key, value in entry.items() if key not in edges}
@@ -156,7 +166,9 @@ def _table(
                 yield numbers[name], _values(own, kind, name, mistakes)
             for key, values in edges.items():
                 if not isinstance(values, dict):
-                    mistakes.append(f"tool.{name}.{key} must be a table, [tool.{name}.{key}]")
+                    mistakes.append(
+                        CodedError(f"tool.{name}.{key} must be a table, [tool.{name}.{key}]", "not-a-table")
+                    )
                     continue
                 yield edge_key(numbers[name], int(key[1])), _values(values, kind, f"{name}.{key}", mistakes)
 
@@ -166,31 +178,37 @@ def _edges(entry: dict[str, object]) -> dict[str, object]:
     return {key: value for key, value in entry.items() if key in _EDGE_KEYS}
 
 
-def _values(entry: dict[str, object], kind: Kind, name: str, mistakes: list[str]) -> dict[str, Value]:
+def _values(entry: dict[str, object], kind: Kind, name: str, mistakes: list[CodedError]) -> dict[str, Value]:
     known = TOOL_KEYS if kind is Kind.TOOL else FIELDS[kind]
     values: dict[str, Value] = {}
     for key, value in entry.items():
         where = f"{kind}.{name}.{key}"
         field = known.get(ALIASES.get(key, key) if kind is Kind.TOOL else key)
         if field is None:
-            mistakes.append(f"[{kind}.{name}] {unknown(key, known)}")
+            mistakes.append(unknown_key(key, known, f"{kind}.{name}"))
         elif field.name in values:
-            mistakes.append(f"{where} is given under two names, {' and '.join(*ALIASES.items())}; give one")
-        elif mistake := _mistake(field, value):
-            mistakes.append(f"{where} {mistake}")
+            mistakes.append(
+                CodedError(
+                    f"{where} is given under two names, {' and '.join(*ALIASES.items())}; give one",
+                    "key-twice",
+                )
+            )
+        elif mistake := _mistake(where, field, value):
+            mistakes.append(mistake)
         else:
             values[field.name] = _kept(field, value)
     return values
 
 
-def _mistake(field: Field, value: object) -> str:
-    """What is wrong with a value of the file, or nothing."""
+def _mistake(where: str, field: Field, value: object) -> CodedError | None:
+    """Return the mistake of a value of the file, or None if the value is accepted."""
     if not _fits(field, value):
-        return f"must be {_EXPECTED[field.sort]}"
+        return CodedError(f"{where} must be {_EXPECTED[field.sort]}", "wrong-type")
     if field.choices and isinstance(value, str) and value not in field.choices:
-        return "= " + unknown(value or '""', field.choices)
+        word = unknown(value or '""', field.choices)
+        return CodedError(f"{where} = {word}", "unknown-word")
     mistake = out_of_range(field, _kept(field, value))
-    return mistake and f"= {shown(value)} {mistake}"
+    return CodedError(f"{where} = {shown(value)} {mistake}", "out-of-range") if mistake else None
 
 
 def _fits(field: Field, value: object) -> bool:

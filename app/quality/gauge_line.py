@@ -8,13 +8,21 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from app.desk.translation import tr
+from core.coded_error import CodedError
 
 LONGEST = 60  # characters of a line; more without an end is no gauge
 _DIGIMATIC = re.compile(r"\d{2}A([+-]\d{1,8}(?:\.\d{1,8})?)")
 _PLAIN = re.compile(r"([+-]?(?:\d{1,6}(?:[.,]\d{0,7})?|[.,]\d{1,7}))\s*(mm|in|inch|\"|)", re.IGNORECASE)
 _UNITS = {"mm": "mm", "in": "in", "inch": "in", '"': "in", "": ""}
 # What an interface of Mitutoyo answers instead of a value.
-_ERRORS = {"911": "no gauge is plugged in, or it is off", "912": "the gauge has sent something unreadable"}
+_ERRORS = {
+    "911": ("no gauge is plugged in, or it is off", "no-gauge"),
+    "912": ("the gauge has sent something unreadable", "unreadable"),
+}
+
+
+class GaugeError(CodedError, ValueError):
+    """A line of a gauge that is not a reading."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,16 +34,16 @@ class Reading:
 
 
 def reading_of(line: str) -> Reading:
-    """The value of one line. Raises ValueError with a sentence for anything else."""
+    """The value of one line. Raises GaugeError for anything else."""
     text = line.strip()
     if text in _ERRORS:
-        raise ValueError(_ERRORS[text])
+        raise GaugeError(*_ERRORS[text])
     digimatic = _DIGIMATIC.fullmatch(text)
     if digimatic:
         return Reading(float(digimatic.group(1)))
     plain = _PLAIN.fullmatch(text)
     if plain is None:
-        raise ValueError(f"it has sent {text[:24]!r}, which is no reading")
+        raise GaugeError(f"it has sent {text[:24]!r}, which is no reading", "not-a-reading")
     return Reading(float(plain.group(1).replace(",", ".")), _UNITS[plain.group(2).lower()])
 
 

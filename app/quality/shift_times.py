@@ -5,6 +5,7 @@ from __future__ import annotations
 from datetime import UTC, datetime, timedelta
 from typing import NamedTuple
 
+from core.coded_error import CodedError
 from core.store.store_rows import utc
 
 USUAL = (6, 14)
@@ -32,6 +33,10 @@ class Shift(NamedTuple):
         return ((last or timedelta()) - (first or timedelta())).total_seconds()
 
 
+class ShiftTimesError(CodedError, ValueError):
+    """Times, as typed, that are not the times of a report."""
+
+
 def hours_of(kept: object) -> tuple[int, int]:
     """The hours of a shift as they are kept; else the usual ones."""
     match kept:
@@ -56,20 +61,26 @@ def shift_of(hours: tuple[int, int], now: datetime, back: int = 0) -> Shift:
 
 
 def moment_of(text: str) -> float:
-    """A moment as it is typed, by the wall clock: ``2026-11-23 06:00`` or a day. Raises ValueError."""
+    """A moment as it is typed, by the wall clock: ``2026-11-23 06:00`` or a day. Raises ShiftTimesError."""
     for form in _FORMS:
         try:
             return datetime.strptime(text.strip(), form).timestamp()
         except ValueError:
             continue
-    raise ValueError(f"{text!r} is no time; write it as 2026-11-23 06:00, by the clock on the wall")
+    raise ShiftTimesError(
+        f"{text!r} is no time; write it as 2026-11-23 06:00, by the clock on the wall", "not-a-time"
+    )
 
 
 def between(start: str, end: str) -> Shift:
-    """From one typed moment to another. Raises ValueError with a sentence."""
+    """From one typed moment to another. Raises ShiftTimesError."""
     shift = Shift(moment_of(start), moment_of(end))
     if shift.end <= shift.start:
-        raise ValueError(f"{end} is not behind {start}; a report goes from the earlier to the later")
+        raise ShiftTimesError(
+            f"{end} is not behind {start}; a report goes from the earlier to the later", "ends-first"
+        )
     if shift.end - shift.start > MOST_DAYS * 86_400:
-        raise ValueError(f"from {start} to {end} are more than {MOST_DAYS} days; take fewer")
+        raise ShiftTimesError(
+            f"from {start} to {end} are more than {MOST_DAYS} days; take fewer", "too-many-days"
+        )
     return shift

@@ -12,6 +12,7 @@ import pytest
 from app.cli.main import main
 from app.compose import headless_run
 from drivers.clocks import StepClock
+from tests.coded import recorded_refusals
 from tests.worked import worked
 
 
@@ -21,6 +22,7 @@ class Told(NamedTuple):
     status: int
     out: str
     err: str
+    code: str = ""  # of the error that ended it
 
     @property
     def lines(self) -> list[dict[str, Any]]:
@@ -39,16 +41,18 @@ def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 @pytest.fixture
-def turndesk(home: Path, capsys: pytest.CaptureFixture[str]) -> Turndesk:
+def turndesk(home: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> Turndesk:
     """Run the command line; usage errors end as they do for a user."""
+    refusals = recorded_refusals(monkeypatch)
 
     def run(*argv: object) -> Told:
+        refusals.clear()
         try:
             status = main([str(word) for word in argv])
         except SystemExit as end:
             status = int(end.code or 0)
         told = capsys.readouterr()
-        return Told(status, told.out, told.err)
+        return Told(status, told.out, told.err, refusals[-1].code if refusals else "")
 
     return run
 

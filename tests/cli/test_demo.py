@@ -18,6 +18,7 @@ from core.language.source import load_source
 from core.proving.prove_program import prove
 from core.store.store import Store
 from core.store.store_rows import Kind
+from tests.coded import raises_code
 
 INCH = 25.4
 
@@ -56,7 +57,7 @@ def test_what_was_changed_in_it_stays(home: Path, monkeypatch: pytest.MonkeyPatc
 
 
 def test_no_real_machine_gets_offsets_of_samples(home: Path) -> None:
-    with pytest.raises(CommandError, match="drives a real one"):
+    with raises_code(CommandError, "real-machine", "gt75-grblhal.toml"):
         open_demo("gt75-grblhal")
     assert os.environ["TURNDESK_HOME"] == str(home)
     assert not (home / "demo").exists()

@@ -15,6 +15,7 @@ from app.cli.place_answer import answered
 from core.sharing.shared_folder import MARK, SharedFolder
 from core.sharing.shared_place import SharedPlace
 from core.sharing.sharing_errors import Cause, SharingError
+from tests.coded import raises_code
 
 
 class Place:
@@ -51,7 +52,7 @@ def test_what_the_place_refuses_is_raised_where_it_was_asked() -> None:
     def refuse() -> None:
         raise Cause.FULL.error("the folder x")
 
-    with pytest.raises(SharingError, match="the disk of the folder x is full"):
+    with raises_code(SharingError, "disk-full", "folder x"):
         answered(cast("SharedPlace", Place()), refuse)
 
 
@@ -84,7 +85,7 @@ def test_a_folder_that_hangs_is_told_before_it_is_touched(
 
     touched = threading.Event()
     monkeypatch.setattr(subprocess.Popen, "wait", in_no_time)
-    with pytest.raises(SharingError, match=r"does not answer \(not one byte in 300 s\)"):
+    with raises_code(SharingError, "away", "300 s"):
         answered(SharedFolder(tmp_path), touched.set)
     assert (waits, touched.is_set()) == ([30.0, 270.0], False)
     said = " has not answered for 30 s; it is given up behind 300 s; Ctrl+C ends the wait\n"

@@ -13,6 +13,7 @@ from core.drawings.drawing import MOST_BYTES, DrawingError
 from core.drawings.drawing_file import read_drawing
 from core.drawings.drawing_view import Side
 from core.drawings.turning_contour import Reach, turning_contour
+from tests.coded import raises_code
 from tests.drawings.hand import Draw, chain, dxf, profile_of
 
 
@@ -88,13 +89,13 @@ def test_no_such_axis(tmp_path: Path) -> None:
 
 def test_a_face_alone_is_nothing_to_turn(tmp_path: Path) -> None:
     chosen = profile_of(dxf(tmp_path / "x.dxf", chain((0, 0), (0, 4))), axis="Y 0")
-    with pytest.raises(DrawingError, match="nothing to turn"):
+    with raises_code(DrawingError, "nothing-to-turn"):
         turning_contour(chosen, Reach())
 
 
 def test_a_tool_that_leans_into_a_shoulder(tmp_path: Path) -> None:
     chosen = profile_of(dxf(tmp_path / "x.dxf", chain((0, 0), (0, 4), (-8, 4), (-8, 6), (-12, 6), (-12, 0))))
-    with pytest.raises(DrawingError, match=r"at 72 degrees.*at 90: take a tool for shoulders"):
+    with raises_code(DrawingError, "too-steep", "72", "90"):
         turning_contour(chosen, Reach(math.radians(70), math.radians(72.5)))
 
 

@@ -10,6 +10,7 @@ from app.compose.machine_files import parse_machine
 from app.desk.command_errors import CommandError
 from core.table_schema import Finding, MachineFileError
 from drivers.hal.boards.hal_lines import text_of
+from tests.coded import raises_code
 
 
 def changed(name: str, *pairs: tuple[str, str]) -> str:
@@ -153,9 +154,9 @@ def test_a_pot_is_refused_where_the_board_has_none() -> None:
 
 
 def test_machines_without_a_board_or_without_hal() -> None:
-    with pytest.raises(CommandError, match=r"\[board\] is missing: kind = \"sim\", \"parport\""):
+    with raises_code(CommandError, "no-board", "[board]", '"sim", "parport"'):
         hal_file(parse_machine(changed("hal", ('[board]\nkind = "sim"', "")), "test.toml"))
-    with pytest.raises(CommandError, match="backend is sim"):
+    with raises_code(CommandError, "not-hal"):
         hal_file(parse_machine(resources.machine_file("gt75.toml"), "gt75.toml"))
 
 

@@ -20,6 +20,7 @@ from core.motion.motion_path import Path
 from core.motion.motion_plan import plan
 from core.motion.motion_profile import Profile
 from core.motion.window_planner import sample_positions
+from tests.coded import raises_code
 from tests.motion.moves import line
 from tests.motion.paths import build_path
 
@@ -195,18 +196,18 @@ def test_exactly_enough_is_one_piece() -> None:
 
 
 def test_too_little_turn_is_refused_with_what_is_needed() -> None:
-    with pytest.raises(MotionError, match="needs 432 degrees of C; it turns 360"):
+    with raises_code(MotionError, "rotary-range", 432, 360):
         build_path([fed_by_c(-0.3 * 25.4, 360.0, 0.25 * 25.4, 5.0)], LIMITS)
 
 
 def test_a_broken_way_is_refused() -> None:
     first, second = face_line((8.0, 0.0), (8.0, 1.0)), face_line((8.0, 1.1), (8.0, 2.0))
-    with pytest.raises(MotionError, match="Block 2 starts"):
+    with raises_code(MotionError, "broken-path", "Block 2"):
         build_path([milled(first), milled(second, n=2)], LIMITS)
 
 
 def test_no_feed_is_refused() -> None:
-    with pytest.raises(MotionError, match="feed is not above zero"):
+    with raises_code(MotionError, "no-feed"):
         build_path([milled(face_line((8.0, 0.0), (8.0, 1.0)), feed=0.0)], LIMITS)
 
 

@@ -10,6 +10,7 @@ import pytest
 from core.interpreter.elementary_blocks import Block, Kind
 from core.motion.axis_limits import MotionError
 from core.motion.motion_plan import plan
+from tests.coded import raises_code
 from tests.motion.moves import LIMITS, Point, line
 from tests.motion.paths import build_path
 
@@ -45,15 +46,15 @@ def test_a_lead_counts_along_z_wherever_the_thread_begins(start: Point, end: Poi
 
 @pytest.mark.parametrize("z", [0.0, 4.0])
 def test_a_thread_across_z_is_refused_wherever_it_lies(z: float) -> None:
-    with pytest.raises(MotionError, match="does not advance along Z"):
+    with raises_code(MotionError, "no-lead"):
         build_path([replace(line((1.0, z), (5.0, z), 2.0, kind=Kind.THREAD), rpm=600.0)], LIMITS)
 
 
 def test_a_thread_that_does_not_advance_is_refused() -> None:
-    with pytest.raises(MotionError, match="Block 1: a thread does not advance along Z"):
+    with raises_code(MotionError, "no-lead", "Block 1"):
         build_path([thread((5, 0))], LIMITS)
 
 
 def test_a_thread_with_the_spindle_still_is_refused() -> None:
-    with pytest.raises(MotionError, match="Block 1: feed per revolution with the spindle stopped"):
+    with raises_code(MotionError, "spindle-stopped", "Block 1"):
         build_path([thread((0, -5), 0.0)], LIMITS)

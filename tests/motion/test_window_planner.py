@@ -15,6 +15,7 @@ from core.interpreter.elementary_blocks import Block
 from core.motion.axis_limits import MotionError, MotionLimits
 from core.motion.motion_plan import plan
 from core.motion.window_planner import Chunk, ChunkPlanner, sample_positions
+from tests.coded import raises_code
 from tests.motion.moves import LIMITS, A, chords, line, polyline, programs, rounded_chords
 from tests.motion.paths import build_path
 
@@ -112,12 +113,12 @@ def test_a_bad_block_is_refused_where_it_comes() -> None:
     planner = ChunkPlanner(LIMITS, window=2)
     blocks = polyline([(0, 0), (0, 50), (0, 100), (0, 150)])
     bad = [*blocks, line((0, 150), (0, 160), -3.0, n=4)]
-    with pytest.raises(MotionError, match="Block 4"):
+    with raises_code(MotionError, "no-feed", "Block 4"):
         list(planner.add(bad))
 
 
 def test_an_empty_window_is_refused() -> None:
-    with pytest.raises(MotionError, match="window of 0"):
+    with raises_code(MotionError, "empty-window"):
         ChunkPlanner(MotionLimits(), window=0)
 
 
@@ -138,5 +139,5 @@ def test_samples_of_chunks_lie_on_one_grid() -> None:
 
 def test_samples_need_an_interval() -> None:
     profile = plan(build_path([line((0, 0), (0, 1))], LIMITS))
-    with pytest.raises(MotionError, match="sampling interval of 0"):
+    with raises_code(MotionError, "sampling-interval"):
         sample_positions(profile, 0.0)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from core.part.stock_spec import StockError, profile_stock, stock_spec
+from tests.coded import raises_code
 
 
 def test_a_bar_is_as_long_as_the_program_needs() -> None:
@@ -38,28 +39,28 @@ def test_files_are_named_with_an_allowance_or_with_a_plus_in_the_name() -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "says"),
+    ("text", "code"),
     [
-        ("", "no stock"),
-        ("rod:1", "no stock"),
-        ("bar:", "no length"),
-        ("bar:one", "no length"),
-        ("bar:-1", "no length"),
+        ("", "unknown-form"),
+        ("rod:1", "unknown-form"),
+        ("bar:", "not-a-length"),
+        ("bar:one", "not-a-length"),
+        ("bar:-1", "not-a-length"),
         ("bar:0", "diameter"),
         ("bar:40", "diameter"),  # 1016 mm
         ("bar:1:0", "length"),
-        ("bar:1:2:3", "3 sizes"),
-        ("tube:1", "1 sizes"),
+        ("bar:1:2:3", "size-count"),
+        ("tube:1", "size-count"),
         ("tube:1:1", "bore"),
         ("tube:1:2", "bore"),
-        ("bar:1+", "no length"),
-        ("bar:1+x", "no length"),
-        ("after:", "no file"),
-        ("profile:", "no file"),
+        ("bar:1+", "not-a-length"),
+        ("bar:1+x", "not-a-length"),
+        ("after:", "no-file"),
+        ("profile:", "no-file"),
     ],
 )
-def test_what_is_no_stock_is_refused(text: str, says: str) -> None:
-    with pytest.raises(StockError, match=says):
+def test_what_is_no_stock_is_refused(text: str, code: str) -> None:
+    with raises_code(StockError, code, text):
         stock_spec(text)
 
 
@@ -73,18 +74,18 @@ def test_a_profile_is_read_either_way_with_and_without_a_head() -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "says"),
+    ("text", "code"),
     [
-        ("", "two points"),
-        ("0,1\n", "two points"),
-        ("0,1\n-1,x\n", "row 2"),
-        ("0,1\n-1\n", "row 2"),
-        ("0,1\n-1,1,.5\n", "alike"),
-        ("0,1\n-2,1\n-1,1\n", "one way"),
-        ("0,1\n-1,-1\n", "negative"),
-        ("0,1,2\n-1,1,.5\n", "within"),
+        ("", "too-few-points"),
+        ("0,1\n", "too-few-points"),
+        ("0,1\n-1,x\n", "not-numbers"),
+        ("0,1\n-1\n", "number-count"),
+        ("0,1\n-1,1,.5\n", "rows-differ"),
+        ("0,1\n-2,1\n-1,1\n", "turns-back"),
+        ("0,1\n-1,-1\n", "radius"),
+        ("0,1,2\n-1,1,.5\n", "radius"),
     ],
 )
-def test_a_profile_that_is_none_is_refused(text: str, says: str) -> None:
-    with pytest.raises(StockError, match=says):
+def test_a_profile_that_is_none_is_refused(text: str, code: str) -> None:
+    with raises_code(StockError, code):
         profile_stock("p", text, 25.4, 0.0)

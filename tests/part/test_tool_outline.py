@@ -12,6 +12,7 @@ from core.part.tool_outline import ToolOutline, nose_circle, outline
 from core.part.tool_polygons import FloatArray, area
 from core.part.tool_shape import ROUND_TOOLS, Hand, ToolKind, ToolShape
 from core.tool_edges import TIP_DIRECTIONS
+from tests.coded import raises_code
 
 CNMG = ToolShape(tip=3, insert="CNMG 120408", holder="MCLNR 2020K12")
 EVERY = [
@@ -289,7 +290,7 @@ def test_sizes_that_nobody_has_stated_are_named() -> None:
 
 
 def test_code_that_means_nothing_is_not_drawn() -> None:
-    with pytest.raises(InsertCodeError, match="character 3, X"):
+    with raises_code(InsertCodeError, "unknown-character", "3, X"):
         outline(ToolShape(tip=3, insert="CNXG 120408"))
 
 

@@ -8,6 +8,7 @@ import pytest
 
 from core.quality.capability import LEAST, capability
 from core.quality.quality_errors import QualityError
+from tests.coded import raises_code
 
 TEN = [9.99, 10.01] * 5
 
@@ -49,15 +50,15 @@ def test_a_gauge_that_sees_no_scatter_has_no_cpk() -> None:
 
 
 @pytest.mark.parametrize(
-    ("count", "lower", "upper", "why"),
+    ("count", "lower", "upper", "code"),
     [
-        (LEAST - 1, 9.9, 10.1, "9 of 10 readings"),
-        (0, 9.9, 10.1, "0 of 10"),
-        (LEAST, None, None, "needs a tolerance"),
-        (LEAST, 10.1, 9.9, "not below"),
-        (LEAST, 10.0, 10.0, "not below"),
+        (LEAST - 1, 9.9, 10.1, "too-few-readings"),
+        (0, 9.9, 10.1, "too-few-readings"),
+        (LEAST, None, None, "no-tolerance"),
+        (LEAST, 10.1, 9.9, "limits-reversed"),
+        (LEAST, 10.0, 10.0, "limits-reversed"),
     ],
 )
-def test_refused(count: int, lower: float | None, upper: float | None, why: str) -> None:
-    with pytest.raises(QualityError, match=why):
+def test_refused(count: int, lower: float | None, upper: float | None, code: str) -> None:
+    with raises_code(QualityError, code):
         capability(TEN[:count], lower, upper)

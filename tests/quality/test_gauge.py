@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import pty
+import re
 import threading
 import tty
 from collections.abc import Callable, Iterator
@@ -12,8 +13,10 @@ from dataclasses import dataclass
 import pytest
 
 from app.compose.gauge_wire import SILENT, GaugeWire
-from app.quality.gauge_line import LONGEST, LineReader, NoGauge, Reading, reading_of
+from app.quality.gauge_line import LONGEST, GaugeError, LineReader, NoGauge, Reading, reading_of
 from core.machine.gauge_table import GaugeModel
+from tests.coded import raises_code
+from tests.texts import pattern
 
 
 @pytest.mark.parametrize(
@@ -33,21 +36,21 @@ def test_a_line_is_a_reading(line: str, value: float, unit: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("line", "why"),
+    ("line", "code"),
     [
-        ("911", "no gauge is plugged in"),
+        ("911", "no-gauge"),
         ("912", "unreadable"),
-        ("01B+00012.345", "no reading"),
-        ("01A+0001 2.345", "no reading"),
-        ("12.3.4", "no reading"),
-        ("12.345 cm", "no reading"),
-        ("nan", "no reading"),
-        ("\ufffd\ufffd", "no reading"),
-        ("+", "no reading"),
+        ("01B+00012.345", "not-a-reading"),
+        ("01A+0001 2.345", "not-a-reading"),
+        ("12.3.4", "not-a-reading"),
+        ("12.345 cm", "not-a-reading"),
+        ("nan", "not-a-reading"),
+        ("\ufffd\ufffd", "not-a-reading"),
+        ("+", "not-a-reading"),
     ],
 )
-def test_what_is_no_reading(line: str, why: str) -> None:
-    with pytest.raises(ValueError, match=why):
+def test_what_is_no_reading(line: str, code: str) -> None:
+    with raises_code(GaugeError, code):
         reading_of(line)
 
 
@@ -124,8 +127,8 @@ def test_both_kinds_of_lines_and_garbage_between(bench: Bench) -> None:
     bench.send(b"\x00\xff#?\r\n12.345 mm\r\n")
     found = bench.hears(lambda found: len(found) >= 3)
     assert found[0] == Reading(0.5012)
-    assert "no reading" in str(found[1])
-    assert "MEASURE AGAIN" in str(found[1])
+    assert re.fullmatch(pattern("quality.gauge-refused"), str(found[1]))
+    assert "#?" in str(found[1])
     assert found[2] == Reading(12.345, "mm")
 
 

@@ -14,7 +14,7 @@ import pytest
 from app.cli.main import main
 from app.quality.shift_figures import ShiftFigures, shift_figures
 from app.quality.shift_page import shift_html
-from app.quality.shift_times import Shift, between, moment_of, shift_of
+from app.quality.shift_times import Shift, ShiftTimesError, between, moment_of, shift_of
 from core.store import measured_parts, part_cycles, tool_lives
 from core.store.event_log import log
 from core.store.measured_parts import FeatureRow, ReadingRow
@@ -22,6 +22,7 @@ from core.store.part_cycles import CycleRow, StopRow
 from core.store.store import Store
 from core.store.store_rows import EventRow
 from core.store.tool_lives import LifeRow
+from tests.coded import raises_code, recorded_refusals
 
 DAY = "2026-03-02T"
 EIGHT = Shift(
@@ -175,16 +176,16 @@ def test_the_shift_that_is_on_and_those_before_it() -> None:
 
 
 @pytest.mark.parametrize(
-    ("first", "last", "why"),
+    ("first", "last", "code", "value"),
     [
-        ("yesterday", "2026-03-02", "'yesterday' is no time"),
-        ("2026-03-02 14:00", "2026-03-02 06:00", "is not behind"),
-        ("2026-01-01", "2026-06-01", "more than 62 days"),
-        ("2026-02-30", "2026-03-02", "is no time"),
+        ("yesterday", "2026-03-02", "not-a-time", "yesterday"),
+        ("2026-03-02 14:00", "2026-03-02 06:00", "ends-first", "2026-03-02 06:00"),
+        ("2026-01-01", "2026-06-01", "too-many-days", "62"),
+        ("2026-02-30", "2026-03-02", "not-a-time", "2026-02-30"),
     ],
 )
-def test_times_that_are_none_are_refused(first: str, last: str, why: str) -> None:
-    with pytest.raises(ValueError, match=why):
+def test_times_that_are_none_are_refused(first: str, last: str, code: str, value: str) -> None:
+    with raises_code(ShiftTimesError, code, value):
         between(first, last)
 
 
@@ -218,18 +219,27 @@ class TestCommand:
         assert main(["shift", "--back", "1"]) == 0
 
     @pytest.mark.parametrize(
-        ("argv", "why"),
+        ("argv", "code", "value"),
         [
-            (("--from", "2026-03-02"), "--from and --to belong together"),
-            (("--from", "2026-03-02", "--to", "2026-03-01"), "is not behind"),
-            ((*TIMES, "--back", "2"), "take one of them"),
-            (("--back", "-1"), "--back -1"),
-            (("--metric",), "--metric is for the page"),
-            (("--report", "/nonexistent/r.html"), "CANNOT BE WRITTEN"),
+            (("--from", "2026-03-02"), "from-and-to", "--from"),
+            (("--from", "2026-03-02", "--to", "2026-03-01"), "ends-first", "2026-03-02"),
+            ((*TIMES, "--back", "2"), "back-and-times", "--back"),
+            (("--back", "-1"), "back", "--back -1"),
+            (("--metric",), "metric-needs-report", "--metric"),
+            (("--report", "/nonexistent/r.html"), "cannot-write", "/nonexistent"),
         ],
     )
-    def test_refusals(self, capsys: pytest.CaptureFixture[str], argv: tuple[str, ...], why: str) -> None:
+    def test_refusals(
+        self,
+        capsys: pytest.CaptureFixture[str],
+        monkeypatch: pytest.MonkeyPatch,
+        argv: tuple[str, ...],
+        code: str,
+        value: str,
+    ) -> None:
+        refusals = recorded_refusals(monkeypatch)
         assert main(["shift", *argv]) == 2
         said = capsys.readouterr().err
-        assert why in said
+        assert [each.code for each in refusals] == [code]
+        assert value in said
         assert said.count("\n") == 1

@@ -7,6 +7,7 @@ import pytest
 from core.quality.availability import Span, availability
 from core.quality.quality_errors import QualityError
 from core.quality.stops import Stop, pareto, times_between
+from tests.coded import raises_code
 
 
 def test_pareto() -> None:
@@ -46,12 +47,12 @@ def test_nothing_ran() -> None:
 
 @pytest.mark.parametrize("shift", [Span(10, 10), Span(10, 0)])
 def test_a_shift_has_a_length(shift: Span) -> None:
-    with pytest.raises(QualityError, match="shift"):
+    with raises_code(QualityError, "shift-times"):
         availability(shift, [])
 
 
 def test_a_clock_that_was_set_back() -> None:
-    with pytest.raises(QualityError, match="set back"):
+    with raises_code(QualityError, "clock-set-back"):
         availability(Span(0, 10), [Span(5, 4)])
-    with pytest.raises(QualityError, match="set back"):
+    with raises_code(QualityError, "clock-set-back"):
         pareto([Stop("A", 5, -1)])

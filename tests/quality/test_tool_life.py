@@ -9,6 +9,7 @@ import pytest
 
 from core.quality.quality_errors import QualityError
 from core.quality.tool_life import LifeState, ToolLife, check_life
+from tests.coded import raises_code
 
 
 def test_by_parts() -> None:
@@ -48,11 +49,18 @@ def test_without_a_limit_it_is_only_counted() -> None:
 
 
 @pytest.mark.parametrize(
-    "changes",
-    [{"limit_parts": -1}, {"limit_parts": 10**7}, {"limit_seconds": -1.0}, {"limit_seconds": math.inf},
-     {"limit_seconds": math.nan}, {"warn": 0.0}, {"warn": 1.1}],
-)  # fmt: skip
-def test_a_life_that_nobody_can_mean(changes: dict[str, float]) -> None:
+    ("changes", "code"),
+    [
+        ({"limit_parts": -1}, "limit-in-parts"),
+        ({"limit_parts": 10**7}, "limit-in-parts"),
+        ({"limit_seconds": -1.0}, "limit-in-minutes"),
+        ({"limit_seconds": math.inf}, "limit-in-minutes"),
+        ({"limit_seconds": math.nan}, "limit-in-minutes"),
+        ({"warn": 0.0}, "warning-share"),
+        ({"warn": 1.1}, "warning-share"),
+    ],
+)
+def test_a_life_that_nobody_can_mean(changes: dict[str, float], code: str) -> None:
     check_life(ToolLife(3))
-    with pytest.raises(QualityError, match="T3"):
+    with raises_code(QualityError, code, "T3"):
         check_life(replace(ToolLife(3), **changes))  # type: ignore[arg-type]

@@ -10,6 +10,7 @@ import pytest
 from core.quality.measured_feature import CorrectedBy, Feature, FeatureKind, check_feature
 from core.quality.quality_errors import QualityError
 from core.quality.wear_proposal import CorrectionRule, propose
+from tests.coded import raises_code
 
 IN = 25.4
 TENTH = 0.0001 * IN
@@ -84,43 +85,43 @@ def test_whole_steps_of_the_control_and_never_more_than_asked_for() -> None:
 
 
 @pytest.mark.parametrize(
-    ("readings", "why"),
+    ("readings", "code"),
     [
-        ([], "no part was measured"),
-        ([math.nan], "no number"),
-        (inches(0.5061), "no wear, measure again"),  # 6.1 thousandths off, three tolerances are 6
-        (inches(0.5002, 0.4), "no wear, measure again"),
+        ([], "no-readings"),
+        ([math.nan], "not-a-number"),
+        (inches(0.5061), "reading-too-far"),  # 6.1 thousandths off, three tolerances are 6
+        (inches(0.5002, 0.4), "reading-too-far"),
     ],
 )
-def test_no_proposal(readings: list[float], why: str) -> None:
-    with pytest.raises(QualityError, match=why):
+def test_no_proposal(readings: list[float], code: str) -> None:
+    with raises_code(QualityError, code):
         propose(SPIGOT, readings, TENTH)
 
 
 def test_more_than_the_tables_take_is_touched_off() -> None:
     wide = replace(SPIGOT, low=-0.2 * IN, high=0.2 * IN)
-    with pytest.raises(QualityError, match="touch the tool off"):
+    with raises_code(QualityError, "correction-too-large"):
         propose(wide, inches(0.75), TENTH, FULL)
 
 
 @pytest.mark.parametrize(
-    ("changes", "why"),
+    ("changes", "code"),
     [
-        ({"name": " "}, "name"),
-        ({"name": "X" * 25}, "name"),
+        ({"name": " "}, "invalid-name"),
+        ({"name": "X" * 25}, "invalid-name"),
         ({"nominal": 0.0}, "nominal"),
-        ({"nominal": math.inf}, "numbers"),
-        ({"low": 0.1, "high": 0.1}, "not below"),
-        ({"low": -13.0}, "lower limit"),
-        ({"number": 33}, "1 to 32"),
-        ({"grows": 0}, r"\+1 or -1"),
-        ({"every": -1}, "every"),
-        ({"sample": 11}, "sample"),
+        ({"nominal": math.inf}, "not-a-number"),
+        ({"low": 0.1, "high": 0.1}, "limits-reversed"),
+        ({"low": -13.0}, "lower-limit"),
+        ({"number": 33}, "offset-number"),
+        ({"grows": 0}, "direction"),
+        ({"every": -1}, "interval"),
+        ({"sample": 11}, "sample-size"),
     ],
 )
-def test_a_feature_that_cannot_be(changes: dict[str, object], why: str) -> None:
+def test_a_feature_that_cannot_be(changes: dict[str, object], code: str) -> None:
     check_feature(SPIGOT)
-    with pytest.raises(QualityError, match=why):
+    with raises_code(QualityError, code):
         check_feature(replace(SPIGOT, **changes))  # type: ignore[arg-type]
 
 

@@ -9,6 +9,7 @@ import pytest
 
 from core.records.ball_bar import arcs_in, ball_bar, circle_of
 from core.records.record_errors import AnalysisError
+from tests.coded import raises_code
 
 R = 25.0
 T = np.linspace(0.0, 2.0 * math.pi, 7201)
@@ -81,17 +82,17 @@ def test_a_short_arc_tells_only_its_size() -> None:
 
 
 @pytest.mark.parametrize(
-    ("demand", "says"),
+    ("demand", "code"),
     [
-        (arc(T)[:10], "60 samples"),
-        (np.column_stack([np.linspace(0, 9, 500), np.zeros(500)]), "no arc"),
-        (arc(np.radians(np.linspace(0, 20, 500))), "shorter than 60"),
-        (np.full((500, 2), np.nan), "does not tell"),
-        (arc(T) + np.column_stack([0 * T, 0.1 * np.sin(5 * T)]), "no arc"),
+        (arc(T)[:10], "too-few-samples"),
+        (np.column_stack([np.linspace(0, 9, 500), np.zeros(500)]), "no-arc"),
+        (arc(np.radians(np.linspace(0, 20, 500))), "arc-too-short"),
+        (np.full((500, 2), np.nan), "no-positions"),
+        (arc(T) + np.column_stack([0 * T, 0.1 * np.sin(5 * T)]), "no-arc"),
     ],
 )
-def test_what_is_no_arc_is_refused(demand: np.ndarray, says: str) -> None:
-    with pytest.raises(AnalysisError, match=says):
+def test_what_is_no_arc_is_refused(demand: np.ndarray, code: str) -> None:
+    with raises_code(AnalysisError, code):
         ball_bar(demand, demand)
 
 

@@ -7,6 +7,7 @@ import pytest
 
 from core.records.path_error import of_samples, path_error, worst_places
 from core.records.record_errors import AnalysisError
+from tests.coded import raises_code
 
 
 def test_a_slide_that_is_late_is_still_on_its_path() -> None:
@@ -74,21 +75,21 @@ def test_a_path_that_crosses_itself_is_not_its_own_neighbour() -> None:
 
 
 @pytest.mark.parametrize(
-    ("demand", "says"),
+    ("demand", "code"),
     [
-        (np.zeros((3, 2)), "10 samples"),
-        (np.zeros((50, 2)), "nothing moved"),
-        (np.full((50, 2), np.nan), "does not tell"),
+        (np.zeros((3, 2)), "too-few-samples"),
+        (np.zeros((50, 2)), "at-rest"),
+        (np.full((50, 2), np.nan), "no-positions"),
     ],
 )
-def test_what_is_no_path_is_refused(demand: np.ndarray, says: str) -> None:
-    with pytest.raises(AnalysisError, match=says):
+def test_what_is_no_path_is_refused(demand: np.ndarray, code: str) -> None:
+    with raises_code(AnalysisError, code):
         of_samples(demand, demand, np.ones(len(demand)), 1000.0)
 
 
 def test_what_does_not_belong_together_is_refused() -> None:
     path, measured = np.array([[0.0, 0.0], [1.0, 0.0]]), np.zeros((10, 2))
-    with pytest.raises(AnalysisError, match="do not belong together"):
+    with raises_code(AnalysisError, "lengths-differ"):
         path_error(path, np.array([1]), measured, np.zeros(10, dtype=np.int64), 1)
-    with pytest.raises(AnalysisError, match="do not belong together"):
+    with raises_code(AnalysisError, "lengths-differ"):
         path_error(path, np.array([1, 1]), measured, np.zeros(9, dtype=np.int64), 1)

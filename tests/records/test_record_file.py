@@ -15,6 +15,7 @@ import pytest
 from core.records.record import Channel, Record
 from core.records.record_errors import RecordError
 from core.records.record_file import ENDING, open_record, save_csv, save_record, write_csv
+from tests.coded import raises_code
 
 NAN = float("nan")
 CHANNELS = (Channel("X demand", "mm"), Channel("spindle load", "%"), Channel("input guard, left", "", True))
@@ -58,7 +59,7 @@ def test_a_file_that_is_cut_off_is_refused(tmp_path: Path, cut: int) -> None:
     path = tmp_path / "cut.scope"
     save_record(record(), path)
     path.write_bytes(path.read_bytes()[:cut])
-    with pytest.raises(RecordError, match=r"cut\.scope is cut off; it cannot be read"):
+    with raises_code(RecordError, "cut-off", "cut.scope"):
         open_record(path)
 
 
@@ -80,14 +81,14 @@ def test_a_damaged_file_is_refused_wherever_the_damage_is(tmp_path: Path) -> Non
 def test_a_foreign_file_is_refused(tmp_path: Path, text: bytes) -> None:
     path = tmp_path / "part.nc"
     path.write_bytes(text)
-    with pytest.raises(RecordError, match=r"part\.nc is no record of the scope"):
+    with raises_code(RecordError, "not-a-record", "part.nc"):
         open_record(path)
 
 
 def test_another_archive_is_refused(tmp_path: Path) -> None:
     with zipfile.ZipFile(tmp_path / "other.zip", "w") as archive:
         archive.writestr("readme.txt", "hello")
-    with pytest.raises(RecordError, match=r"other\.zip is no record of the scope"):
+    with raises_code(RecordError, "not-a-record", "other.zip"):
         open_record(tmp_path / "other.zip")
 
 
@@ -96,7 +97,7 @@ def test_objects_in_an_archive_are_never_run(tmp_path: Path) -> None:
     path = tmp_path / "evil.scope"
     with path.open("wb") as file:
         np.savez(file, about=np.array([{"version": 1}], dtype=object))
-    with pytest.raises(RecordError, match=r"evil\.scope is damaged"):
+    with raises_code(RecordError, "damaged", "evil.scope"):
         open_record(path)
 
 
@@ -113,7 +114,7 @@ def changed(path: Path, **changes: object) -> None:
 
 def test_a_newer_one_is_refused(tmp_path: Path) -> None:
     changed(tmp_path / "new.scope", version=9)
-    with pytest.raises(RecordError, match=r"newer TurnDesk \(version 9\)"):
+    with raises_code(RecordError, "newer-version", "version 9"):
         open_record(tmp_path / "new.scope")
 
 
@@ -130,12 +131,12 @@ def test_a_newer_one_is_refused(tmp_path: Path) -> None:
 )
 def test_a_description_that_does_not_fit_is_refused(tmp_path: Path, changes: dict[str, object]) -> None:
     changed(tmp_path / "odd.scope", **changes)
-    with pytest.raises(RecordError, match=r"odd\.scope is damaged"):
+    with raises_code(RecordError, "damaged", "odd.scope"):
         open_record(tmp_path / "odd.scope")
 
 
 def test_a_file_that_is_not_there_is_told(tmp_path: Path) -> None:
-    with pytest.raises(RecordError, match=r"gone\.scope: there is no such file"):
+    with raises_code(RecordError, "not-found", "gone.scope"):
         open_record(tmp_path / "gone.scope")
 
 
@@ -151,7 +152,7 @@ def test_a_full_disk_is_told_and_the_old_file_stays(
 
     monkeypatch.setattr(Path, "open", full)
     assert callable(save)
-    with pytest.raises(RecordError, match=r"one\.scope: the disk is full; make room on it"):
+    with raises_code(RecordError, "disk-full", "one.scope"):
         save(record(), path)
     monkeypatch.undo()
     assert path.read_text() == "old"

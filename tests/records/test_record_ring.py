@@ -13,6 +13,7 @@ from core.records.record import FloatArray
 from core.records.record_errors import RecordError
 from core.records.record_ring import Recorded, Ring, Rows, bits_of
 from core.records.ring_file import LAST, NOW, RingFile, new_ring, read_ring
+from tests.coded import raises_code
 
 OUTPUTS = tuple(f"out{n}" for n in range(60))  # more than one figure has bits for
 OF = Recorded({"X": False, "C": True}, ("estop", "guard"), OUTPUTS, 1000.0, 1_000_000.0, "LATHE", lasts=1.0)
@@ -178,7 +179,7 @@ def test_the_last_one_stays_beside_the_new_one(tmp_path: Path) -> None:
 
 def test_two_do_not_write_one_file(tmp_path: Path) -> None:
     file, _ = written(tmp_path, 20)
-    with pytest.raises(RecordError, match=r"now\.ring is being written by another TurnDesk"):
+    with raises_code(RecordError, "in-use", "now.ring"):
         new_ring(tmp_path, NOW, Ring.of(OF))
     assert read_ring(tmp_path / NOW).times.size == 20
     file.close()
@@ -191,7 +192,7 @@ def test_a_full_disk_is_told_and_leaves_nothing_behind(
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
     monkeypatch.setattr(os, "posix_fallocate", full)
-    with pytest.raises(RecordError, match=r"now\.ring: the disk is full; make room on it"):
+    with raises_code(RecordError, "disk-full", "now.ring"):
         new_ring(tmp_path, NOW, Ring.of(OF))
     assert (tmp_path / NOW).stat().st_size == 0
 
@@ -212,11 +213,11 @@ def test_a_ring_that_is_cut_off_or_newer_is_refused(tmp_path: Path) -> None:
     path = tmp_path / NOW
     whole = path.read_bytes()
     path.write_bytes(whole[:-100])
-    with pytest.raises(RecordError, match="is cut off"):
+    with raises_code(RecordError, "cut-off"):
         read_ring(path)
     path.write_bytes(whole[:14] + b"\x07\x00\x00\x00" + whole[18:])
-    with pytest.raises(RecordError, match=r"newer TurnDesk \(version 7\)"):
+    with raises_code(RecordError, "newer-version", "version 7"):
         read_ring(path)
     path.write_bytes(whole[:40] + b"\xff" * 60 + whole[100:])
-    with pytest.raises(RecordError, match="damaged at its beginning"):
+    with raises_code(RecordError, "damaged"):
         read_ring(path)

@@ -7,6 +7,7 @@ import pytest
 
 from core.records.record_errors import AnalysisError
 from core.records.thread_passes import Thread, fastest, find_thread
+from tests.coded import raises_code
 
 RATE, RPM, LEAD = 1000.0, 1200.0, 1.5
 
@@ -100,20 +101,20 @@ def test_an_even_feed_is_one_long_pass_and_the_lead_is_told() -> None:
 
 
 @pytest.mark.parametrize(
-    ("turns", "says"),
+    ("turns", "code"),
     [
-        (np.arange(50) * 0.02, "100 samples"),
-        (np.full(500, np.nan), "no encoder"),
-        (np.zeros(500), "does not turn"),
-        (np.arange(500) * 0.02, "no pass of a thread"),
+        (np.arange(50) * 0.02, "too-few-samples"),
+        (np.full(500, np.nan), "no-encoder"),
+        (np.zeros(500), "spindle-stopped"),
+        (np.arange(500) * 0.02, "no-pass"),
     ],
 )
-def test_what_is_no_thread_is_refused(turns: np.ndarray, says: str) -> None:
+def test_what_is_no_thread_is_refused(turns: np.ndarray, code: str) -> None:
     n = len(turns)
-    with pytest.raises(AnalysisError, match=says):
+    with raises_code(AnalysisError, code):
         find_thread(turns, np.zeros(n), np.zeros(n), np.zeros(n))
 
 
 def test_another_lead_is_not_taken_for_this_one() -> None:
-    with pytest.raises(AnalysisError, match="no pass"):
+    with raises_code(AnalysisError, "no-pass"):
         find_thread(*cut(), lead=2.0)

@@ -23,6 +23,7 @@ from core.executor.drive_test_path import DriveTestPath, Limits, Shape
 from core.records.record import Record
 from core.records.record_errors import AnalysisError
 from core.records.step_response import bandwidth, narrowest_window, sine_response, speed_of_window
+from tests.coded import raises_code
 from tests.scope.played_record import RATE, record_of, seconds
 
 DRIVES = {axis.name: axis for axis in load_machine(None).axes if not axis.rotary}
@@ -130,19 +131,19 @@ def test_response_and_window_are_parts_of_the_whole() -> None:
 
 @pytest.mark.parametrize("path", [STEP, RAMP, SINE])
 def test_a_test_that_was_let_go_has_no_figures(path: DriveTestPath) -> None:
-    with pytest.raises(AnalysisError, match="let go before its end"):
+    with raises_code(AnalysisError, "test-broken-off"):
         drive_test_figures(played(path, lasts=0.3), path, DRIVES)
 
 
 def test_a_record_of_another_machine() -> None:
     path = dataclasses.replace(STEP, axis="Y")
-    with pytest.raises(AnalysisError, match="no axis Y"):
+    with raises_code(AnalysisError, "no-axis", "Y"):
         drive_test_figures(played(STEP), path, DRIVES)
 
 
 def test_a_step_within_its_own_window_is_told() -> None:
     path = dataclasses.replace(STEP, size=DRIVES["Z"].in_position)
-    with pytest.raises(AnalysisError, match="take more"):
+    with raises_code(AnalysisError, "step-too-small"):
         drive_test_figures(played(path), path, DRIVES)
 
 
@@ -150,7 +151,7 @@ def test_a_drive_that_tells_no_place() -> None:
     record = played(STEP)
     none = np.full(len(record.times), np.nan)
     record = dataclasses.replace(record, columns={**record.columns, "Z actual": none})
-    with pytest.raises(AnalysisError, match="does not tell where the slide is"):
+    with raises_code(AnalysisError, "no-positions"):
         drive_test_figures(record, STEP, DRIVES)
 
 

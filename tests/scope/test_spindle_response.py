@@ -13,6 +13,7 @@ from app.scope.analyses import Analyses, Kind, analysed, scaled
 from app.scope.spindle_response import SpindleResponse, last_run_up
 from core.records.record import FloatArray, Record
 from core.records.record_errors import AnalysisError
+from tests.coded import raises_code
 from tests.scope.played_record import record_of, seconds
 
 MODEL = load_machine(None).spindle  # at speed within 5 %
@@ -78,13 +79,13 @@ def test_backward_is_a_speed_too() -> None:
     ids=["stood", "even", "stopped", "within the window"],
 )
 def test_without_a_run_up_it_says_what_to_do(record: Record) -> None:
-    with pytest.raises(AnalysisError, match="start it by a program or in MDI"):
+    with raises_code(AnalysisError, "no-step"):
         found(record)
 
 
 def test_a_speed_that_nobody_tells_is_none() -> None:
     nothing: FloatArray = np.full(12001, np.nan)
-    with pytest.raises(AnalysisError, match="nobody tells"):
+    with raises_code(AnalysisError, "no-measured-speed"):
         found(record_of(seconds(0.0, 12.0), spindle_speed=nothing))
     assert "no spindle" in analysed(Kind.SPINDLE, turned((1.0, 500.0)), 0, {}).why
 

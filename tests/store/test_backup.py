@@ -14,6 +14,7 @@ from core.store import backup, store_export
 from core.store.store import Store, StoreError
 from core.store.store_file import FILE_NAME
 from core.store.store_rows import SecondaryRow, ToolRow
+from tests.coded import raises_code
 
 
 def fill(store: Store) -> None:
@@ -66,7 +67,7 @@ def test_restore_replaces_a_damaged_store_and_keeps_its_bytes(folder: Path, tmp_
 def test_restore_while_the_store_is_in_use_is_refused(store: Store, folder: Path, tmp_path: Path) -> None:
     fill(store)
     backup.backup(folder, tmp_path / "b.db")
-    with pytest.raises(StoreError, match="in use"):
+    with raises_code(StoreError, "in-use"):
         backup.restore(folder, tmp_path / "b.db")
 
 
@@ -89,7 +90,7 @@ def test_restore_of_a_spoilt_backup_is_refused(folder: Path, tmp_path: Path) -> 
     target = tmp_path / "b.db"
     backup.backup(folder, target)
     target.write_bytes(target.read_bytes().replace(b"G90\r\nM30", b"G91\r\nM30"))
-    with pytest.raises(StoreError, match=r"cannot be restored: 'PIN\.nc' version 1 is not what was saved"):
+    with raises_code(StoreError, "damaged-backup", "'PIN.nc' version 1"):
         backup.restore(folder, target)
 
 
@@ -97,19 +98,19 @@ def test_backup_never_overwrites_what_is_no_backup(store: Store, folder: Path, t
     fill(store)
     precious = tmp_path / "part.nc"
     precious.write_bytes(b"G90")
-    with pytest.raises(StoreError, match="not a database"):
+    with raises_code(StoreError, "not-a-database"):
         backup.backup(folder, precious)
     assert precious.read_bytes() == b"G90"
-    with pytest.raises(StoreError, match="the store itself"):
+    with raises_code(StoreError, "store-itself"):
         backup.backup(folder, folder / FILE_NAME)
 
 
 def test_backup_of_nothing_or_to_nowhere_is_refused(folder: Path, tmp_path: Path) -> None:
-    with pytest.raises(StoreError, match="no store"):
+    with raises_code(StoreError, "no-store"):
         backup.backup(folder, tmp_path / "b.db")
     with Store.open(folder) as store:
         fill(store)
-    with pytest.raises(StoreError, match="cannot be written"):
+    with raises_code(StoreError, "cannot-write"):
         backup.backup(folder, tmp_path / "none" / "b.db")
 
 
@@ -126,7 +127,7 @@ def test_neighbours_of_a_backup_or_export_are_left_alone(store: Store, folder: P
 def test_export_of_a_spoilt_program_leaves_nothing(store: Store, tmp_path: Path) -> None:
     fill(store)
     store.write(lambda c: c.execute("UPDATE program_versions SET text = X'58'").close()).result()
-    with pytest.raises(StoreError, match="not what was saved"):
+    with raises_code(StoreError, "damaged-version"):
         store_export.export(store, tmp_path / "out")
     assert [path.name for path in tmp_path.iterdir()] == ["home"]
 
@@ -172,9 +173,9 @@ def test_exported_programs_come_back(store: Store, tmp_path: Path) -> None:
 def test_export_into_a_folder_with_something_in_it_is_refused(store: Store, tmp_path: Path) -> None:
     (tmp_path / "out").mkdir()
     (tmp_path / "out/precious").write_text("x")
-    with pytest.raises(StoreError, match="not empty"):
+    with raises_code(StoreError, "folder-not-empty"):
         store_export.export(store, tmp_path / "out")
-    with pytest.raises(StoreError, match="no exported folder"):
+    with raises_code(StoreError, "not-an-export"):
         store_export.program_files(tmp_path / "out")
     assert (tmp_path / "out/precious").read_text() == "x"
 

@@ -16,6 +16,7 @@ from core.store.store_errors import StoreError
 from core.store.store_export import export
 from core.store.store_rows import Kind, ToolRow
 from core.tool_edges import edge_key, edge_name, edge_of, tool_of
+from tests.coded import raises_code
 
 WHY = {"why": "test", "who": "test"}
 T3_D2 = edge_key(3, 2)
@@ -41,23 +42,23 @@ def test_an_edge_is_kept_undone_and_exported(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("number", "values", "said"),
+    ("number", "values", "code", "value"),
     [
-        (T3_D2, {"x": 1.0, "z": 1.0}, "T3 was never set"),
-        (edge_key(33, 2), {"x": 1.0}, "does not exist"),
-        (edge_key(3, 10), {"x": 1.0}, "does not exist"),
-        (100_003, {"x": 1.0}, "does not exist"),
+        (T3_D2, {"x": 1.0, "z": 1.0}, "never-set", "T3 D2"),
+        (edge_key(33, 2), {"x": 1.0}, "unknown-number", edge_key(33, 2)),
+        (edge_key(3, 10), {"x": 1.0}, "unknown-number", edge_key(3, 10)),
+        (100_003, {"x": 1.0}, "unknown-number", 100_003),
     ],
 )
-def test_refused(tmp_path: Path, number: int, values: dict[str, float], said: str) -> None:
-    with Store.open(tmp_path) as store, pytest.raises(StoreError, match=said):
+def test_refused(tmp_path: Path, number: int, values: dict[str, float], code: str, value: str | int) -> None:
+    with Store.open(tmp_path) as store, raises_code(StoreError, code, value):
         store.set_offset(Kind.TOOL, number, values=values, **WHY).result()
 
 
 def test_an_edge_is_no_master(tmp_path: Path) -> None:
     with Store.open(tmp_path) as store:
         store.set_offset(Kind.TOOL, 3, values={"x": 1.0, "z": 1.0}, **WHY).result()
-        with pytest.raises(StoreError, match="master by its D1"):
+        with raises_code(StoreError, "not-first-edge"):
             store.set_offset(Kind.TOOL, T3_D2, values={"x": 1.0, "z": 1.0, "master": True}, **WHY).result()
 
 

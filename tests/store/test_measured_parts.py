@@ -21,6 +21,7 @@ from core.store.store_export import export
 from core.store.store_file import FILE_NAME
 from core.store.store_rows import utc
 from core.store.tool_lives import LifeRow
+from tests.coded import raises_code
 
 SPIGOT = FeatureRow(0, "pin.nc", "SPIGOT", "diameter", 12.7, -0.02, 0.02, "tool", 3, 1, 10, 1)
 
@@ -61,7 +62,7 @@ def test_a_reading_that_is_taken_out_counts_no_more_and_stays_in_the_file(store:
     read(store, of, 1, 12.7)
     store.write(lambda c: measured_parts.void_reading(c, wrong)).result(60)
     assert [row.value for row in readings(store)] == [12.7]
-    with pytest.raises(StoreError, match="taken out already"):
+    with raises_code(StoreError, "already-removed"):
         store.write(lambda c: measured_parts.void_reading(c, wrong)).result(60)
     with store.read() as connection:
         assert connection.execute("SELECT count(*) FROM part_readings").fetchone() == (2,)
@@ -70,29 +71,29 @@ def test_a_reading_that_is_taken_out_counts_no_more_and_stays_in_the_file(store:
 def test_a_retired_feature_frees_its_name_and_takes_no_reading(store: Store) -> None:
     of = feature(store)
     store.write(lambda c: measured_parts.retire_feature(c, of)).result(60)
-    with pytest.raises(StoreError, match="not measured any more"):
+    with raises_code(StoreError, "feature-gone"):
         read(store, of, 1, 12.7)
     assert feature(store) != of
 
 
 @pytest.mark.parametrize(
-    ("row", "why"),
+    ("row", "code", "value"),
     [
-        (SPIGOT, "another name"),
-        (SPIGOT._replace(id=77, name="B"), "enter it anew"),
-        (SPIGOT._replace(name="B", number=33), "nothing was stored"),
-        (SPIGOT._replace(name="B", low=1.0), "nothing was stored"),
-        (SPIGOT._replace(name="B", kind="angle"), "nothing was stored"),
+        (SPIGOT, "name-in-use", "SPIGOT"),
+        (SPIGOT._replace(id=77, name="B"), "feature-gone", "B"),
+        (SPIGOT._replace(name="B", number=33), "constraint", "number"),
+        (SPIGOT._replace(name="B", low=1.0), "constraint", "high > low"),
+        (SPIGOT._replace(name="B", kind="angle"), "constraint", "kind"),
     ],
 )
-def test_a_feature_that_is_refused(store: Store, row: FeatureRow, why: str) -> None:
+def test_a_feature_that_is_refused(store: Store, row: FeatureRow, code: str, value: str) -> None:
     feature(store)
-    with pytest.raises(StoreError, match=why):
+    with raises_code(StoreError, code, value):
         feature(store, row)
 
 
 def test_a_reading_that_is_no_number(store: Store) -> None:
-    with pytest.raises(StoreError, match="is a number"):
+    with raises_code(StoreError, "not-a-number"):
         read(store, feature(store), 1, math.nan)
 
 
@@ -174,7 +175,7 @@ def test_a_tool_that_is_none_has_no_life(store: Store, number: int) -> None:
         lambda c: tool_lives.set_limits(c, LifeRow(number, 5)),
         lambda c: tool_lives.change_insert(c, number, ""),
     ):
-        with pytest.raises(StoreError, match="there is no tool"):
+        with raises_code(StoreError, "unknown-tool", f"T{number}"):
             store.write(operation).result(60)
 
 

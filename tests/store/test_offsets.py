@@ -8,6 +8,7 @@ import pytest
 
 from core.store.store import Store, StoreError
 from core.store.store_rows import Kind, SecondaryRow, ToolRow, inches
+from tests.coded import raises_code
 
 
 def test_new_store_has_no_offsets(store: Store) -> None:
@@ -75,15 +76,15 @@ def test_undo_goes_further_back_each_time(store: Store) -> None:
     assert store.tools()[5].x == 1.0
     store.undo_offset().result()
     assert store.tools() == {}
-    with pytest.raises(StoreError, match="no offset change to undo"):
+    with raises_code(StoreError, "nothing-to-undo"):
         store.undo_offset().result()
 
 
 @pytest.mark.parametrize("number", [0, 33, -1])
 def test_number_outside_the_table_is_refused(store: Store, number: int) -> None:
-    with pytest.raises(StoreError, match="T1…32"):
+    with raises_code(StoreError, "unknown-number", "T1…32"):
         store.set_tool(number, "no", x=1.0).result()
-    with pytest.raises(StoreError, match="D1…32"):
+    with raises_code(StoreError, "unknown-number", "D1…32"):
         store.set_secondary(number, "no", x=1.0).result()
     assert store.history() == ()
 
@@ -92,14 +93,14 @@ def test_number_outside_the_table_is_refused(store: Store, number: int) -> None:
     ("x", "z", "r"), [(1270.1, 0, 0), (0, -1270.1, 0), (nan, 0, 0), (0, inf, 0), (0, 0, -0.001), (0, 0, 51)]
 )
 def test_value_out_of_range_changes_nothing(store: Store, x: float, z: float, r: float) -> None:
-    with pytest.raises(StoreError, match="out of range"):
+    with raises_code(StoreError, "out-of-range"):
         store.set_tool(1, "no", x=x, z=z, nose_radius=r).result()
     assert store.tools() == {}
     assert store.trouble == ""  # a refusal is no trouble of the disk
 
 
 def test_secondary_has_the_narrower_range(store: Store) -> None:
-    with pytest.raises(StoreError, match=r"-10…10 in"):
+    with raises_code(StoreError, "out-of-range", "-10…10 in"):
         store.set_secondary(1, "no", x=254.1).result()
 
 

@@ -6,6 +6,7 @@ import pytest
 
 from core.store.store import Store, StoreError
 from core.store.store_rows import EventRow
+from tests.coded import raises_code
 
 
 def test_every_save_is_a_version(store: Store) -> None:
@@ -38,16 +39,16 @@ def test_bytes_survive_whatever_they_are(store: Store) -> None:
 
 @pytest.mark.parametrize("name", ["", ".", "..", "a/b", "a\\b", "a\0", " a", "a\n", "x" * 201, "C:a"])
 def test_name_that_is_no_file_name_is_refused(store: Store, name: str) -> None:
-    with pytest.raises(StoreError, match="cannot name a program"):
+    with raises_code(StoreError, "invalid-name"):
         store.save_program(name, b"", "x").result()
     assert store.programs() == ()
 
 
 def test_missing_program_and_version_are_refused(store: Store) -> None:
     store.save_program("a", b"", "x").result()
-    with pytest.raises(StoreError, match="no program 'b'"):
+    with raises_code(StoreError, "no-program", "'b'"):
         store.load_program("b")
-    with pytest.raises(StoreError, match="'a' version 2"):
+    with raises_code(StoreError, "no-program", "'a' version 2"):
         store.load_program("a", 2)
     assert store.versions("b") == ()
 
@@ -55,7 +56,7 @@ def test_missing_program_and_version_are_refused(store: Store) -> None:
 def test_spoilt_text_is_not_handed_out(store: Store) -> None:
     store.save_program("a", b"X1.000", "x").result()
     store.write(lambda c: c.execute("UPDATE program_versions SET text = X'58'").close()).result()
-    with pytest.raises(StoreError, match="not what was saved"):
+    with raises_code(StoreError, "damaged-version"):
         store.load_program("a")
 
 
@@ -87,9 +88,9 @@ def test_settings_are_json(store: Store) -> None:
 
 
 def test_setting_that_is_no_json_is_refused(store: Store) -> None:
-    with pytest.raises(StoreError, match="setting theme cannot be stored"):
+    with raises_code(StoreError, "unstorable-setting", "theme"):
         store.set_setting("theme", object()).result()
-    with pytest.raises(StoreError, match="cannot be stored"):
+    with raises_code(StoreError, "unstorable-setting", "pot"):
         store.set_setting("pot", float("nan")).result()
 
 
@@ -99,7 +100,7 @@ def test_a_failing_operation_is_rolled_back_and_the_writer_goes_on(store: Store)
 
     with pytest.raises(KeyError):
         store.write(breaks).result()
-    with pytest.raises(StoreError, match="nothing was stored"):
+    with raises_code(StoreError, "constraint"):
         store.write(lambda c: c.execute("INSERT INTO settings VALUES ('k', NULL)").close()).result()
     assert store.trouble == ""  # nothing is wrong with the disk
     assert store.save_program("a", b"", "x").result() == 1
@@ -107,14 +108,14 @@ def test_a_failing_operation_is_rolled_back_and_the_writer_goes_on(store: Store)
 
 
 def test_half_of_an_import_is_none_of_it(store: Store) -> None:
-    with pytest.raises(StoreError, match="cannot name"):
+    with raises_code(StoreError, "invalid-name"):
         store.import_all({"good": b"1", "bad/name": b"2"}, {}, {}, "import").result()
     assert store.programs() == ()
 
 
 def test_closed_store_refuses_writes(store: Store) -> None:
     store.close()
-    with pytest.raises(StoreError, match="closed"):
+    with raises_code(StoreError, "closed"):
         store.log_event("start", "late")
 
 

@@ -15,6 +15,7 @@ from core.store.store import Store
 from core.store.store_errors import StoreError
 from core.store.store_file import FILE_NAME
 from core.store.store_rows import Kind, RunRow, ToolRow
+from tests.coded import raises_code
 
 PIN = FeatureRow(0, "pin.nc", "OD", "diameter", 12.0, -0.01, 0.02, "tool", 3, 1, 5, 3)
 
@@ -77,7 +78,7 @@ def test_an_index_over_two_rows_of_one_key_is_a_damaged_file(kept: Path) -> None
     spoil_page(kept, "settings", b"units", b"unitz")
     spoil_page(kept, "sqlite_autoindex_settings_1", b"units", b"unitq")
     spoil(kept, "INSERT INTO settings VALUES ('unitz', '1')")
-    with pytest.raises(StoreError, match="is damaged"):
+    with raises_code(StoreError, "damaged"):
         Store.open(kept)
 
 
@@ -103,7 +104,7 @@ def test_an_entry_of_the_history_that_was_flipped_undoes_nothing(kept: Path, dam
     [told] = backup.all_problems(kept / FILE_NAME)
     assert told == "entry 2 of the history of offsets is not as it was saved, and is not used"
     with Store.open(kept) as store:
-        with pytest.raises(StoreError, match="entry 2 of the history of offsets is damaged"):
+        with raises_code(StoreError, "damaged-history", "entry 2"):
             store.undo_offset(kind=Kind.TOOL).result()
         assert store.tools() == {3: ToolRow(x=-12.7, z=-2.5, wear_x=-0.02, remark="FINISHER")}
 
@@ -111,7 +112,7 @@ def test_an_entry_of_the_history_that_was_flipped_undoes_nothing(kept: Path, dam
 def test_an_entry_that_has_gone_is_missed(kept: Path) -> None:
     spoil(kept, "DELETE FROM offset_changes WHERE id = 2")
     assert "entry 2 of the history of offsets" in backup.all_problems(kept / FILE_NAME)[0]
-    with Store.open(kept) as store, pytest.raises(StoreError, match="entry 2 of the history"):
+    with Store.open(kept) as store, raises_code(StoreError, "damaged-history", "entry 2"):
         store.undo_offset(kind=Kind.TOOL).result()
 
 
@@ -123,7 +124,7 @@ def test_behind_a_damaged_entry_there_is_a_history_again(kept: Path, tmp_path: P
             ToolRow(x=-12.7, z=-2.5, wear_x=-0.02, remark="FINISHER")
         ]
         assert [row.id for row in store.history(Kind.TOOL, limit=2)] == [4, 3]
-        with pytest.raises(StoreError, match="entry 2 of the history"):
+        with raises_code(StoreError, "damaged-history", "entry 2"):
             store.history(Kind.TOOL)
         backup.backup(kept, tmp_path / "still.db")  # it makes no backup worthless
     assert backup.problems(tmp_path / "still.db") == ()

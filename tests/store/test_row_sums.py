@@ -17,6 +17,7 @@ from core.store.store import Store
 from core.store.store_file import FILE_NAME
 from core.store.store_rows import ToolRow
 from core.store.tool_lives import LifeRow, lives, set_use
+from tests.coded import raises_code
 
 FILE = FILE_NAME
 
@@ -111,7 +112,7 @@ def test_nothing_is_proved_with_a_damaged_offset(kept: Path, monkeypatch: pytest
     monkeypatch.setenv("TURNDESK_HOME", str(kept))
     assert 3 in stored_offsets().tools
     flip(kept, "secondary_offsets", "x", "number = 2")
-    with pytest.raises(CommandError, match="D2 is not as it was saved"):
+    with raises_code(CommandError, "damaged-row", "D2"):
         stored_offsets()
 
 
@@ -122,7 +123,7 @@ def test_a_mill_is_not_moved_to_another_zero(kept: Path, monkeypatch: pytest.Mon
     stored_offsets()
     with outside(kept) as connection:
         connection.execute("UPDATE settings SET value = '2' WHERE key = 'preset'")
-    with pytest.raises(CommandError, match="the setting preset is not as it was saved"):
+    with raises_code(CommandError, "damaged-row", "preset"):
         stored_offsets()
 
 

@@ -13,6 +13,7 @@ from core.store.store import Store, StoreError
 from core.store.store_export import export
 from core.store.store_file import FILE_NAME
 from core.store.store_rows import Kind, ToolRow
+from tests.coded import raises_code
 
 
 @pytest.fixture
@@ -38,9 +39,9 @@ def test_an_entry_of_the_history_that_is_no_figure_is_told_and_undone_by_nobody(
 ) -> None:
     spoil(kept, "UPDATE offset_changes SET old_x = ? WHERE id = 2", value)
     with Store.open(kept) as store:
-        with pytest.raises(StoreError, match="entry 2 of the history of offsets is damaged"):
+        with raises_code(StoreError, "damaged-history", "entry 2"):
             store.history(Kind.TOOL)
-        with pytest.raises(StoreError, match="entry 2 of the history"):
+        with raises_code(StoreError, "damaged-history", "entry 2"):
             store.undo_last().result()
         assert store.tools() == {1: ToolRow(x=2.0)}
         store.set_tool(1, "worn", x=3.0).result()  # the table itself is whole
@@ -50,7 +51,7 @@ def test_an_entry_of_the_history_that_is_no_figure_is_told_and_undone_by_nobody(
 def test_a_program_that_is_no_bytes_is_not_what_was_saved(kept: Path) -> None:
     spoil(kept, "UPDATE program_versions SET text = ?", "G90\nM30\n")
     assert backup.problems(kept / FILE_NAME) == ("'pin.nc' version 1 is not what was saved",)
-    with Store.open(kept) as store, pytest.raises(StoreError, match="version 1 is not what was saved"):
+    with Store.open(kept) as store, raises_code(StoreError, "damaged-version", "version 1"):
         store.load_program("pin.nc")
 
 
@@ -61,7 +62,7 @@ def test_a_schema_whose_names_are_no_text_any_more_is_a_damaged_file(kept: Path)
     assert at > 0
     name = content.index(b"(", at) + 2
     path.write_bytes(content[:name] + b"\xd7" + content[name + 1 :])
-    with pytest.raises(StoreError, match="damaged") as told:
+    with raises_code(StoreError, "damaged") as told:
         Store.open(kept)
     assert "\n" not in str(told.value)
 
@@ -74,7 +75,7 @@ def test_a_type_or_a_name_of_a_column_that_is_no_text_says_what_to_do(
     content = bytearray((kept / FILE_NAME).read_bytes())
     content[content.index(word, content.index(b"CREATE TABLE offset_changes")) + of] |= 0x80
     (kept / FILE_NAME).write_bytes(content)
-    with pytest.raises(StoreError, match=r"is damaged .*Restore a backup"):
+    with raises_code(StoreError, "damaged", "turndesk store restore FILE"):
         Store.open(kept)
 
 
@@ -90,7 +91,7 @@ def test_a_program_whose_name_leads_elsewhere_is_exported_nowhere(
     kept: Path, tmp_path: Path, name: object
 ) -> None:
     spoil(kept, "UPDATE programs SET name = ?", name)
-    with Store.open(kept) as store, pytest.raises(StoreError, match="which is none; restore a backup"):
+    with Store.open(kept) as store, raises_code(StoreError, "invalid-name"):
         export(store, tmp_path / "out")
     assert not (tmp_path / "out").exists()
     assert list(tmp_path.rglob("pin*")) == []
@@ -99,7 +100,7 @@ def test_a_program_whose_name_leads_elsewhere_is_exported_nowhere(
 def test_a_version_whose_number_has_a_line_end_stays_in_its_sentence(kept: Path) -> None:
     spoil(kept, "UPDATE program_versions SET number = ?, text = ?", "a\nb", b"M30\n")
     assert backup.problems(kept / FILE_NAME)[0] == "'pin.nc' version a b is not what was saved"
-    with Store.open(kept) as store, pytest.raises(StoreError, match="version a b is not what was saved"):
+    with Store.open(kept) as store, raises_code(StoreError, "damaged-version", "version a b"):
         store.load_program("pin.nc")
 
 
@@ -121,7 +122,7 @@ def test_a_column_whose_name_is_no_text_is_a_damaged_file(kept: Path, tmp_path: 
     at = content.index(b"CREATE TABLE tool_lives")
     name = content.index(b"tool", at + 24)
     path.write_bytes(content[:name] + b"\x83" + content[name + 1 :])
-    with pytest.raises(StoreError, match="is damaged") as told, Store.open(kept) as store:
+    with raises_code(StoreError, "damaged") as told, Store.open(kept) as store:
         export(store, tmp_path / "out")
     assert "\n" not in str(told.value)
     assert not (tmp_path / "out").exists()

@@ -15,6 +15,7 @@ from core.store import backup, database
 from core.store.store import Store, StoreError
 from core.store.store_export import export
 from core.unfinished import forget_killed, unfinished_file, unfinished_folder
+from tests.coded import raises_code
 
 _KILLED = """
 import os, signal, sys
@@ -92,7 +93,7 @@ def test_a_killed_copy_of_the_older_version_has_no_name(
 
     with monkeypatch.context() as patch:
         patch.setattr(database, "put_in_place", cut)
-        with pytest.raises(StoreError, match="the disk is full"):
+        with raises_code(StoreError, "disk-full"):
             Store.open(folder)
     assert not [name for name in names(folder) if "version" in name or "unfinished" in name]
     with Store.open(folder) as store:
@@ -132,6 +133,6 @@ def test_a_restore_that_finds_no_room_leaves_nothing(
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr(shutil, "copy2", full)
-    with pytest.raises(StoreError, match="the disk is full"):
+    with raises_code(StoreError, "disk-full"):
         backup.restore(folder, tmp_path / "good.db")
     assert names(folder) == ["turndesk.db", "turndesk.lock"]

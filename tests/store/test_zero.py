@@ -8,6 +8,7 @@ import pytest
 
 from core.store.store import Store, StoreError
 from core.store.store_rows import Kind, ZeroRow
+from tests.coded import raises_code
 
 
 def test_what_is_set_is_there_again(tmp_path: Path) -> None:
@@ -40,24 +41,24 @@ def test_undo_goes_back_step_by_step(tmp_path: Path) -> None:
         store.undo_offset(kind=Kind.ZERO).result()
         store.undo_offset(kind=Kind.ZERO).result()
         assert store.zero_offsets() == {}
-        with pytest.raises(StoreError, match="no change"):
+        with raises_code(StoreError, "nothing-to-undo"):
             store.undo_offset(kind=Kind.ZERO).result()
 
 
 @pytest.mark.parametrize(
-    ("code", "values", "told"),
+    ("code", "values", "fault"),
     [
-        (53, {"x": 1.0}, "G53 does not exist"),
-        (60, {"x": 1.0}, "G54…G59"),
-        (54, {"x": 5001.0}, "out of range"),
-        (54, {"c": 361.0}, "degrees"),
-        (54, {"z": float("nan")}, "out of range"),
-        (54, {"y": 1.0}, "out of range"),
+        (53, {"x": 1.0}, "unknown-number"),
+        (60, {"x": 1.0}, "unknown-number"),
+        (54, {"x": 5001.0}, "out-of-range"),
+        (54, {"c": 361.0}, "out-of-range"),
+        (54, {"z": float("nan")}, "out-of-range"),
+        (54, {"y": 1.0}, "out-of-range"),
     ],
 )
-def test_refused(tmp_path: Path, code: int, values: dict[str, float], told: str) -> None:
+def test_refused(tmp_path: Path, code: int, values: dict[str, float], fault: str) -> None:
     with Store.open(tmp_path) as store:
-        with pytest.raises(StoreError, match=told):
+        with raises_code(StoreError, fault, f"G{code}"):
             store.set_offset(Kind.ZERO, code, "x", values).result()
         assert store.zero_offsets() == {}
         assert store.history(Kind.ZERO) == ()
