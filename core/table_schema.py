@@ -9,6 +9,7 @@ from enum import Enum, StrEnum
 from math import inf
 from typing import TYPE_CHECKING, NamedTuple, TypeGuard, TypeVar
 
+from core.coded_error import CodedError
 from core.nearest import nearest
 
 if TYPE_CHECKING:
@@ -77,24 +78,32 @@ def shown(value: float, unit: Unit, inch: bool) -> str:
 
 
 class Finding(NamedTuple):
-    """One thing that is wrong: the key's path, the value as the file has it, what would be right."""
+    """One thing that is wrong: the key's path, the value as the file has it, what would be right.
+
+    ``code`` names the fault for tests, as in ``CodedError``.
+    """
 
     path: str
     value: str
     expected: str
+    code: str = ""
 
     def __str__(self) -> str:
         where = f"{self.path} = {self.value}" if self.value else self.path
         return " ".join(f"{where}: {self.expected}".splitlines())  # a key of TOML may hold a line end
 
 
-class MachineFileError(Exception):
-    """A machine file cannot be used. ``errors`` holds every finding, ``source`` the file's name."""
+class MachineFileError(CodedError):
+    """A machine file cannot be used. ``errors`` holds every finding, ``source`` the file's name.
+
+    ``code`` holds the codes of the findings, in their order.
+    """
 
     def __init__(self, errors: Sequence[Finding], source: str) -> None:
         self.errors = tuple(errors)
         self.source = source
-        super().__init__(f"{source}: " + "; ".join(str(finding) for finding in self.errors))
+        text = "; ".join(str(finding) for finding in self.errors)
+        super().__init__(f"{source}: {text}", " ".join(each.code for each in self.errors if each.code))
 
 
 Pair = tuple[float, float]
@@ -220,7 +229,7 @@ def unknown_keys(table: Mapping[str, object], known: list[str], path: str) -> li
         if key not in known:
             near = nearest(key, known)
             hint = f"did you mean {near}?" if near else f"known here: {', '.join(known)}"
-            found.append(Finding(joined(path, key), "", f"unknown key; {hint}"))
+            found.append(Finding(joined(path, key), "", f"unknown key; {hint}", "unknown-key"))
     return found
 
 
@@ -232,7 +241,7 @@ def read_table(
     ``children`` are tables inside that somebody else reads.
     """
     if not isinstance(table, dict):
-        return [Finding(path, written(table), f"expected a table, [{path}]")]
+        return [Finding(path, written(table), f"expected a table, [{path}]", "not-a-table")]
     findings = unknown_keys(table, [*(field.key for field in fields), *children], path)
     for field in fields:
         place = joined(path, field.key)
@@ -241,7 +250,7 @@ def read_table(
             findings += _default(field, place, values)
         elif problem := _problem(raw, field, values.inch):
             values.wrong.add(place)
-            findings.append(Finding(place, written(raw), f"expected {problem}"))
+            findings.append(Finding(place, written(raw), f"expected {problem}", "wrong-value"))
         elif values.inch is not None or field.unit not in LENGTHS:
             values.found[place] = _converted(raw, field, bool(values.inch))
     return findings
@@ -260,7 +269,7 @@ def _default(field: Field, place: str, values: Values) -> list[Finding]:
 
 def missing(place: str, field: Field, inch: bool | None) -> Finding:
     """The finding about a value that the file has to say and does not."""
-    return Finding(place, "", f"missing; expected {_expected(field, inch)}")
+    return Finding(place, "", f"missing; expected {_expected(field, inch)}", "missing")
 
 
 def _number(raw: object) -> TypeGuard[int | float]:
@@ -416,7 +425,7 @@ class Driver:
 
 def expected_table(path: str, raw: object) -> Finding:
     """The finding about something that is no table."""
-    return Finding(path, written(raw), f"expected a table, [{path}]")
+    return Finding(path, written(raw), f"expected a table, [{path}]", "not-a-table")
 
 
 def read_named(raw: object, fields: tuple[Field, ...], path: str, values: Values) -> list[Finding]:

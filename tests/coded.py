@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from app.cli import main as command
+from app.cli import refusal
 from core.coded_error import CodedError
 
 
@@ -26,11 +26,11 @@ def raises_code(kind: type[Exception], code: str, *values: object) -> Iterator[p
 def recorded_refusals(monkeypatch: pytest.MonkeyPatch) -> list[CodedError]:
     """Return a list that receives every error that ends a command of this process from now on."""
     refusals = list[CodedError]()
-    refused = command.refused
+    refused = refusal.refused
 
     def record(error: CodedError) -> int:
         refusals.append(error)
         return refused(error)
 
-    monkeypatch.setattr(command, "refused", record)
+    monkeypatch.setattr(refusal, "refused", record)
     return refusals

@@ -76,7 +76,9 @@ def check(file: str | None, *, json_wanted: bool) -> int:
     try:
         machine = named_machine(file)
     except MachineFileError as error:
-        errors = [finding._asdict() for finding in error.errors]
+        errors = [
+            {"path": each.path, "value": each.value, "expected": each.expected} for each in error.errors
+        ]
         _report(json_wanted, {"file": error.source, "errors": errors, "ports": []})
         sys.stderr.write("".join(f"turndesk: {error.source}: {finding}\n" for finding in error.errors))
         return EXIT_USAGE

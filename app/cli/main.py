@@ -12,13 +12,12 @@ import sys
 import threading
 from collections.abc import Sequence
 
-from app.cli import dropped_interrupt
+from app.cli import dropped_interrupt, refusal
 from app.cli.command_parser import Parser, add_screen_options, settled
 from app.cli.crash_report import report_crash, report_thread
 from app.desk.command_errors import EXIT_INTERRUPTED, EXIT_OK, EXIT_USAGE, CommandError
 from app.desk.data_folder import DataFolderError, check_data_folder
 from app.desk.standard_input import nothing_taken
-from core.coded_error import CodedError
 
 # Modules with add_parser(subparsers) and run(args) -> exit status; importing one costs next to nothing.
 COMMANDS = (
@@ -86,7 +85,7 @@ def main(argv: Sequence[str] | None = None) -> int:
             dropped_interrupt.look()
             return status
     except (CommandError, DataFolderError) as error:
-        return refused(error)
+        return refusal.refused(error)
     except ImportError as error:
         if not _library_missing(error):
             raise
@@ -106,12 +105,6 @@ def main(argv: Sequence[str] | None = None) -> int:
         sys.stderr.write(f"turndesk: stdout cannot be written: {error.strerror}\n")
         _write_no_more()
         return EXIT_USAGE
-
-
-def refused(error: CodedError) -> int:
-    """Print why the command cannot continue; return its exit status."""
-    sys.stderr.write(f"turndesk: {error}\n")
-    return EXIT_USAGE
 
 
 def _library_missing(error: ImportError) -> bool:

@@ -10,6 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from app.cli import refusal
 from app.cli.part_options import add_part_options
 from app.cli.program_options import (
     add_ideal_option,
@@ -18,7 +19,7 @@ from app.cli.program_options import (
     read_source,
 )
 from app.cli.progress_bar import Progress
-from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, EXIT_USAGE, CommandError
+from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError
 from core.tool_edges import edge_name
 
 MOST_JOBS = 256
@@ -153,10 +154,9 @@ def _status(path: Path, jobs: FittingJobs, args: argparse.Namespace, report: Rep
         job = jobs.of(name)
         job = replace(job, setting=with_kept_stock(job.setting, source.name, args))
     except CommandError as error:
-        sys.stderr.write(f"turndesk: {error}\n")
         if report is not None:
             report.add(path, Proof({}, fault=str(error)))
-        return EXIT_USAGE
+        return refusal.refused(error)
     found = _prove(path, source, job, args)
     if report is not None:
         report.add(path, Proof({}, found.section))

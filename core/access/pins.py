@@ -11,12 +11,14 @@ import secrets
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from core.coded_error import CodedError
+
 SHORTEST, LONGEST = 4, 12
 _SALT, _LENGTH = 16, 32  # bytes
 _N, _R, _P = 2**14, 8, 1
 
 
-class PinError(Exception):
+class PinError(CodedError):
     """No such PIN can be; the sentence says why."""
 
 
@@ -30,9 +32,11 @@ class Hashed(NamedTuple):
 def check_pin(pin: str) -> None:
     """Raises PinError for what is no PIN: 4 to 12 figures, not all the same."""
     if not (pin.isascii() and pin.isdigit() and SHORTEST <= len(pin) <= LONGEST):
-        raise PinError(f"a PIN has {SHORTEST} to {LONGEST} figures")
+        raise PinError(f"a PIN has {SHORTEST} to {LONGEST} figures", "pin-length")
     if len(set(pin)) == 1:
-        raise PinError("a PIN of one figure again and again is guessed at once; take another")
+        raise PinError(
+            "a PIN of one figure again and again is guessed at once; take another", "pin-too-simple"
+        )
 
 
 def hashed(pin: str, salt: bytes | None = None) -> Hashed:

@@ -59,12 +59,13 @@ def text_of(path: Path) -> str:
         return _bytes_of(path).decode("utf-8").replace("\r\n", "\n")
     except OSError as error:
         reason = error.strerror or "cannot be read"
+        code = "too-large" if error.errno == errno.EFBIG else "unreadable"
         raise MachineFileError(
-            [Finding("file", "", f"{reason}; check name and rights")], str(path)
+            [Finding("file", "", f"{reason}; check name and rights", code)], str(path)
         ) from error
     except UnicodeDecodeError as error:
         raise MachineFileError(
-            [Finding("file", "", "is not UTF-8 text; save it as such")], str(path)
+            [Finding("file", "", "is not UTF-8 text; save it as such", "not-utf8")], str(path)
         ) from error
 
 
@@ -85,7 +86,7 @@ def parse_machine(text: str, source: str, drivers: Sequence[Driver]) -> Machine:
     try:
         data = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
-        raise MachineFileError([Finding("TOML", "", str(error))], source) from error
+        raise MachineFileError([Finding("TOML", "", str(error), "not-toml")], source) from error
     reading = Reading(data, drivers)
     untold = [*machine_defaults.fill(reading)]
     axes, said = _axis_names(reading), signal_rules.terminals(reading)

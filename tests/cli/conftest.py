@@ -11,6 +11,7 @@ import pytest
 
 from app.cli.main import main
 from app.compose import headless_run
+from core.coded_error import CodedError
 from drivers.clocks import StepClock
 from tests.coded import recorded_refusals
 from tests.worked import worked
@@ -41,9 +42,14 @@ def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 @pytest.fixture
-def turndesk(home: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> Turndesk:
+def refusals(monkeypatch: pytest.MonkeyPatch) -> list[CodedError]:
+    """Every error that has ended a command, the newest one last."""
+    return recorded_refusals(monkeypatch)
+
+
+@pytest.fixture
+def turndesk(home: Path, capsys: pytest.CaptureFixture[str], refusals: list[CodedError]) -> Turndesk:
     """Run the command line; usage errors end as they do for a user."""
-    refusals = recorded_refusals(monkeypatch)
 
     def run(*argv: object) -> Told:
         refusals.clear()

@@ -36,23 +36,23 @@ def test_tools_and_presets_are_set_by_the_words_of_their_columns(turndesk: Turnd
 
 
 @pytest.mark.parametrize(
-    ("words", "told"),
+    ("words", "code", "value"),
     [
-        (("TOOL0", "L=1"), "T0 does not exist; they are 1…999"),
-        (("PRESET100", "x=1"), "PRESET 100 does not exist; they are 1…99"),
-        (("TOOL7", "L=1001"), "out of range; enter -1000…1000 mm"),
-        (("TOOL7", "radius=-1"), "out of range; enter 0…1000 mm"),
-        (("TOOL7", "x=1"), "x"),
-        (("PRESET3", "L"), "write KEY=VALUE, such as x=100"),
-        (("TOOL7", "stop=2"), "neither 1 nor 0"),
+        (("TOOL0", "L=1"), "unknown-number", "1…999"),
+        (("PRESET100", "x=1"), "unknown-number", "1…99"),
+        (("TOOL7", "L=1001"), "out-of-range", "-1000…1000 mm"),
+        (("TOOL7", "radius=-1"), "out-of-range", "0…1000 mm"),
+        (("TOOL7", "x=1"), "unknown-key", "x"),
+        (("PRESET3", "L"), "no-value", "x=100"),
+        (("TOOL7", "stop=2"), "not-a-flag", "2"),
     ],
 )
 def test_what_is_no_tool_and_no_preset_is_refused(
-    turndesk: Turndesk, home: Path, words: tuple[str, ...], told: str
+    turndesk: Turndesk, home: Path, words: tuple[str, ...], code: str, value: str
 ) -> None:
     answer = turndesk("offsets", "set", *words)
-    assert answer.status == 2
-    assert told in answer.err
+    assert (answer.status, answer.code) == (2, code)
+    assert value in answer.err
     with Store.open(home) as store:
         assert (store.mill_tools(), store.presets()) == ({}, {})
 
@@ -76,10 +76,11 @@ def test_of_a_spoilt_table_nothing_is_imported(turndesk: Turndesk, home: Path, t
     assert turndesk("store", "export", out).status == 0
     (out / "mill_tools.csv").write_text("number,name,length\n7,A,60\n8,B,sixty\n")
     told = turndesk("store", "import", out)
-    assert told.status == 2
+    assert (told.status, told.code) == (2, "unreadable-export")
     assert "mill_tools.csv line 3" in told.err
     (out / "mill_tools.csv").write_text("number,name,length\n1000,A,60\n")
-    assert "T1000 does not exist" in turndesk("store", "import", out).err
+    told = turndesk("store", "import", out)
+    assert (told.code, "T1000" in told.err) == ("unknown-number", True)
     with Store.open(home) as store:
         assert store.mill_tools() == {}
 

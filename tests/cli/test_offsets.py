@@ -8,8 +8,10 @@ from pathlib import Path
 import pytest
 
 from app.cli.main import main
+from core.coded_error import CodedError
 from core.store.store import Store
 from core.store.store_rows import SecondaryRow, ToolRow
+from tests.coded import recorded_refusals
 
 Captured = pytest.CaptureFixture[str]
 
@@ -21,13 +23,15 @@ def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return folder
 
 
-def refused(capsys: Captured, *argv: str) -> str:
-    """The one line that a refused command says."""
-    assert main(["offsets", *argv]) == 2
+def refused(capsys: Captured, *argv: str) -> CodedError:
+    """Return the error that a refused command prints on one line."""
+    with pytest.MonkeyPatch.context() as patch:
+        refusals = recorded_refusals(patch)
+        assert main(["offsets", *argv]) == 2
     told = capsys.readouterr()
-    assert told.out == ""
+    assert (told.out, told.err) == ("", f"turndesk: {refusals[-1]}\n")
     assert told.err.count("\n") == 1
-    return told.err
+    return refusals[-1]
 
 
 def shown(capsys: Captured) -> dict[str, object]:
@@ -105,36 +109,40 @@ def test_history_as_text_tells_old_and_new(capsys: Captured) -> None:
 
 
 @pytest.mark.parametrize(
-    ("argv", "told"),
+    ("argv", "code", "value"),
     [
-        (("set", "T33", "x=1"), "T33 is no offset"),
-        (("set", "T0", "x=1"), "T0 is no offset"),
-        (("set", "X1", "x=1"), "X1 is no offset"),
-        (("set", "T1", "y=1"), "y is unknown"),
-        (("set", "T1", "nose_rad=1"), "did you mean nose_radius?"),
-        (("set", "D1", "nose_radius=.1"), "known here: x, z, r"),
-        (("set", "T1", "x"), "write KEY=VALUE"),
-        (("set", "T1", "x="), "nothing is entered"),
-        (("set", "T1", "x=1", "x=2"), "given twice"),
-        (("set", "T1", "x=1,5"), "the decimal sign is a point"),
-        (("set", "T1", "x=__import__('os')"), "only numbers"),
-        (("set", "T1", "x=1/0"), "divides by zero"),
-        (("set", "T1", "x=50.1"), "-50…50 in"),
-        (("set", "D1", "x=10.1"), "-10…10 in"),
-        (("set", "D1", "r=-.001"), "0…2 in"),
-        (("set", "T1", "quadrant=10"), "quadrant = 10 is out of range; expected 0…9"),
-        (("set", "T1", "quadrant=two"), "quadrant: t in two is no number"),
-        (("set", "T1", "wear_x=.2"), "wear_x = 0.2 is out of range; expected -0.1…0.1 in"),
-        (("set", "T1", f"remark={'x' * 41}"), "up to 40 characters"),
-        (("set", "T1", "master=1"), "T1 was never set"),
-        (("set", "T1", "master=perhaps"), "neither 1 nor 0"),
-        (("set", "D1", "wear_x=.001"), "wear_x is unknown"),
-        (("undo",), "no offset change to undo"),
-        (("history", "--limit", "0"), "give 1 or more"),
+        (("set", "T33", "x=1"), "unknown-offset", "T33"),
+        (("set", "T0", "x=1"), "unknown-offset", "T0"),
+        (("set", "X1", "x=1"), "unknown-offset", "X1"),
+        (("set", "T1", "y=1"), "unknown-key", "y "),
+        (("set", "T1", "nose_rad=1"), "unknown-key", "nose_radius?"),
+        (("set", "D1", "nose_radius=.1"), "unknown-key", "x, z, r"),
+        (("set", "T1", "x"), "no-value", "KEY=VALUE"),
+        (("set", "T1", "x="), "not-a-number", "x:"),
+        (("set", "T1", "x=1", "x=2"), "key-twice", "x "),
+        (("set", "T1", "x=1,5"), "not-a-number", "x:"),
+        (("set", "T1", "x=__import__('os')"), "not-a-number", "x:"),
+        (("set", "T1", "x=1/0"), "not-a-number", "x:"),
+        (("set", "T1", "x=50.1"), "out-of-range", "-50…50 in"),
+        (("set", "D1", "x=10.1"), "out-of-range", "-10…10 in"),
+        (("set", "D1", "r=-.001"), "out-of-range", "0…2 in"),
+        (("set", "T1", "quadrant=10"), "out-of-range", "quadrant = 10 "),
+        (("set", "T1", "quadrant=two"), "not-a-number", "quadrant:"),
+        (("set", "T1", "wear_x=.2"), "out-of-range", "wear_x = 0.2 "),
+        (("set", "T1", f"remark={'x' * 41}"), "out-of-range", "40"),
+        (("set", "T1", "master=1"), "never-set", "T1"),
+        (("set", "T1", "master=perhaps"), "not-a-flag", "perhaps"),
+        (("set", "D1", "wear_x=.001"), "unknown-key", "wear_x"),
+        (("undo",), "nothing-to-undo", ""),
+        (("history", "--limit", "0"), "limit", "0"),
     ],
 )
-def test_refusal_is_one_line_and_changes_nothing(capsys: Captured, argv: tuple[str, ...], told: str) -> None:
-    assert told in refused(capsys, *argv)
+def test_refusal_is_one_line_and_changes_nothing(
+    capsys: Captured, argv: tuple[str, ...], code: str, value: str
+) -> None:
+    error = refused(capsys, *argv)
+    assert error.code == code
+    assert value in str(error)
     assert shown(capsys) == {"tool": {}, "secondary": {}}
 
 
@@ -154,14 +162,14 @@ def test_one_bad_value_of_two_sets_neither(capsys: Captured) -> None:
 def test_store_in_use_is_refused_and_still_shown(capsys: Captured, home: Path) -> None:
     with Store.open(home) as store:
         store.set_tool(1, "screen", x=25.4).result()
-        assert "in use by another TurnDesk" in refused(capsys, "set", "T1", "x=2")
+        assert refused(capsys, "set", "T1", "x=2").code == "in-use"
         assert shown(capsys) == {"tool": {"1": tool(x=1.0)}, "secondary": {}}
 
 
 def test_damaged_store_is_told_in_one_line(capsys: Captured, home: Path) -> None:
     home.mkdir()
     (home / "turndesk.db").write_bytes(b"rubbish" * 100)
-    assert "is not a database" in refused(capsys, "show")
+    assert refused(capsys, "show").code == "not-a-database"
 
 
 def test_every_field_of_a_tool_is_set_shown_and_told(capsys: Captured) -> None:
@@ -201,7 +209,9 @@ def test_a_tool_is_cleared_and_comes_back(capsys: Captured) -> None:
     main(["offsets", "set", "T1", "x=1", "z=2"])
     main(["offsets", "set", "T1D2", "x=1", "z=3"])
     capsys.readouterr()
-    assert "clear T1 D2 first" in refused(capsys, "clear", "T1")
+    error = refused(capsys, "clear", "T1")
+    assert error.code == "has-further-edges"
+    assert "T1 D2" in str(error)
     assert main(["offsets", "clear", "T1D2"]) == 0
     assert main(["offsets", "clear", "T1"]) == 0
     capsys.readouterr()

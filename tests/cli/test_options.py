@@ -12,6 +12,7 @@ import pytest
 
 from app.cli.command_parser import BEFORE
 from app.cli.main import COMMANDS, build_parser, main
+from core.coded_error import CodedError
 from tests.cli.conftest import Turndesk
 
 PART = (
@@ -232,10 +233,10 @@ def test_an_option_is_written_in_full(words: list[str], capsys: pytest.CaptureFi
     assert "unrecognized arguments" in said or "invalid choice" in said
 
 
-def test_version_with_anything_else_is_refused(part: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_version_with_anything_else_is_refused(part: Path, refusals: list[CodedError]) -> None:
     assert main(["--version", "prove", str(part)]) == 2
     assert main(["--version", "--machine", "gt75"]) == 2
-    assert "--version stands alone" in capsys.readouterr().err
+    assert [each.code for each in refusals] == ["version-alone"] * 2
 
 
 def test_the_options_of_a_program_act(
@@ -287,30 +288,34 @@ def test_every_command_about_a_program_does_something_else_with_its_options(
 @pytest.mark.parametrize("command", ["prove", "expand", "trace"])
 @pytest.mark.parametrize("option", ["--strict", "--inputs"])
 def test_what_only_one_language_has_is_refused_in_the_others(
-    command: str, option: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    command: str, option: str, tmp_path: Path, refusals: list[CodedError]
 ) -> None:
     part, inputs = tmp_path / "a.mpf", tmp_path / "i.toml"
     part.write_text("N10 G90\nN20 M30\n")
     inputs.write_text("[inputs]\n10 = true\n")
     words = [option, str(inputs)] if option == "--inputs" else [option]
     assert main([command, str(part), *words]) == 2
-    assert f"{option} is for OmniTurn programs alone" in capsys.readouterr().err
+    (error,) = refusals
+    assert error.code == "omniturn-only"
+    assert option in str(error)
 
 
 def test_an_input_that_the_machine_has_not_is_refused(
-    part: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    part: Path, tmp_path: Path, refusals: list[CodedError]
 ) -> None:
     inputs = tmp_path / "i.toml"
     inputs.write_text("[inputs]\n99 = true\n")
     assert main(["prove", str(part), "--inputs", str(inputs)]) == 2
-    assert "99" in capsys.readouterr().err
+    (error,) = refusals
+    assert error.code == "unknown-key"
+    assert "99" in str(error)
 
 
 def test_trace_in_json_needs_a_file_for_the_setpoints(
-    turndesk: Turndesk, part: Path, offsets: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    turndesk: Turndesk, part: Path, offsets: Path, tmp_path: Path
 ) -> None:
-    assert main(["trace", str(part), "--json"]) == 2
-    assert "--json needs --out" in capsys.readouterr().err
+    told = turndesk("trace", part, "--json")
+    assert (told.status, told.code) == (2, "json-needs-file")
     told = turndesk("trace", part, "--offsets", offsets, "--out", tmp_path / "a.csv", "--json")
     (report,) = told.lines
     assert (told.status, report["out"]) == (0, str(tmp_path / "a.csv"))
@@ -330,18 +335,21 @@ def test_json_and_headless_go_together(turndesk: Turndesk, part: Path, offsets: 
 @pytest.mark.parametrize("below", ["", "/deeper/still"])
 def test_a_home_that_is_a_file_is_told(
     command: list[str], below: str, part: Path, monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
+    refusals: list[CodedError],
 ) -> None:  # fmt: skip
     monkeypatch.setenv("TURNDESK_HOME", f"{part}{below}")
     assert main([word.format(part=part) for word in command]) == 2
-    said = capsys.readouterr().err
-    assert "TURNDESK_HOME" in said
-    assert "no folder" in said
+    (error,) = refusals
+    assert error.code == "not-a-folder"
+    assert "TURNDESK_HOME" in str(error)
 
 
 @pytest.mark.parametrize("words", [["offsets", "show"], ["setup", "desktop"], ["store", "verify"]])
 def test_a_user_without_a_home_is_told_to_name_a_folder(
-    words: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    words: list[str],
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    refusals: list[CodedError],
 ) -> None:
     def nowhere(*_: object, **__: object) -> Path:
         raise RuntimeError("Could not determine home directory.")
@@ -351,9 +359,8 @@ def test_a_user_without_a_home_is_told_to_name_a_folder(
     monkeypatch.setattr("platformdirs.user_data_path", nowhere)
     monkeypatch.setattr("pathlib.Path.home", nowhere)
     assert main(words) == 2
-    said = capsys.readouterr().err
-    assert said.startswith("turndesk: this user has no home folder; name a folder in ")
-    assert said.count("\n") == 1
+    assert [each.code for each in refusals] == ["no-home"]
+    assert capsys.readouterr().err.count("\n") == 1
 
 
 @pytest.mark.parametrize(("words", "meant"), [
@@ -386,5 +393,6 @@ def test_a_program_where_a_command_belongs_is_told_both_ways(turndesk: Turndesk,
     program.write_text("M30\n")
     told = turndesk(program)
     assert told.status == 2
-    assert f"prove {program} proves it, --program {program} opens it on the screen" in told.err
+    assert f"prove {program} " in told.err
+    assert f"--program {program} " in told.err
     assert told.err.count("\n") == 1

@@ -136,12 +136,12 @@ def test_axis_and_gap(turndesk: Turndesk, tmp_path: Path, sheet: Path) -> None:
     path = dxf(tmp_path / "loose.dxf", loose)
     assert len(told(turndesk, path, "--axis", "Y 0", "--list")["contours"]) == 2
     assert len(told(turndesk, path, "--axis", "Y 0", "--gap", 0.2, "--list")["contours"]) == 1
-    assert "up to 1 mm" in turndesk("profile", path, "--gap", 5).err
+    assert turndesk("profile", path, "--gap", 5).code == "gap"
 
 
 def test_the_unit_of_a_drawing_that_does_not_say_it(turndesk: Turndesk, tmp_path: Path, sheet: Path) -> None:
     path = dxf(tmp_path / "none.dxf", chain((0, 0), (0, 0.25), (-1, 0.25), (-1, 0)), unit=0)
-    assert "does not say its unit: say --unit mm or --unit inch" in turndesk("profile", path).err
+    assert turndesk("profile", path).code == "no-unit"
     assert "X.5Z0" in told(turndesk, path, "--tools", sheet, "--unit", "inch")["program"]
 
 
@@ -156,20 +156,20 @@ def test_a_metric_machine_makes_a_metric_program(turndesk: Turndesk, part: Path,
 
 
 @pytest.mark.parametrize(
-    ("words", "says"),
+    ("words", "code", "value"),
     [
-        (["--layer", "NONE"], "has no layer NONE: say 0, RING"),
-        (["--contour", "3"], "has 2 contours: say --contour 1 to 2"),
-        (["--axis", "Q"], "has no axis Q: choose Y 0"),
-        (["--side", "bore"], "say its diameter with --hole"),
-        (["--bar", "0.3", "--contour", "1"], "type a smaller X"),
-        (["--out", "/nowhere/x.nc"], "cannot be written"),
+        (["--layer", "NONE"], "no-layer", "NONE"),
+        (["--contour", "3"], "which-contour", "--contour 1 to 2"),
+        (["--axis", "Q"], "no-axis", "Q"),
+        (["--side", "bore"], "no-hole", "--hole"),
+        (["--bar", "0.3", "--contour", "1"], "refused-shape", "0.3"),
+        (["--out", "/nowhere/x.nc"], "no-folder", "/nowhere/x.nc"),
     ],
 )
-def test_what_cannot_be(turndesk: Turndesk, part: Path, words: list[str], says: str) -> None:
+def test_what_cannot_be(turndesk: Turndesk, part: Path, words: list[str], code: str, value: str) -> None:
     done = turndesk("profile", part, *words)
-    assert done.status == 2
-    assert says in done.err
+    assert (done.status, done.code) == (2, code)
+    assert value in done.err
     assert done.err.count("\n") == 1
 
 
@@ -177,11 +177,10 @@ def test_a_program_that_is_there_is_never_replaced(turndesk: Turndesk, part: Pat
     out = tmp_path / "mine.nc"
     out.write_text("M30\n")
     done = turndesk("profile", part, "--out", out)
-    assert done.status == 2
-    assert "is there already and is never replaced" in done.err
+    assert (done.status, done.code) == (2, "file-exists")
     assert out.read_text() == "M30\n"
 
 
 def test_no_drawing(turndesk: Turndesk, tmp_path: Path) -> None:
-    assert "cannot be read" in turndesk("profile", tmp_path / "none.dxf").err
-    assert turndesk("profile", tmp_path / "none.step").status == 2
+    assert turndesk("profile", tmp_path / "none.dxf").code == "unreadable"
+    assert turndesk("profile", tmp_path / "none.step").code == "not-a-drawing"

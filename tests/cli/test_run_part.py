@@ -89,4 +89,4 @@ def test_a_stock_that_cannot_be_used_ends_it_before_anything_moves(
 ) -> None:
     told = turndesk("run", written(tmp_path, PART), "--headless", "--offsets", offsets, "--stock", "rod:1")
     assert told.status == 2
-    assert "no stock" in told.err
+    assert told.code == "unknown-form"

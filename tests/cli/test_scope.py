@@ -49,7 +49,7 @@ def test_samples_go_to_a_file_or_to_stdout(turndesk: Turndesk, ring: Path, tmp_p
 def test_json_and_samples_do_not_share_stdout(turndesk: Turndesk, ring: Path) -> None:
     told = turndesk("scope", ring, "--json", "--csv")
     assert (told.status, told.out) == (2, "")
-    assert "--json needs --csv OUT" in told.err
+    assert told.code == "json-needs-file"
 
 
 @pytest.mark.parametrize("text", ["", "G01X1\n"])
@@ -58,7 +58,8 @@ def test_what_is_no_record_is_refused(turndesk: Turndesk, tmp_path: Path, text: 
     path.write_text(text)
     told = turndesk("scope", path)
     assert (told.status, told.out) == (2, "")
-    assert told.err.startswith(f"turndesk: {path} is no record of the scope")
+    assert told.code == "not-a-record"
+    assert str(path) in told.err
     assert turndesk("scope", tmp_path / "gone.scope").status == 2
 
 

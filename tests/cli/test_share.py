@@ -12,7 +12,7 @@ from app.compose.machine_answers import check_ports
 from app.compose.machine_files import parse_machine
 from core.store.store import Store
 from core.table_schema import MachineFileError
-from tests.cli.conftest import Turndesk
+from tests.cli.conftest import Told, Turndesk
 
 
 class Shop:
@@ -32,7 +32,7 @@ class Shop:
     def program(self, number: int, name: str) -> Path:
         return self.folder / f"home{number}" / "programs" / name
 
-    def share(self, number: int, *words: str) -> tuple[int, str, str]:
+    def share(self, number: int, *words: str) -> Told:
         self._patch.setenv("TURNDESK_HOME", str(self.folder / f"home{number}"))
         return self._turndesk("share", *words, "--machine", str(self.folder / f"lathe{number}.toml"))
 
@@ -70,29 +70,31 @@ def test_published_seen_compared_taken_and_settled(shop: Shop) -> None:
 
 
 @pytest.mark.parametrize(
-    ("words", "why"),
+    ("words", "code", "value"),
     [
-        (("take", "GONE.NC"), "no desk shares a program GONE.NC"),
-        (("take", "CAP.NC"), "CAP.NC is nowhere newer than here"),
-        (("take", "CAP.NC", "--id", "zz"), "no version of CAP.NC begin with zz"),
-        (("keep", "CAP.NC"), "there is nothing to settle"),
-        (("keep", "GONE.NC"), "there is nothing to settle"),
+        (("take", "GONE.NC"), "not-shared-program", "GONE.NC"),
+        (("take", "CAP.NC"), "nothing-newer", "CAP.NC"),
+        (("take", "CAP.NC", "--id", "zz"), "no-one-version", "zz"),
+        (("keep", "CAP.NC"), "nothing-to-settle", ""),
+        (("keep", "GONE.NC"), "nothing-to-settle", ""),
     ],
 )
-def test_refusals(shop: Shop, words: tuple[str, ...], why: str) -> None:
+def test_refusals(shop: Shop, words: tuple[str, ...], code: str, value: str) -> None:
     shop.program(1, "CAP.NC").write_text("G00 X1\n")
     shop.share(1, "publish")
-    status, out, err = shop.share(1, *words)
-    assert (status, out, why in err, err.count("\n")) == (2, "", True, 1)
+    told = shop.share(1, *words)
+    assert (told.status, told.out, told.code, told.err.count("\n")) == (2, "", code, 1)
+    assert value in told.err
 
 
 def test_a_folder_that_is_not_mounted_costs_one_sentence(shop: Shop) -> None:
     (shop.folder / "shop").rename(shop.folder / "unmounted")
-    status, out, err = shop.share(1, "status")
-    assert (status, "versions that wait: 0" in out, "is not there" in err) == (1, True, True)
-    assert shop.share(1, "publish")[0] == 2
+    told = shop.share(1, "status", "--json")
+    assert (told.status, json.loads(told.out)["waiting"]) == (1, 0)
+    assert shop.share(1, "publish").status == 2
     (shop.folder / "shop").mkdir()  # the empty mount point: nothing is laid out in it unasked
-    assert "holds no shared programs; is it mounted" in shop.share(1, "publish")[2]
+    told = shop.share(1, "publish")
+    assert (told.status, str(shop.folder / "shop") in told.err) == (2, True)
     assert list((shop.folder / "shop").iterdir()) == []
 
 
@@ -100,8 +102,8 @@ def test_a_new_computer_goes_on_in_the_name_of_the_old_one(shop: Shop) -> None:
     shop.program(1, "CAP.NC").write_text("G00 X1\n")
     shop.share(1, "publish")
     shop.sharing(2, f'folder = "{shop.folder / "shop"}"\ndesk = "Lathe 1"\n')
-    status, _, err = shop.share(2, "publish")
-    assert (status, "--claim" in err) == (2, True)
+    told = shop.share(2, "publish")
+    assert (told.status, "--claim" in told.err) == (2, True)
     assert shop.share(2, "publish", "--claim")[0] == 0
     assert shop.share(2, "publish")[0] == 0
     assert len(list((shop.folder / "shop" / "desks").iterdir())) == 1
@@ -109,14 +111,14 @@ def test_a_new_computer_goes_on_in_the_name_of_the_old_one(shop: Shop) -> None:
 
 def test_a_desk_that_runs_publishes_by_itself(shop: Shop) -> None:
     with Store.open(shop.folder / "home1"):
-        status, _, err = shop.share(1, "publish")
-        assert (status, "in use by another TurnDesk" in err) == (2, True)
+        told = shop.share(1, "publish")
+        assert (told.status, told.code) == (2, "in-use")
         assert shop.share(1, "status")[0] == 0
 
 
 def test_a_machine_file_without_a_place(turndesk: Turndesk) -> None:
     told = turndesk("share", "status")
-    assert (told.status, "has no [sharing]" in told.err) == (2, True)
+    assert (told.status, told.code) == (2, "no-sharing")
 
 
 @pytest.mark.parametrize(

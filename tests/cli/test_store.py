@@ -9,9 +9,11 @@ from pathlib import Path
 import pytest
 
 from app.cli.main import main
+from core.coded_error import CodedError
 from core.store import database
 from core.store.store import Store
 from core.store.store_rows import SecondaryRow, ToolRow
+from tests.coded import recorded_refusals
 
 Captured = pytest.CaptureFixture[str]
 
@@ -55,15 +57,18 @@ def test_the_store_of_a_newer_turndesk_is_left_as_it_is(
 ) -> None:
     older = database.migrations()[:-1]
     monkeypatch.setattr(database, "migrations", lambda: older)
-    assert "newer" in refused(capsys, "upgrade")
+    assert refused(capsys, "upgrade").code == "newer-version"
 
 
-def refused(capsys: Captured, *argv: str) -> str:
-    assert main(["store", *argv]) == 2
+def refused(capsys: Captured, *argv: str) -> CodedError:
+    """Return the error that a refused command prints on one line."""
+    with pytest.MonkeyPatch.context() as patch:
+        refusals = recorded_refusals(patch)
+        assert main(["store", *argv]) == 2
     told = capsys.readouterr()
-    assert told.out == ""
+    assert (told.out, told.err) == ("", f"turndesk: {refusals[-1]}\n")
     assert told.err.count("\n") == 1
-    return told.err
+    return refusals[-1]
 
 
 def test_backup_and_restore(capsys: Captured, filled: Path, tmp_path: Path) -> None:
@@ -108,7 +113,9 @@ def test_every_field_goes_with_an_export(
     text = (folder / "offsets.toml").read_text().replace("master = false", "master = true")
     (folder / "offsets.toml").write_text(text)
     capsys.readouterr()
-    assert "both master; one tool at most is" in refused(capsys, "import", str(folder))
+    error = refused(capsys, "import", str(folder))
+    assert error.code == "two-masters"
+    assert "tool.1 and tool.2" in str(error)
 
 
 def test_verify_says_whole_or_what_is_wrong(capsys: Captured, filled: Path) -> None:
@@ -131,11 +138,13 @@ def test_verify_of_no_store(capsys: Captured, home: Path) -> None:
 
 def test_refusals(capsys: Captured, filled: Path, tmp_path: Path) -> None:
     (tmp_path / "part.nc").write_bytes(b"G90")
-    assert "not a database" in refused(capsys, "backup", str(tmp_path / "part.nc"))
-    assert "none.db is not there" in refused(capsys, "restore", str(tmp_path / "none.db"))
-    assert "not a database" in refused(capsys, "restore", str(tmp_path / "part.nc"))
-    assert "not empty" in refused(capsys, "export", str(filled))
-    assert "no exported folder" in refused(capsys, "import", str(tmp_path / "none"))
+    assert refused(capsys, "backup", str(tmp_path / "part.nc")).code == "not-a-database"
+    error = refused(capsys, "restore", str(tmp_path / "none.db"))
+    assert error.code == "not-found"
+    assert "none.db" in str(error)
+    assert refused(capsys, "restore", str(tmp_path / "part.nc")).code == "not-a-database"
+    assert refused(capsys, "export", str(filled)).code == "folder-not-empty"
+    assert refused(capsys, "import", str(tmp_path / "none")).code == "not-an-export"
     assert (tmp_path / "part.nc").read_bytes() == b"G90"
 
 
@@ -144,7 +153,7 @@ def test_restore_into_a_store_in_use_is_refused(capsys: Captured, filled: Path, 
     main(["store", "backup", target])
     capsys.readouterr()
     with Store.open(filled):
-        assert "in use" in refused(capsys, "restore", target)
+        assert refused(capsys, "restore", target).code == "in-use"
 
 
 def test_import_of_a_bad_offsets_file_takes_nothing(capsys: Captured, filled: Path, tmp_path: Path) -> None:
@@ -153,10 +162,12 @@ def test_import_of_a_bad_offsets_file_takes_nothing(capsys: Captured, filled: Pa
     capsys.readouterr()
     (folder / "offsets.toml").write_text("[tool.1]\nx = 999\n")
     (folder / "programs" / "NEW.nc").write_bytes(b"G91")
-    assert "tool.1.x = 999 is out of range" in refused(capsys, "import", str(folder))
+    error = refused(capsys, "import", str(folder))
+    assert error.code == "out-of-range"
+    assert "tool.1.x = 999 " in str(error)
     with Store.open(filled, read_only=True) as store:
         assert [row.name for row in store.programs()] == ["PIN.nc"]
 
 
 def test_backup_without_a_store_is_refused(capsys: Captured, tmp_path: Path) -> None:
-    assert "nothing to back up" in refused(capsys, "backup", str(tmp_path / "b.db"))
+    assert refused(capsys, "backup", str(tmp_path / "b.db")).code == "no-store"

@@ -70,21 +70,21 @@ def test_set_by_the_command_line_and_used_by_programs(turndesk: Turndesk, tmp_pa
 
 
 @pytest.mark.parametrize(
-    ("argv", "what"),
+    ("argv", "code", "value"),
     [
-        (("G53", "x=1"), "G54…G59"),
-        (("G54", "y=1"), "y is unknown"),
-        (("G54", "x"), "sets nothing"),
-        (("G54", "x=1", "x=2"), "given twice"),
-        (("G54", "x=one"), "x:"),
-        (("G54", "c=400"), "out of range"),
-        (("H4", "x=1"), "no offset"),
+        (("G53", "x=1"), "unknown-zero", "G54…G59"),
+        (("G54", "y=1"), "unknown-key", "y "),
+        (("G54", "x"), "no-value", "x "),
+        (("G54", "x=1", "x=2"), "key-twice", "x "),
+        (("G54", "x=one"), "not-a-number", "x:"),
+        (("G54", "c=400"), "out-of-range", "G54 C 400"),
+        (("H4", "x=1"), "unknown-offset", "H4"),
     ],
 )
-def test_what_cannot_be_set(turndesk: Turndesk, argv: tuple[str, ...], what: str) -> None:
+def test_what_cannot_be_set(turndesk: Turndesk, argv: tuple[str, ...], code: str, value: str) -> None:
     told = turndesk("offsets", "set", *argv)
-    assert told.status == 2
-    assert what in told.err
+    assert (told.status, told.code) == (2, code)
+    assert value in told.err
     assert told.err.count("\n") == 1
 
 
