@@ -121,7 +121,9 @@ def _backend(file: FileReading, drivers: Sequence[Driver]) -> Iterator[Finding]:
     for driver in drivers:
         path = driver.tables[0].path
         if driver.backend and path not in file.tables and file.values.says("machine.backend", driver.backend):
-            yield Finding(f"[{path}]", "", f'missing; machine.backend = "{driver.backend}" needs it')
+            yield Finding(
+                f"[{path}]", "", f'missing; machine.backend = "{driver.backend}" needs it', "missing"
+            )
 
 
 def _spindle(file: FileReading, drivers: Sequence[Driver]) -> Iterator[Finding]:
@@ -138,9 +140,9 @@ def _spindle(file: FileReading, drivers: Sequence[Driver]) -> Iterator[Finding]:
     ]
     if word not in allowed:
         expected = f"expected {' or '.join(allowed)} with machine.backend = {written(backend)}"
-        yield Finding(path, written(word), expected)
+        yield Finding(path, written(word), expected, "broken-rule")
     elif word in beside and beside[word] not in file.tables:
-        yield Finding(beside[word], "", f'missing; spindle.driver = "{word}" needs it')
+        yield Finding(beside[word], "", f'missing; spindle.driver = "{word}" needs it', "missing")
 
 
 def _orients(file: FileReading, drivers: Sequence[Driver]) -> Iterator[Finding]:
@@ -154,12 +156,12 @@ def _orients(file: FileReading, drivers: Sequence[Driver]) -> Iterator[Finding]:
         expected = (
             f"expected false: a spindle can be stopped at an angle with spindle.driver {' or '.join(can)}"
         )
-        yield Finding(path, "true", expected)
+        yield Finding(path, "true", expected, "broken-rule")
     lathe = values.has("machine.kind", "axis.C.enabled", "axis.C.own_drive")
     lathe = lathe and values.says("machine.kind", "lathe")
     if lathe and values.flag("axis.C.enabled") and not values.flag("axis.C.own_drive"):
         expected = "expected false: C is the spindle, which is positioned as C; or axis.C.own_drive = true"
-        yield Finding(path, "true", expected)
+        yield Finding(path, "true", expected, "broken-rule")
 
 
 def _count_rates(values: Values, drivers: Sequence[Driver]) -> Iterator[Finding]:
@@ -176,6 +178,7 @@ def _count_rates(values: Values, drivers: Sequence[Driver]) -> Iterator[Finding]
                 "",
                 f"{rate:.6g} counts/s is over the {limit:.6g} of this backend;"
                 " lower vmax or take a coarser count",
+                "broken-rule",
             )
 
 
@@ -185,13 +188,20 @@ def _renewed(file: FileReading) -> Iterator[Finding]:
         wanted = path.startswith("io.out.") and values.has(f"{path}.refresh_ms", f"{path}.safe")
         if wanted and values.number(f"{path}.refresh_ms") and values.found[f"{path}.safe"] is not False:
             expected = "an output that falls when nobody renews it needs safe = false"
-            yield Finding(f"{path}.refresh_ms", f"{1000 * values.number(f'{path}.refresh_ms'):g}", expected)
+            yield Finding(
+                f"{path}.refresh_ms",
+                f"{1000 * values.number(f'{path}.refresh_ms'):g}",
+                expected,
+                "broken-rule",
+            )
 
 
 def _guard(file: FileReading) -> Iterator[Finding]:
     path = "interlocks.guard_stops"
     if file.values.has(path) and file.values.flag(path) and "io.in.guard" not in file.terminals:
-        yield Finding(path, "true", "needs the guard's switch as the input guard, on while it is closed")
+        yield Finding(
+            path, "true", "needs the guard's switch as the input guard, on while it is closed", "broken-rule"
+        )
 
 
 def _ports(values: Values, drivers: Sequence[Driver]) -> Iterator[Finding]:
@@ -202,4 +212,6 @@ def _ports(values: Values, drivers: Sequence[Driver]) -> Iterator[Finding]:
             port = values.text(path)
             first = taken.setdefault(port, path)
             if first != path:
-                yield Finding(path, written(port), f"expected a port of its own; {first} has it")
+                yield Finding(
+                    path, written(port), f"expected a port of its own; {first} has it", "broken-rule"
+                )

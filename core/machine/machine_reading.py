@@ -46,7 +46,7 @@ class Reading:
         self.values.found["machine.language"] = said
         if said not in spoken:
             expected = f"a {self.kind} speaks {' or '.join(spoken)}"
-            self.findings.append(Finding("machine.language", written(said), expected))
+            self.findings.append(Finding("machine.language", written(said), expected, "broken-rule"))
 
     def _table(self, path: str, keys: tuple[Field, ...]) -> None:
         table = self.data.get(path, {} if path in machine_tables.MAY_BE_MISSING else None)
@@ -57,7 +57,7 @@ class Reading:
     ) -> None:
         if table is None:
             self.findings.append(
-                Finding(f"[{path}]", "", "missing; the control cannot do without this table")
+                Finding(f"[{path}]", "", "missing; the control cannot do without this table", "missing")
             )
         else:
             self.findings += read_table(table, keys, path, self.values, children)
@@ -66,7 +66,7 @@ class Reading:
         """A table that holds tables; an empty one where it is none."""
         table = self.data.get(path, {})
         if not isinstance(table, dict):
-            self.findings.append(Finding(path, written(table), f"expected a table, [{path}]"))
+            self.findings.append(Finding(path, written(table), f"expected a table, [{path}]", "not-a-table"))
             return {}
         self.findings += unknown_keys(table, list(known), path)
         return table
@@ -92,7 +92,7 @@ class Reading:
 
     def _of_a_lathe(self, path: str) -> None:
         if path in self.data:
-            self.findings.append(Finding(f"[{path}]", "", "only a lathe has this; take it out"))
+            self.findings.append(Finding(f"[{path}]", "", "only a lathe has this; take it out", "lathe-only"))
         else:  # what the control asks of every machine stands still on this one
             self._keys({}, path, machine_tables.TABLES_OF_A_LATHE[path])
 
@@ -133,7 +133,7 @@ def _unknown_tables(data: Mapping[str, object], top: Sequence[str]) -> list[Find
         known = f"this version knows {', '.join(f'[{name}]' for name in top)}"
         guess = found.expected.removeprefix("unknown key; ")
         near = f"{guess} " if guess.startswith("did") else ""
-        findings.append(Finding(f"[{found.path}]", "", f"unknown table; {near}{known}"))
+        findings.append(Finding(f"[{found.path}]", "", f"unknown table; {near}{known}", "unknown-table"))
     return findings
 
 

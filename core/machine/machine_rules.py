@@ -22,7 +22,7 @@ def broken(values: Values) -> Iterator[Finding]:
     """A finding for every rule that the good values break."""
     for rule in RULES:
         if values.has(rule.path, *rule.needs) and (expected := rule.wrong(values)):
-            yield Finding(rule.path, "", expected)
+            yield Finding(rule.path, "", expected, "broken-rule")
 
 
 def _below(path: str, limit: str, why: str, unit: Unit) -> Rule:

@@ -81,13 +81,17 @@ class KinematicsReading:
     def _read(self, table: object, kind: str, rotary: Sequence[str]) -> None:
         self.findings += read_table(table, WORKPIECE, TABLE, self._values, tuple(rotary))
         if kind != "mill":
-            self.findings.append(Finding(f"[{TABLE}]", "", "only a mill has one; set machine.kind"))
+            self.findings.append(
+                Finding(f"[{TABLE}]", "", "only a mill has one; set machine.kind", "mill-only")
+            )
         if not isinstance(table, dict):
             return
         for name in rotary:
             path = f"{TABLE}.{name}"
             if name not in table:
-                self.findings.append(Finding(f"[{path}]", "", f"missing; axis.{name} has to lie somewhere"))
+                self.findings.append(
+                    Finding(f"[{path}]", "", f"missing; axis.{name} has to lie somewhere", "missing")
+                )
                 continue
             found = read_table(table[name], ROTARY, path, self._values)
             self.findings += found
@@ -109,23 +113,25 @@ class KinematicsReading:
         """Rules between the axes; each is looked at where its values are good."""
         values = self._values
         if len(self._names) > MOST_ROTARIES:
-            yield Finding(f"[{TABLE}]", "", f"at most {MOST_ROTARIES} rotary axes can be solved")
+            yield Finding(
+                f"[{TABLE}]", "", f"at most {MOST_ROTARIES} rotary axes can be solved", "broken-rule"
+            )
         orders: dict[float, str] = {}
         for name in self._names:
             path = f"{TABLE}.{name}"
             direction, order = values.text(f"{path}.direction"), values.number(f"{path}.order")
             if direction.removeprefix("-") != _ALONG[name]:
                 expected = f"expected {_ALONG[name]} or -{_ALONG[name]}: {name} turns about that axis"
-                yield Finding(f"{path}.direction", written(direction), expected)
+                yield Finding(f"{path}.direction", written(direction), expected, "broken-rule")
             if order in orders:
                 expected = f"expected a place of its own; {orders[order]} has this one"
-                yield Finding(f"{path}.order", written(int(order)), expected)
+                yield Finding(f"{path}.order", written(int(order)), expected, "broken-rule")
             orders[order] = name
             if values.flag(f"{path}.modulo") and values.has(f"axis.{name}.travel"):
                 low, _ = values.pair(f"axis.{name}.travel")
                 if abs(low) != float("inf"):
                     expected = f"a modulo axis has no ends; take axis.{name}.travel out"
-                    yield Finding(f"{path}.modulo", "true", expected)
+                    yield Finding(f"{path}.modulo", "true", expected, "broken-rule")
         yield from self._heads_last(orders)
 
     def _heads_last(self, orders: Mapping[float, str]) -> Iterator[Finding]:
@@ -134,5 +140,5 @@ class KinematicsReading:
             table = self._values.text(f"{TABLE}.{name}.side") == "table"
             if table and head:
                 expected = "expected tables before heads: the order goes from the workpiece to the tool"
-                yield Finding(f"{TABLE}.{name}.order", "", expected)
+                yield Finding(f"{TABLE}.{name}.order", "", expected, "broken-rule")
             head = head or not table

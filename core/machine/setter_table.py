@@ -49,15 +49,17 @@ def _rules(file: FileReading) -> Iterator[Finding]:
     values, here = file.values, "setter" in file.tables
     there = PROBE_INPUT in file.terminals
     if here and not there and f"{PROBE_INPUT}.at" not in values.wrong:
-        yield Finding(PROBE_INPUT, "", "missing; [setter] needs its input, on while it is touched")
+        yield Finding(PROBE_INPUT, "", "missing; [setter] needs its input, on while it is touched", "missing")
     if not here:
         return
     if values.text("machine.kind") != "lathe":
-        yield Finding("[setter]", "", "only a lathe has this; take it out")
+        yield Finding("[setter]", "", "only a lathe has this; take it out", "lathe-only")
     inch = bool(values.inch)
     both = values.has("setter.slow", "setter.speed")
     if both and values.number("setter.slow") > values.number("setter.speed"):
-        yield Finding("setter.slow", "", "is faster than setter.speed; the second touch is the slow one")
+        yield Finding(
+            "setter.slow", "", "is faster than setter.speed; the second touch is the slow one", "broken-rule"
+        )
     keys = ("setter.speed", "setter.overtravel", "axis.X.amax", "axis.Z.amax", "machine.commit_ms")
     if values.has(*keys):
         speed, over = values.number("setter.speed"), values.number("setter.overtravel")
@@ -66,7 +68,7 @@ def _rules(file: FileReading) -> Iterator[Finding]:
         if needed > over * (1 + 1e-9):
             far = shown(needed, Unit.LENGTH, inch)
             why = f"runs on {far} behind the touch, over setter.overtravel; go slower"
-            yield Finding("setter.speed", "", why)
+            yield Finding("setter.speed", "", why, "broken-rule")
 
 
 def runs_on(speed: float, accel: float, commit: float) -> float:

@@ -40,12 +40,12 @@ def _rules(file: FileReading) -> Iterator[Finding]:
     named = [kind for kind in KINDS if values.text(f"sharing.{kind}")]
     if len(named) != 1:
         said = " and ".join(named) if named else "none"
-        yield Finding("sharing", said, f"one place: {', '.join(KINDS[:-1])} or {KINDS[-1]}")
+        yield Finding("sharing", said, f"one place: {', '.join(KINDS[:-1])} or {KINDS[-1]}", "many-places")
     git, desk = values.text("sharing.git"), values.text("sharing.desk")
     if git.startswith("-"):
-        yield Finding("sharing.git", written(git), "the address of a repository")
+        yield Finding("sharing.git", written(git), "the address of a repository", "git-address")
     if desk.strip() != desk or len(desk) > _LONGEST or not desk.isprintable():
-        yield Finding("sharing.desk", written(desk), f"a name of {_LONGEST} letters at most")
+        yield Finding("sharing.desk", written(desk), f"a name of {_LONGEST} letters at most", "name-too-long")
 
 
 DRIVER = Driver(

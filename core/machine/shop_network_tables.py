@@ -104,17 +104,19 @@ def _page_rules(file: FileReading) -> Iterator[Finding]:
         return
     bind, token = values.text("status_page.bind"), values.text("status_page.token")
     if token and not (token.isascii() and token.replace("-", "").replace("_", "").isalnum()):
-        yield Finding("status_page.token", "", "letters, figures, - and _ only")
+        yield Finding("status_page.token", "", "letters, figures, - and _ only", "broken-rule")
     elif not loopback(bind) and len(token) < LEAST_TOKEN:
         why = f"other computers can ask at {bind}: a token of {LEAST_TOKEN} characters or more is needed"
-        yield Finding("status_page.token", "", why)
+        yield Finding("status_page.token", "", why, "broken-rule")
     for address in values.text("status_page.desks").split():
         if not is_web_address(address):
-            yield Finding("status_page.desks", written(address), "an address that begins with http://")
+            yield Finding(
+                "status_page.desks", written(address), "an address that begins with http://", "broken-rule"
+            )
     for address in values.text("status_page.agents").split():
         if not is_web_address(address) or not urlsplit(address).path.strip("/"):
             why = "the agent's address and the device, such as http://shop-pc:5000/LATHE2"
-            yield Finding("status_page.agents", written(address), why)
+            yield Finding("status_page.agents", written(address), why, "broken-rule")
 
 
 def _announce_rules(file: FileReading) -> Iterator[Finding]:
@@ -126,12 +128,24 @@ def _announce_rules(file: FileReading) -> Iterator[Finding]:
         if broker:
             broker_of(broker)
     except ValueError:
-        yield Finding("announce.mqtt", written(broker), 'the address of the broker, such as "shop-pc:1883"')
+        yield Finding(
+            "announce.mqtt",
+            written(broker),
+            'the address of the broker, such as "shop-pc:1883"',
+            "broken-rule",
+        )
     if hook and not is_web_address(hook):
-        yield Finding("announce.hook", written(hook), "an address that begins with http:// or https://")
+        yield Finding(
+            "announce.hook", written(hook), "an address that begins with http:// or https://", "broken-rule"
+        )
     topic = values.text("announce.topic")
     if topic.startswith("/") or any(sign in topic for sign in "+# "):
-        yield Finding("announce.topic", written(topic), "a topic without + # and blanks, such as shop/lathe3")
+        yield Finding(
+            "announce.topic",
+            written(topic),
+            "a topic without + # and blanks, such as shop/lathe3",
+            "broken-rule",
+        )
 
 
 DRIVER = Driver(

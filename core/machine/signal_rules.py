@@ -35,7 +35,10 @@ def _needed(reading: Reading) -> Iterator[Finding]:
         there = {*reading.outputs, *reading.absent}
         if name not in there and not (name == "collet" and reading.kind != "lathe"):
             yield Finding(
-                f"io.out.{name}", "", f'missing; {why}. Where the machine has none: {{ at = "none" }}'
+                f"io.out.{name}",
+                "",
+                f'missing; {why}. Where the machine has none: {{ at = "none" }}',
+                "missing",
             )
     needed = {ESTOP: "the control mirrors it"}
     values = reading.values
@@ -47,21 +50,30 @@ def _needed(reading: Reading) -> Iterator[Finding]:
         needed["collet_closed"] = "refusing a spindle start with the collet open needs it"
     for name, why in needed.items():
         if name not in reading.inputs:
-            yield Finding(f"io.in.{name}", "", f"missing; {why}")
+            yield Finding(f"io.in.{name}", "", f"missing; {why}", "missing")
 
 
 def _m_codes(reading: Reading) -> Iterator[Finding]:
     for code in reading.m_codes:
         path = f"m_codes.{code}"
         if code not in _NUMBERS:
-            yield Finding(path, "", "expected the number of an M code, 0…999 without a leading zero")
+            yield Finding(
+                path, "", "expected the number of an M code, 0…999 without a leading zero", "broken-rule"
+            )
         elif int(code) in FIXED_M_CODES[_language(reading)]:
-            yield Finding(path, "", f"M{int(code):02d} has a meaning of its own; expected a free M code")
+            yield Finding(
+                path, "", f"M{int(code):02d} has a meaning of its own; expected a free M code", "broken-rule"
+            )
         elif reading.values.has(f"{path}.output"):
             output = reading.values.text(f"{path}.output")
             if output not in reading.outputs:
                 known = ", ".join(reading.outputs)
-                yield Finding(f"{path}.output", written(output), f"expected an output of [io.out]: {known}")
+                yield Finding(
+                    f"{path}.output",
+                    written(output),
+                    f"expected an output of [io.out]: {known}",
+                    "broken-rule",
+                )
 
 
 def _language(reading: Reading) -> str:
@@ -106,7 +118,7 @@ def _never_off(reading: Reading) -> Iterator[Finding]:
     for code, output, on in codes:
         if on and output not in off:
             expected = f"switches {output} on and no M code switches it off; expected one with on = false"
-            yield Finding(f"m_codes.{code}", "", expected)
+            yield Finding(f"m_codes.{code}", "", expected, "broken-rule")
 
 
 def _lamps(reading: Reading) -> Iterator[Finding]:
@@ -115,17 +127,23 @@ def _lamps(reading: Reading) -> Iterator[Finding]:
         path = f"io.out.{name}"
         if name not in LAMPS:
             yield Finding(
-                path, "", f"a lamp of the signal tower is {', '.join(LAMPS)}; expected one of these"
+                path,
+                "",
+                f"a lamp of the signal tower is {', '.join(LAMPS)}; expected one of these",
+                "broken-rule",
             )
         elif reading.values.has(f"{path}.safe"):
             safe = reading.values.found[f"{path}.safe"]
             if safe == "keep" or (safe is True and name != RED):
                 told = "true or false" if name == RED else "false"
                 why = "what it shows when nobody drives it must be no promise"
-                yield Finding(f"{path}.safe", written(safe), f"expected {told}: {why}")
+                yield Finding(f"{path}.safe", written(safe), f"expected {told}: {why}", "broken-rule")
     for code in reading.m_codes:
         path = f"m_codes.{code}.output"
         if reading.values.has(path) and reading.values.text(path) in LAMPS:
             yield Finding(
-                path, written(reading.values.text(path)), "the control lights it by itself, no M code"
+                path,
+                written(reading.values.text(path)),
+                "the control lights it by itself, no M code",
+                "broken-rule",
             )

@@ -29,7 +29,7 @@ def wrong_jog(file: FileReading) -> Iterator[Finding]:
     known = [JOG_RAPID, *(jog_button(axis, sign) for axis in file.axes for sign in (1, -1))]
     for name in file.names("io.in"):
         if name.startswith("jog_") and name not in known:
-            yield Finding(f"io.in.{name}", "", f"no jog button: one of {', '.join(known)}")
+            yield Finding(f"io.in.{name}", "", f"no jog button: one of {', '.join(known)}", "broken-rule")
 
 
 def wrong_wheel(file: FileReading) -> Iterator[Finding]:
@@ -38,22 +38,34 @@ def wrong_wheel(file: FileReading) -> Iterator[Finding]:
     for name in analog:
         path = f"io.analog.{name}.counts_per_click"
         if values.has(path) and name == WHEEL and values.number(path) == 0:
-            yield Finding(path, "0", "expected counts, negative where the wheel turns the other way round")
+            yield Finding(
+                path,
+                "0",
+                "expected counts, negative where the wheel turns the other way round",
+                "broken-rule",
+            )
         if values.has(path) and name != WHEEL and values.number(path) != 1:
-            yield Finding(path, f"{values.number(path):g}", "a pot has no clicks; take it out")
+            yield Finding(path, f"{values.number(path):g}", "a pot has no clicks; take it out", "broken-rule")
     selectors = [selector(axis) for axis in file.axes]
     known = [ENABLE, *FACTORS, *selectors, AXIS_BUTTON, STEP_BUTTON]
     there = file.names("io.in")
     for button, switches in ((AXIS_BUTTON, selectors), (STEP_BUTTON, list(FACTORS))):
         if button in there and (also := [name for name in switches if name in there]):
             why = f"{also[0]} says that already: a button or switches, not both"
-            yield Finding(f"io.in.{button}", "", why)
+            yield Finding(f"io.in.{button}", "", why, "broken-rule")
     for name in there:
         if name.startswith("wheel_") and name not in known:
-            yield Finding(f"io.in.{name}", "", f"no switch of a handwheel: one of {', '.join(known)}")
+            yield Finding(
+                f"io.in.{name}", "", f"no switch of a handwheel: one of {', '.join(known)}", "broken-rule"
+            )
         elif name.startswith("wheel_") and WHEEL not in analog:
             at = written(values.text(f"io.in.{name}.at")) if values.has(f"io.in.{name}.at") else ""
-            yield Finding(f"io.in.{name}", at, "a switch of the handwheel; expected [io.analog] handwheel")
+            yield Finding(
+                f"io.in.{name}",
+                at,
+                "a switch of the handwheel; expected [io.analog] handwheel",
+                "broken-rule",
+            )
 
 
 # --- Palm buttons that are wired to the control: refused, because two hands are told apart by a relay alone.
@@ -72,4 +84,4 @@ def wrong_palms(file: FileReading) -> Iterator[Finding]:
     """A finding for every input that is one button of two."""
     for name in file.names("io.in"):
         if _PALM.fullmatch(name):
-            yield Finding(f"io.in.{name}", "", WHY)
+            yield Finding(f"io.in.{name}", "", WHY, "broken-rule")

@@ -21,7 +21,7 @@ def shared(file: FileReading, drivers: Sequence[Driver]) -> Iterator[Finding]:
         first = taken.setdefault(_same(file, drivers, terminal), owner)
         if first != owner:
             expected = f"expected a terminal of its own; {first} is on this one"
-            yield Finding(place, written(terminal), expected)
+            yield Finding(place, written(terminal), expected, "broken-rule")
 
 
 def pots(file: FileReading, drivers: Sequence[Driver]) -> Iterator[Finding]:
@@ -33,11 +33,18 @@ def pots(file: FileReading, drivers: Sequence[Driver]) -> Iterator[Finding]:
         path = f"io.analog.{name}"
         switch = values.text(f"{path}.switch") if values.has(f"{path}.switch") else ""
         if switch and switch not in inputs and not _on_the_screen(switch, values, drivers, inputs):
-            yield Finding(f"{path}.switch", written(switch), _line_to_add(file, drivers, switch))
+            yield Finding(
+                f"{path}.switch", written(switch), _line_to_add(file, drivers, switch), "broken-rule"
+            )
         if values.has(f"{path}.range") and (top := _TOPS.get(name)) is not None:
             low, high = values.pair(f"{path}.range")
             if not 0.0 <= low < high <= top:
-                yield Finding(f"{path}.range", f"[{low:g}, {high:g}]", f"expected fractions within 0…{top:g}")
+                yield Finding(
+                    f"{path}.range",
+                    f"[{low:g}, {high:g}]",
+                    f"expected fractions within 0…{top:g}",
+                    "broken-rule",
+                )
 
 
 def _backend(values: Values, drivers: Sequence[Driver]) -> Driver | None:

@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from core.part.part_errors import PartError
 from core.part.polar_field import NOTHING, IntArray, PolarField, Taken
 from core.part.ray_cuts import FloatArray, capsules, clipped, joined, nearest_turn, radial_mill
 
@@ -273,7 +274,7 @@ def _shares(path: FloatArray, levels: FloatArray, length: float) -> tuple[FloatA
 def _lines(path: FloatArray) -> FloatArray:
     """A path of two points at least; refused when it has other than three columns."""
     if path.ndim != 2 or path.shape[1] != 3 or not len(path):
-        raise ValueError("A mill's path has three figures a point.")
+        raise PartError("A mill's path has three figures a point.", "points-not-xyz")
     return path if len(path) > 1 else np.repeat(path, 2, axis=0)
 
 

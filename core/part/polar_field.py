@@ -14,6 +14,7 @@ from typing import NamedTuple, TypeVar
 import numpy as np
 import numpy.typing as npt
 
+from core.part.part_errors import PartError
 from core.part.ray_cuts import FloatArray
 
 IntArray = npt.NDArray[np.intp]
@@ -65,7 +66,9 @@ class PolarField:
 
     def __init__(self, edges: FloatArray, low: FloatArray, high: FloatArray, most: int = 2 * COLUMNS) -> None:
         if low.shape != high.shape or low.ndim != 3 or low.shape[1] != len(edges) - 1:
-            raise ValueError("A polar field needs one column of rays between each two edges.")
+            raise PartError(
+                "A polar field needs one column of rays between each two edges.", "columns-and-edges"
+            )
         if np.any(np.diff(edges) <= 0.0):
             raise ValueError("The edges of a polar field have to rise.")
         self.edges, self.low, self.high = edges, low, high
@@ -224,7 +227,7 @@ def turned_field(
     low, high = in_order(low, high)
     metal = np.flatnonzero((high > low + _TOUCH).any(axis=0))
     if not len(metal):
-        raise ValueError("There is no metal to mill.")
+        raise PartError("There is no metal to mill.", "no-stock")
     there = slice(int(metal[0]), int(metal[-1]) + 1)
     low, high, edges = low[:, there], high[:, there], edges[there.start : there.stop + 1]
     starts = _starts(low, high, columns)

@@ -12,6 +12,8 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from core.part.part_errors import PartError
+
 FloatArray = NDArray[np.float64]
 CHORD = 0.0005  # mm between a nose and its chords
 COARSE = 0.02  # mm; corners that do not cut the part
@@ -125,7 +127,7 @@ def convex_pieces(points: Sequence[tuple[float, float]]) -> tuple[FloatArray, ..
     """A simple polygon in convex pieces: itself, or triangles by clipping ears. Raises ValueError else."""
     left = [(float(z), float(r)) for z, r in counter_clockwise(np.array(points, dtype=np.float64))]
     if _crosses(left):
-        raise ValueError("the outline crosses itself")
+        raise PartError("the outline crosses itself", "crosses-itself")
     if _convex(left):
         return (np.array(left),) if area(np.array(left)) > 0.0 else ()
     pieces = []

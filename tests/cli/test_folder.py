@@ -179,7 +179,7 @@ def test_a_full_disk_is_told_once_and_proving_goes_on(
 
 def test_only_what_has_a_lasting_text_is_hashed() -> None:
     assert plain({"b": frozenset({2, 1}), "a": (0.1, None)}) == "{'a':[0.1,None],'b':<1,2>}"
-    with pytest.raises(TypeError, match="function"):
+    with pytest.raises(TypeError):
         plain(plain)
 
 

@@ -13,6 +13,7 @@ from app.compose.machine_files import parse_machine
 from core.store.store import Store
 from core.table_schema import MachineFileError
 from tests.cli.conftest import Told, Turndesk
+from tests.coded import raises_code
 
 
 class Shop:
@@ -122,18 +123,18 @@ def test_a_machine_file_without_a_place(turndesk: Turndesk) -> None:
 
 
 @pytest.mark.parametrize(
-    ("table", "why"),
+    ("table", "code", "value"),
     [
-        ("", "one place: folder, git or postgresql"),
-        ('folder = "/a"\ngit = "b"', "one place"),
-        ('git = "--upload-pack=x"', "the address of a repository"),
-        (f'folder = "/a"\ndesk = "{"x" * 41}"', "40 letters"),
-        ('folder = "/a"\nlook = 1', "sharing.look"),
-        ('folder = "/a"\npassword = "x"', "sharing.password"),
+        ("", "many-places", "folder, git or postgresql"),
+        ('folder = "/a"\ngit = "b"', "many-places", "folder and git"),
+        ('git = "--upload-pack=x"', "git-address", "--upload-pack=x"),
+        (f'folder = "/a"\ndesk = "{"x" * 41}"', "name-too-long", "40"),
+        ('folder = "/a"\nlook = 1', "wrong-value", "sharing.look"),
+        ('folder = "/a"\npassword = "x"', "unknown-key", "sharing.password"),
     ],
 )
-def test_tables_that_are_refused(table: str, why: str) -> None:
-    with pytest.raises(MachineFileError, match=why):
+def test_tables_that_are_refused(table: str, code: str, value: str) -> None:
+    with raises_code(MachineFileError, code, value):
         parse_machine(resources.machine_file("gt75.toml") + f"[sharing]\n{table}\n", "m.toml")
 
 

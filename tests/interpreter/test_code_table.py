@@ -21,6 +21,7 @@ from core.interpreter.omniturn.code_entry import (
     TAIL,
     Acts,
     Code,
+    CodeEntryError,
     FWord,
     Limit,
     Refusal,
@@ -42,6 +43,7 @@ from core.language.diagnostics import Severity
 from core.language.omniturn.omniturn_words import RANGES
 from core.language.source import Source
 from core.proving.prove_program import prove
+from tests.coded import raises_code
 from tests.interpreter.programs import passed
 
 CODES = [code for _, codes in CHAPTERS for code in codes]
@@ -189,15 +191,15 @@ def test_one_entry_makes_a_code(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_a_code_whose_f_means_nothing_is_none() -> None:
-    with pytest.raises(ValueError, match="F means"):
+    with raises_code(CodeEntryError, "f-word", "G05"):
         replace(TRIAL, f=FWord.NONE)
-    with pytest.raises(ValueError, match="F means"):
+    with raises_code(CodeEntryError, "f-word", "G05"):
         replace(TRIAL, words=names("S T D"))
     with pytest.raises(TypeError):
         Code("G05", "G05Fn", "Waits.", "G05F2", acts=Acts.MOTION, handler="dwell.dwell")  # type: ignore[call-arg]
-    with pytest.raises(ValueError, match="rule for a word"):
+    with raises_code(CodeEntryError, "rule-without-word", "G05"):
         replace(TRIAL, rules={"K": WordRule("a lead")})
-    with pytest.raises(ValueError, match="group"):
+    with raises_code(CodeEntryError, "no-group", "G05"):
         replace(TRIAL, acts=Acts.MODE)
 
 

@@ -9,6 +9,7 @@ import pytest
 import resources
 from app.compose.machine_files import load_machine, parse_machine
 from core.table_schema import Finding, MachineFileError
+from tests.coded import raises_code
 
 SHIPPED = resources.machine_file("gt75.toml")
 
@@ -219,10 +220,10 @@ def test_broken_toml_tells_the_line() -> None:
 
 
 def test_missing_file_and_wrong_encoding(tmp_path: Path) -> None:
-    with pytest.raises(MachineFileError, match="No such file"):
+    with raises_code(MachineFileError, "unreadable", "none.toml"):
         load_machine(tmp_path / "none.toml")
     (tmp_path / "latin.toml").write_bytes(b'name = "\xff"')
-    with pytest.raises(MachineFileError, match="UTF-8"):
+    with raises_code(MachineFileError, "not-utf8", "latin.toml"):
         load_machine(tmp_path / "latin.toml")
 
 

@@ -111,8 +111,11 @@ def test_what_is_refused(old: str, new: str, expected: str) -> None:
 
 def test_a_pendant_that_nothing_is_at() -> None:
     found = resources.machine_file("gt75.toml") + '\n[pendant]\ndevice = "Knob"\n'
-    with pytest.raises(MachineFileError, match="nothing is at it"):
+    with pytest.raises(MachineFileError) as caught:
         parse_machine(found, "test")
+    (finding,) = caught.value.errors
+    assert finding.path == "[pendant]"
+    assert "pendant.BTN_B" in finding.expected
 
 
 def test_a_pendant_that_is_not_there_is_a_row_that_fails(monkeypatch: pytest.MonkeyPatch) -> None:

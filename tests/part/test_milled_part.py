@@ -9,8 +9,10 @@ import numpy as np
 import pytest
 
 from core.part.milled_part import MilledPart
+from core.part.part_errors import PartError
 from core.part.polar_field import turned_field
 from core.part.ray_cuts import FloatArray
+from tests.coded import raises_code
 
 R, LENGTH = 10.0, 20.0
 BAR = math.pi * R * R * LENGTH
@@ -282,7 +284,7 @@ def test_mill_short_of_the_bar_takes_nothing() -> None:
 
 @pytest.mark.parametrize("wrong", [np.zeros((3, 2)), np.zeros(3), np.zeros((0, 3))])
 def test_path_without_three_figures_a_point_is_refused(wrong: FloatArray) -> None:
-    with pytest.raises(ValueError, match="three figures"):
+    with raises_code(PartError, "points-not-xyz"):
         bar().mill_axial(wrong, 1.0)
-    with pytest.raises(ValueError, match="three figures"):
+    with raises_code(PartError, "points-not-xyz"):
         bar().mill_radial(wrong, 1.0)

@@ -7,7 +7,9 @@ import math
 import numpy as np
 import pytest
 
+from core.part.part_errors import PartError
 from core.part.polar_field import PolarField, in_order, turned_field
+from tests.coded import raises_code
 
 ALL = slice(None)
 
@@ -132,7 +134,7 @@ def test_field_has_no_more_columns_than_it_may() -> None:
 
 
 def test_section_without_metal_is_refused() -> None:
-    with pytest.raises(ValueError, match="no metal"):
+    with raises_code(PartError, "no-stock"):
         turned_field(np.linspace(0.0, 1.0, 11), np.ones((1, 10)), np.ones((1, 10)))
 
 
@@ -143,5 +145,5 @@ def test_edges_that_do_not_fit_or_do_not_rise_are_refused(edges: list[float]) ->
 
 
 def test_layers_that_differ_are_refused() -> None:
-    with pytest.raises(ValueError, match="column of rays"):
+    with raises_code(PartError, "columns-and-edges"):
         PolarField(np.array([0.0, 1.0]), np.zeros((1, 1, 8)), np.ones((2, 1, 8)))

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from core.part.insert_codes import InsertCodeError
+from core.part.part_errors import PartError
 from core.part.tool_outline import ToolOutline, nose_circle, outline
 from core.part.tool_polygons import FloatArray, area
 from core.part.tool_shape import ROUND_TOOLS, Hand, ToolKind, ToolShape
@@ -295,7 +296,7 @@ def test_code_that_means_nothing_is_not_drawn() -> None:
 
 
 def test_outline_that_crosses_itself_is_not_drawn() -> None:
-    with pytest.raises(ValueError, match="crosses itself"):
+    with raises_code(PartError, "crosses-itself"):
         outline(ToolShape(ToolKind.FORM, profile=((0.0, 0.0), (4.0, 4.0), (4.0, 0.0), (0.0, 5.0))))
 
 

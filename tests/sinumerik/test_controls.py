@@ -13,6 +13,7 @@ from core.interpreter.job_setup import Setup
 from core.language.sinumerik.control_differences import CONTROLS, LACKS
 from core.language.sinumerik.sinumerik_book import BOOK
 from core.table_schema import MachineFileError
+from tests.coded import raises_code
 from tests.sinumerik.lathe import refused, run, setup
 
 PAGE = Path(__file__).parents[2] / "docs" / "sinumerik-controls.md"
@@ -64,7 +65,7 @@ def test_the_machine_file_says_it() -> None:
     machine = parse_machine(text.replace("[machine]", '[machine]\ncontrol = "802d"'), "t")
     assert control_limits(machine).control == "802d"
     assert shipped_machine("sinumerik-modulo").control == "840d"
-    with pytest.raises(MachineFileError, match=r"machine\.control"):
+    with raises_code(MachineFileError, "wrong-value", "machine.control"):
         parse_machine(text.replace("[machine]", '[machine]\ncontrol = "810"'), "t")
 
 

@@ -16,6 +16,7 @@ from core.interpreter.job_setup import Setup, ZeroOffset
 from core.language.sinumerik import lex_line
 from core.machine.machine_model import Machine
 from core.table_schema import MachineFileError
+from tests.coded import raises_code
 from tests.sinumerik.lathe import good, refused, run, setup
 
 TEXT = shipped_machine("sinumerik-modulo").text
@@ -87,7 +88,7 @@ def test_the_machine_file_says_it() -> None:
     assert control_limits(of("Q1")).third_axis == "Q1"
     assert shipped_machine("sinumerik-modulo").third_axis == "C"
     for wrong in ("X", "Z", "Q", "SPINDLE", "Q10", ""):
-        with pytest.raises(MachineFileError, match=r"axis\.C\.name"):
+        with raises_code(MachineFileError, "wrong-value", "axis.C.name"):
             of(wrong)
 
 

@@ -224,7 +224,7 @@ def test_a_migration_that_is_put_in_between_is_refused(
     for name in ("0001_a.sql", "0003_b.sql"):
         (tmp_path / name).write_text("SELECT 1;")
     monkeypatch.setattr(database, "_MIGRATIONS", tmp_path)
-    with pytest.raises(RuntimeError, match=r"without a gap: \[1, 3\]"):
+    with pytest.raises(RuntimeError, match=r"\[1, 3\]"):
         database.migrations()
 
 

@@ -8,6 +8,7 @@ from enum import Enum, auto
 from math import inf
 from typing import NamedTuple
 
+from core.coded_error import CodedError
 from core.interpreter import units
 
 HEAD = "G90G94F300\nT1\nM03S1000\nX.6Z.1\nG95F.004\n"
@@ -89,6 +90,10 @@ class When(Enum):
     C_FREE = "the spindle is not locked as C"
     NO_C = "the machine file switches C off"
     NO_STRAIGHT_MOVE = "no straight move of X or Z stands on its line"
+
+
+class CodeEntryError(CodedError, ValueError):
+    """A row of the code table that contradicts itself."""
 
 
 class Refusal(NamedTuple):
@@ -187,11 +192,15 @@ class Code:
 
     def __post_init__(self) -> None:
         if ("F" in self.words) is not (self.f is not FWord.NONE):
-            raise ValueError(f"{self.name}: its words and what F means there contradict each other")
+            raise CodeEntryError(
+                f"{self.name}: its words and what F means there contradict each other", "f-word"
+            )
         if self.acts is Acts.MODE and not self.group:
-            raise ValueError(f"{self.name}: a mode needs its group")
+            raise CodeEntryError(f"{self.name}: a mode needs its group", "no-group")
         if self.acts is not Acts.WORD and self.rules.keys() - self.words:
-            raise ValueError(f"{self.name}: a rule for a word that may not stand there")
+            raise CodeEntryError(
+                f"{self.name}: a rule for a word that may not stand there", "rule-without-word"
+            )
 
     @property
     def plain_refusals(self) -> tuple[Refusal, ...]:
