@@ -94,12 +94,14 @@ def damaged(
 
 def damaged_histories(connection: sqlite3.Connection) -> tuple[str, ...]:
     """The same of what grows for years, and of the tables as they were made: ``verify`` asks for it."""
-    tables = () if row_sums.schema_is_whole(connection) else ("the tables are not those that were made",)
+    tables = () if row_sums.schema_is_whole(connection) else (TABLES_CHANGED,)
     return tables + tuple(
         f"{named(table, key)} is not as it was saved, and is not used"
         for table, key in _broken(connection, HISTORIES)
     )
 
+
+TABLES_CHANGED = "the tables are not those that were made"
 
 OF_PROGRAMS = ("tool_offsets", "secondary_offsets", "zero_offsets", "mill_tools", "datum_presets")
 """The tables of what programs are proved with."""

@@ -157,6 +157,7 @@ def _found_wrong(connection: sqlite3.Connection) -> list[str]:
     return [str(text) for (text,) in found if text != "ok"]
 
 
+INDEX_REBUILT = "an index of the store was damaged; it is made anew from its table, of which nothing is lost"
 _MOST_WORDS = 1000  # those of pages come first
 _INDEX = re.compile(r"\bindex \S+$")  # row 3 missing from index …, wrong # of entries in index …
 _VALUE = rf"(?:value in|constraint failed in) (?:{'|'.join(row_sums.KEYS)})\b"
@@ -172,7 +173,7 @@ def _mend_indexes(connection: sqlite3.Connection, path: Path, wrong: list[str]) 
         connection.execute("REINDEX")
     except sqlite3.IntegrityError as error:  # two rows under one key: which of them is right?
         raise Cause.DAMAGED.error(path, error) from error
-    return ("an index of the store was damaged; it is made anew from its table, of which nothing is lost",)
+    return (INDEX_REBUILT,)
 
 
 def migrate(connection: sqlite3.Connection, scripts: Sequence[str]) -> None:

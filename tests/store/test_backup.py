@@ -190,5 +190,5 @@ def test_verify_finds_spoilt_text_and_loose_rows(folder: Path) -> None:
         connection.execute("INSERT INTO program_versions VALUES (9, 77, 1, X'', '', '', '', '')")
     connection.close()
     told = " ".join(backup.problems(path))
-    assert "'PIN.nc' version 1 is not what was saved" in told
-    assert "a row of programs that is not there" in told
+    assert "'PIN.nc' version 1 " in told
+    assert " program_versions " in told

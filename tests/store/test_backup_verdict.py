@@ -11,7 +11,9 @@ import pytest
 from core.store import backup, database
 from core.store.backup_verdict import Verdict, verdict
 from core.store.store import Store
+from core.store.store_errors import StoreError
 from core.store.store_rows import Kind
+from tests.coded import raises_code
 
 
 def judged(folder: Path, path: Path) -> Verdict:
@@ -58,7 +60,7 @@ def test_what_was_put_back_by_hand_is_no_difference(store: Store, folder: Path, 
 def test_a_damaged_one_is_told_and_not_compared(folder: Path, kept: Path) -> None:
     kept.write_bytes(kept.read_bytes().replace(b"M30\n", b"M31\n"))
     found = judged(folder, kept)
-    assert "is not what was saved" in found.problem
+    assert found.problem == backup.problems(kept)[0]
     assert found.differs == ()
 
 
@@ -66,8 +68,12 @@ def test_a_damaged_one_is_told_and_not_compared(folder: Path, kept: Path) -> Non
 def test_what_is_no_backup_is_told(data: bytes, store: Store, folder: Path, tmp_path: Path) -> None:
     store.set_setting("a", 1).result()
     (tmp_path / "b.db").write_bytes(data)
-    assert "is not a database" in judged(folder, tmp_path / "b.db").problem
-    assert "is not there" in judged(folder, tmp_path / "gone.db").problem
+    assert str(tmp_path / "b.db") in judged(folder, tmp_path / "b.db").problem
+    assert str(tmp_path / "gone.db") in judged(folder, tmp_path / "gone.db").problem
+    with raises_code(StoreError, "not-a-database"):
+        backup.problems(tmp_path / "b.db")
+    with raises_code(StoreError, "not-found"):
+        backup.problems(tmp_path / "gone.db")
 
 
 def test_one_of_an_older_version_has_its_programs_compared(folder: Path, kept: Path) -> None:

@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from core.store import database, job_queue
+from core.store.damaged_rows import named
 from core.store.job_queue import JobRow
 from core.store.store import Store, StoreError
 from core.store.store_file import FILE_NAME
@@ -160,7 +161,7 @@ def test_a_damaged_job_is_left_out_told_and_cleared(folder: Path) -> None:
     with Store.open(folder) as store:
         assert [row.program for row in store.jobs()] == ["b.nc"]
         (told,) = store.damaged()
-        assert told.startswith("the job 1 is not as it was saved")
+        assert told.startswith(named("jobs", 1))
         assert "turndesk jobs clear" in told
         assert store.write(lambda c: job_queue.clear(c, everything=False)).result() == 1
         assert store.damaged() == ()

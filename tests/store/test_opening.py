@@ -16,6 +16,7 @@ import pytest
 from core.store import backup, database
 from core.store.database import in_use
 from core.store.store import Store, StoreError
+from core.store.store_errors import Cause
 from core.store.store_file import FILE_NAME
 from core.store.store_rows import ToolRow
 from tests.coded import raises_code
@@ -67,13 +68,13 @@ def test_second_writer_is_refused_and_a_reader_is_not(store: Store, folder: Path
 def test_another_process_is_refused_too(store: Store, folder: Path) -> None:
     code = (
         "import sys\nfrom pathlib import Path\nfrom core.store.store import Store, StoreError\n"
-        "try:\n    Store.open(Path(sys.argv[1]))\nexcept StoreError as error:\n    sys.exit(str(error))\n"
+        "try:\n    Store.open(Path(sys.argv[1]))\nexcept StoreError as error:\n    sys.exit(error.code)\n"
     )
     done = subprocess.run(
         [sys.executable, "-c", code, str(folder)], capture_output=True, text=True, check=False, timeout=150
     )
     assert done.returncode == 1
-    assert "in use by another TurnDesk" in done.stderr
+    assert done.stderr == "in-use\n"
 
 
 def test_reader_of_nothing_sees_an_empty_store_and_makes_no_file(folder: Path) -> None:
@@ -173,7 +174,7 @@ def test_full_disk_is_told_and_the_store_is_as_before(store: Store) -> None:
     store.write(lambda c: c.execute("PRAGMA max_page_count = 1").close()).result()  # as large as it is now
     with raises_code(StoreError, "disk-full"):
         store.save_program("big", b"G90\n" * 100000, "x").result()
-    assert "disk is full" in store.trouble
+    assert store.trouble == str(Cause.FULL.error(store.path, ""))
     assert store.programs() == ()
     store.write(lambda c: c.execute("PRAGMA max_page_count = 1000000").close()).result()
     assert store.save_program("big", b"G90\n" * 100000, "x").result() == 1

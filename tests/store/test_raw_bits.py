@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from core.store import backup, database, job_queue, measured_parts, row_sums
+from core.store.damaged_rows import TABLES_CHANGED, named
 from core.store.measured_parts import FeatureRow, ReadingRow
 from core.store.store import Store
 from core.store.store_errors import StoreError
@@ -66,9 +67,8 @@ def test_an_index_that_is_damaged_hides_nothing_and_is_made_anew(kept: Path) -> 
     with Store.open(kept, read_only=True) as store:
         assert (store.setting("units"), store.parts("pin.nc")) == ("metric", 40)
     with Store.open(kept) as store:
-        [told] = store.repaired
-        assert "index of the store was damaged; it is made anew" in told
-        assert store.events()[0].text == told
+        assert store.repaired == (database.INDEX_REBUILT,)
+        assert store.events()[0].text == database.INDEX_REBUILT
         store.count_part("pin.nc").result()
         assert (store.setting("units"), store.parts("pin.nc"), store.damaged()) == ("metric", 41, ())
     assert backup.all_problems(kept / FILE_NAME) == ()
@@ -102,7 +102,7 @@ def test_an_entry_of_the_history_that_was_flipped_undoes_nothing(kept: Path, dam
     spoil(kept, f"UPDATE offset_changes SET {damage} WHERE id = 2")
     assert backup.problems(kept / FILE_NAME) == ()
     [told] = backup.all_problems(kept / FILE_NAME)
-    assert told == "entry 2 of the history of offsets is not as it was saved, and is not used"
+    assert told.startswith(named("offset_changes", 2))
     with Store.open(kept) as store:
         with raises_code(StoreError, "damaged-history", "entry 2"):
             store.undo_offset(kind=Kind.TOOL).result()
@@ -111,7 +111,7 @@ def test_an_entry_of_the_history_that_was_flipped_undoes_nothing(kept: Path, dam
 
 def test_an_entry_that_has_gone_is_missed(kept: Path) -> None:
     spoil(kept, "DELETE FROM offset_changes WHERE id = 2")
-    assert "entry 2 of the history of offsets" in backup.all_problems(kept / FILE_NAME)[0]
+    assert backup.all_problems(kept / FILE_NAME)[0].startswith(named("offset_changes", 2))
     with Store.open(kept) as store, raises_code(StoreError, "damaged-history", "entry 2"):
         store.undo_offset(kind=Kind.TOOL).result()
 
@@ -139,7 +139,7 @@ def test_a_count_that_is_not_believed_is_shown_nowhere(kept: Path) -> None:
         assert [(row.program, row.parts, row.cycles) for row in store.runs()] == [("pin.nc", 0, 1)]
         assert store.parts("pin.nc") == 0
         [told] = store.damaged()
-    assert told.startswith("the part count of pin.nc is not as it was saved")
+    assert told.startswith(named("part_counts", "pin.nc"))
 
 
 def test_a_record_of_runs_that_was_flipped_begins_anew(kept: Path) -> None:
@@ -147,7 +147,8 @@ def test_a_record_of_runs_that_was_flipped_begins_anew(kept: Path) -> None:
     with Store.open(kept, read_only=True) as store:
         assert store.runs() == (RunRow("pin.nc", 40),)
     with Store.open(kept) as store:
-        assert store.repaired == ("the record of pin.nc was damaged in the store, and begins anew",)
+        [told] = store.repaired
+        assert told.startswith(named("runs", "pin.nc"))
         store.cycle_finished("pin.nc", 34.0).result()
         assert [(row.cycles, row.best) for row in store.runs()] == [(1, 34.0)]
     assert backup.all_problems(kept / FILE_NAME) == ()
@@ -162,9 +163,7 @@ def test_a_feature_that_was_flipped_proposes_no_wear(kept: Path, damage: str, re
     assert backup.problems(kept / FILE_NAME)
     with Store.open(kept) as store:
         [told] = store.repaired
-        assert told.startswith(
-            "the measured feature pin.nc OD was damaged in the store, and is measured no more; enter it anew"
-        )
+        assert told.startswith(named("part_features", "pin.nc OD"))
         with store.read() as connection:
             assert measured_parts.features(connection) == ()
         again = store.write(lambda c: measured_parts.save_feature(c, PIN)).result()
@@ -179,7 +178,8 @@ def test_a_reading_that_was_flipped_counts_no_more(kept: Path) -> None:
     with Store.open(kept) as store, store.read() as connection:
         assert [row.value for row in measured_parts.readings(connection, "pin.nc", 9)] == [12.001]
         assert len(measured_parts.readings_between(connection, "0", "9")) == 1
-    assert backup.all_problems(kept / FILE_NAME) == ("the reading 2 is not as it was saved, and is not used",)
+    [told] = backup.all_problems(kept / FILE_NAME)
+    assert told.startswith(named("part_readings", 2))
 
 
 def test_a_text_whose_type_was_flipped_is_none(kept: Path) -> None:
@@ -189,7 +189,8 @@ def test_a_text_whose_type_was_flipped_is_none(kept: Path) -> None:
         assert (store.tools(), store.setting("units")) == ({}, None)
     with Store.open(kept) as store:
         assert store.tools()[3].remark == "FINISHER"
-        assert [text.split(" is ")[0] for text in store.damaged()] == ["the setting units"]
+        [told] = store.damaged()
+        assert told.startswith(named("settings", "units"))
 
 
 def test_a_sum_whose_key_is_no_text_any_more_is_told(kept: Path) -> None:
@@ -198,7 +199,7 @@ def test_a_sum_whose_key_is_no_text_any_more_is_told(kept: Path) -> None:
     assert len(backup.problems(kept / FILE_NAME)) == 2
     with Store.open(kept) as store:
         [told] = store.damaged()
-        assert told.startswith("the setting units is not as it was saved")
+        assert told.startswith(named("settings", "units"))
         assert store.setting("units") is None
         store.set_setting("units", "metric").result()
         assert (store.setting("units"), store.damaged()) == ("metric", ())
@@ -215,7 +216,7 @@ def test_two_rows_that_changed_places_with_their_sums_are_none(kept: Path) -> No
             spoil(kept, f"UPDATE {table} SET {key} = ? WHERE {key} = ?{of_tools}", after, before)
     with Store.open(kept, read_only=True) as store:
         assert store.tools() == {}
-        assert [text.split(" is ")[0] for text in store.damaged()] == ["T3", "T5"]
+        assert [text.split()[0] for text in store.damaged()] == ["T3", "T5"]
     with Store.open(kept) as store:
         assert store.tools() == {}
         assert store.repaired == ()
@@ -228,7 +229,8 @@ def test_a_usual_value_of_a_column_that_was_flipped_is_told(kept: Path) -> None:
     content = (kept / FILE_NAME).read_bytes()
     assert content.count(b"DEFAULT 0.9 ") == 1
     (kept / FILE_NAME).write_bytes(content.replace(b"DEFAULT 0.9 ", b"DEFAULT 0.1 "))
-    assert backup.all_problems(kept / FILE_NAME) == ("the tables are not those that were made",)
+    [told] = backup.all_problems(kept / FILE_NAME)
+    assert told == TABLES_CHANGED
 
 
 def test_a_store_of_before_gets_sums_for_its_histories(kept: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -243,7 +245,8 @@ def test_a_store_of_before_gets_sums_for_its_histories(kept: Path, monkeypatch: 
     spoil(kept, "UPDATE runs SET best = 1.25")
     with Store.open(kept) as store:
         assert store.repaired == ()
-        assert [text.split(" is ")[0] for text in store.damaged()] == ["the part count of pin.nc"]
+        [told] = store.damaged()
+        assert told.startswith(named("part_counts", "pin.nc"))
         assert [row.best for row in store.runs()] == [1.25]
         assert len(store.history(Kind.TOOL)) == 2
     spoil(kept, "UPDATE offset_changes SET old_x = 7 WHERE id = 2")
