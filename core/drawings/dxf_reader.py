@@ -44,7 +44,7 @@ def read_dxf(path: Path) -> Drawing:
     left_out: Counter[str] = Counter()
     drawn = tuple(within_limits(_drawn(document, nearest(unit), left_out, path.name), path.name))
     if not drawn:
-        raise DrawingError(_nothing(path.name, left_out), "nothing-drawn")
+        raise _nothing(path.name, left_out)
     return Drawing(path.name, drawn, unit, dict(left_out))
 
 
@@ -61,11 +61,13 @@ def _document(path: Path) -> Document:
         raise damaged(path, "DXF", error) from error
 
 
-def _nothing(name: str, left_out: Counter[str]) -> str:
+def _nothing(name: str, left_out: Counter[str]) -> DrawingError:
     if any(kind in _SOLID for kind in left_out):
-        return f"{name} is three-dimensional: save a section or a view of the part in one plane."
+        text = f"{name} is three-dimensional: save a section or a view of the part in one plane."
+        return DrawingError(text, "three-dimensional")
     what = ", ".join(sorted(left_out)) if left_out else "nothing"
-    return f"{name} has no line nor arc in its model space, only {what[:80]}: draw the contour as lines."
+    text = f"{name} has no line nor arc in its model space, only {what[:80]}: draw the contour as lines."
+    return DrawingError(text, "nothing-drawn")
 
 
 def _drawn(document: Document, near: float, left_out: Counter[str], name: str) -> Iterator[Drawn]:

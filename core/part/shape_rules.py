@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from core.part.holder_codes import holder_of
 from core.part.insert_codes import InsertCodeError, decoded
+from core.part.part_errors import PartError
 from core.part.tool_outline import BORING_ENTRIES, ENTRIES
 from core.part.tool_polygons import convex_pieces
 from core.part.tool_shape import Hand, ToolKind, ToolShape
@@ -35,6 +36,7 @@ class ShapeMistake(NamedTuple):
 
     field: str
     text: str
+    code: str  # names the fault, as that of a ``CodedError``
 
 
 def shape_mistakes(shape: ToolShape) -> tuple[ShapeMistake, ...]:
@@ -48,10 +50,12 @@ def _insert(shape: ToolShape) -> Iterator[ShapeMistake]:
     try:
         insert = decoded(shape.insert)
     except InsertCodeError as error:
-        yield ShapeMistake("insert", str(error))
+        yield ShapeMistake("insert", str(error), error.code)
         return
     if insert.corners and 2.0 * shape.nose_radius >= insert.inscribed_circle:
-        yield ShapeMistake("nose_radius", f"the nose radius is larger than the insert {shape.insert}")
+        yield ShapeMistake(
+            "nose_radius", f"the nose radius is larger than the insert {shape.insert}", "nose-too-large"
+        )
     yield from _entry(shape, insert.shape, insert.point_angle)
 
 
@@ -67,34 +71,38 @@ def _entry(shape: ToolShape, letter: str, point: float) -> Iterator[ShapeMistake
             f"an entering angle of {angle:g}° leaves a point of {point:g}° no clearance; "
             f"at most {180 - point:g}°"
         )
-        yield ShapeMistake("entry", text)
+        yield ShapeMistake("entry", text, "no-clearance")
 
 
 def _tip(shape: ToolShape) -> Iterator[ShapeMistake]:
     if shape.turns_itself and 0 not in TIP_DIRECTIONS[shape.tip]:
         text = f"tip {shape.tip} is no end of a round tool: 7 along the spindle, 8 across it, 6 from behind"
-        yield ShapeMistake("tip", text)
+        yield ShapeMistake("tip", text, "not-an-end")
     across = TIP_DIRECTIONS[shape.tip][1]
     if shape.rear and across and not shape.turns_itself and (across > 0) is shape.internal:
         where, which = ("X−", "3, 4 or 8") if shape.internal else ("X+", "1, 2 or 6")
         text = (
             f"tip {shape.tip} is that of a tool in front; behind the spindle the tip lies at {where}: {which}"
         )
-        yield ShapeMistake("tip", text)
+        yield ShapeMistake("tip", text, "tool-in-front")
 
 
 def _sizes(shape: ToolShape) -> Iterator[ShapeMistake]:
     groove = shape.kind in {ToolKind.GROOVING, ToolKind.PARTING}
     if groove and shape.width and 2.0 * shape.nose_radius > shape.width:
-        yield ShapeMistake("nose_radius", "two corners of this nose radius are wider than the edge")
+        yield ShapeMistake(
+            "nose_radius", "two corners of this nose radius are wider than the edge", "corners-too-wide"
+        )
     if shape.kind is ToolKind.END_MILL and shape.diameter and 2.0 * shape.nose_radius > shape.diameter:
-        yield ShapeMistake("nose_radius", "the corner radius is larger than half of the diameter")
+        yield ShapeMistake(
+            "nose_radius", "the corner radius is larger than half of the diameter", "nose-too-large"
+        )
     if shape.turns_itself and shape.stick_out and shape.length > shape.stick_out:
-        yield ShapeMistake("length", "what cuts is longer than the tool sticks out")
+        yield ShapeMistake("length", "what cuts is longer than the tool sticks out", "too-long")
     if shape.kind is ToolKind.CENTRE_DRILL and shape.diameter and shape.width >= shape.diameter:
-        yield ShapeMistake("width", "the pilot is as thick as the centre drill")
+        yield ShapeMistake("width", "the pilot is as thick as the centre drill", "pilot-too-thick")
     if shape.kind is ToolKind.TAP and shape.diameter and 2.0 * shape.pitch >= shape.diameter:
-        yield ShapeMistake("pitch", "the pitch is too coarse for the diameter of the tap")
+        yield ShapeMistake("pitch", "the pitch is too coarse for the diameter of the tap", "pitch-too-coarse")
 
 
 def _outlines(shape: ToolShape) -> Iterator[ShapeMistake]:
@@ -105,11 +113,13 @@ def _outlines(shape: ToolShape) -> Iterator[ShapeMistake]:
             continue
         try:
             pieces = convex_pieces(points) if len(points) > 2 else ()
-        except ValueError as error:
-            yield ShapeMistake(field, str(error))
+        except PartError as error:
+            yield ShapeMistake(field, str(error), error.code)
             continue
         if not pieces:
-            yield ShapeMistake(field, "an outline takes three points that do not lie on one line")
+            yield ShapeMistake(
+                field, "an outline takes three points that do not lie on one line", "too-few-points"
+            )
 
 
 _RULES: tuple[Callable[[ToolShape], Iterator[ShapeMistake]], ...] = (_insert, _tip, _sizes, _outlines)

@@ -124,7 +124,7 @@ def _chain(ordered: list[tuple[float, ...]]) -> list[tuple[float, ...]]:
 
 
 def convex_pieces(points: Sequence[tuple[float, float]]) -> tuple[FloatArray, ...]:
-    """A simple polygon in convex pieces: itself, or triangles by clipping ears. Raises ValueError else."""
+    """A simple polygon in convex pieces: itself, or triangles by clipping ears. Raises PartError else."""
     left = [(float(z), float(r)) for z, r in counter_clockwise(np.array(points, dtype=np.float64))]
     if _crosses(left):
         raise PartError("the outline crosses itself", "crosses-itself")
@@ -134,7 +134,7 @@ def convex_pieces(points: Sequence[tuple[float, float]]) -> tuple[FloatArray, ..
     while len(left) > 3:
         ear = next((at for at in range(len(left)) if _is_ear(left, at)), None)
         if ear is None:
-            raise ValueError("the outline touches itself")
+            raise PartError("the outline touches itself", "touches-itself")
         pieces.append(np.array([left[ear - 1], left[ear], left[(ear + 1) % len(left)]]))
         del left[ear]
     return tuple(piece for piece in (*pieces, np.array(left)) if area(piece) > 0.0)

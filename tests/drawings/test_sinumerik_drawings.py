@@ -17,6 +17,7 @@ from core.language.source import Dialect
 from core.shapes.pieces import pieces
 from core.shapes.shape_setting import Setting, Shop
 from core.tool_edges import TIP_DIRECTIONS
+from tests.coded import recorded_refusals
 from tests.drawings.hand import TOOLS, chain, dxf, profile_of, program, text_of
 from tests.sinumerik.lathe import LINEAR
 
@@ -115,8 +116,9 @@ def test_the_command_writes_the_language_of_the_name(
     assert capsys.readouterr().out.startswith("G54 G18 G90 G95 G710 DIAMON ; HEAD ")
 
 
-def test_the_command_refuses_klartext(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_command_refuses_klartext(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    refusals = recorded_refusals(monkeypatch)
     drawing = dxf(tmp_path / "shaft.dxf", chain(*SHAFT))
     assert main(["profile", str(drawing), "--out", str(tmp_path / "shaft.h")]) != 0
-    assert "a turned profile is OmniTurn or SINUMERIK; name it .nc or .mpf" in capsys.readouterr().err
+    assert [each.code for each in refusals] == ["wrong-language"]
     assert not (tmp_path / "shaft.h").exists()

@@ -5,6 +5,7 @@ from math import radians, tan
 import pytest
 
 from core.part.insert_codes import CORNERS, InsertCodeError, decoded, metric_sizes
+from tests.coded import raises_code
 
 # Code, point angle, inscribed circle, edge, thickness, nose radius, clearance. The edges are the catalogues'
 # "l" (or "LE") of each size: 12.9 for CNMG 12, 11.6 for DCMT 11, 16.6 for VNMG 16, 8.7 for WNMG 08 …
@@ -102,37 +103,36 @@ def decoded_edge(shape: str, circle: float) -> float:
 
 
 @pytest.mark.parametrize(
-    ("code", "says"),
+    ("insert", "code", "value"),
     [
-        ("QNMG432", "character 1, Q, means nothing as shape"),
-        ("LNMG432", "character 1, L, means nothing as shape"),
-        ("CZMG 120408", "character 2, Z, means nothing as clearance"),
-        ("CNXG 120408", "character 3, X, means nothing as tolerance class"),
-        ("CNMY 120408", "character 4, Y, means nothing as type of hole"),
-        ("CNMGX432", "character 5, X, means nothing; the size begins there"),
-        ("CNMG 139408", "characters 5 and 6, 13, mean nothing as size of insert shape C; known: 03 04 05"),
-        ("CNMG 121308", "characters 7 and 8, 13, mean nothing as thickness"),
-        ("CNMG 120407", "characters 9 and 10, 07, mean nothing as corner radius"),
-        ("CNMG 12040", "character 10 is missing; there stands the corner radius"),
-        ("CNMG 1204", "character 9 is missing; there stands the corner radius"),
-        ("CNMG932", "character 5, 9, means nothing as size (eighths of an inch)"),
-        ("CNMG492", "character 6, 9, means nothing as thickness (sixteenths of an inch)"),
-        ("CNMG439", "character 7, 9, means nothing as corner radius (1/64 in)"),
-        ("CNMG43", "character 7 is missing; there stands the corner radius (1/64 in)"),
-        ("CNMG4321", "characters 5 and 6, 43, mean nothing as size"),
-        ("CNM 120408", "character 4 is missing; it is the type"),
-        ("CNMG", "character 5 is missing; there stands the size"),
-        ("RCMT 10T304", "characters 9 and 10, 04, mean nothing as corner of a round insert"),
-        ("ÄNMG432", "character 1, Ä, means nothing as shape"),
-        ("432", "character 1 is missing; it is the shape"),
-        ("", "character 1 is missing; it is the shape"),
+        ("QNMG432", "unknown-character", "1, Q,"),
+        ("LNMG432", "unknown-character", "1, L,"),
+        ("CZMG 120408", "unknown-character", "2, Z,"),
+        ("CNXG 120408", "unknown-character", "3, X,"),
+        ("CNMY 120408", "unknown-character", "4, Y,"),
+        ("CNMGX432", "unknown-character", "5, X,"),
+        ("CNMG 139408", "unknown-character", "5 and 6, 13,"),
+        ("CNMG 121308", "unknown-character", "7 and 8, 13,"),
+        ("CNMG 120407", "unknown-character", "9 and 10, 07,"),
+        ("CNMG 12040", "character-missing", "10"),
+        ("CNMG 1204", "character-missing", "9"),
+        ("CNMG932", "unknown-character", "5, 9,"),
+        ("CNMG492", "unknown-character", "6, 9,"),
+        ("CNMG439", "unknown-character", "7, 9,"),
+        ("CNMG43", "character-missing", "7"),
+        ("CNMG4321", "unknown-character", "5 and 6, 43,"),
+        ("CNM 120408", "character-missing", "4"),
+        ("CNMG", "character-missing", "5"),
+        ("RCMT 10T304", "unknown-character", "9 and 10, 04,"),
+        ("ÄNMG432", "unknown-character", "1, Ä,"),
+        ("432", "character-missing", "1"),
+        ("", "character-missing", "1"),
     ],
 )
-def test_code_that_means_nothing_says_which_character(code: str, says: str) -> None:
-    with pytest.raises(InsertCodeError) as caught:
-        decoded(code)
-    assert says in str(caught.value)
-    assert str(caught.value).startswith(f"{code}: ")
+def test_code_that_means_nothing_says_which_character(insert: str, code: str, value: str) -> None:
+    with raises_code(InsertCodeError, code, value) as caught:
+        decoded(insert)
+    assert str(caught.value).startswith(f"{insert}: ")
 
 
 @pytest.mark.parametrize(
