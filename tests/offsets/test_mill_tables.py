@@ -23,6 +23,7 @@ from core.interpreter.job_setup import ToolOffset
 from core.quality.tool_life import ToolLife
 from core.store.store_rows import Kind, MillRow, PresetRow
 from tests.offsets.conftest import LIMIT, Room
+from tests.texts import text
 
 AXES = ("X", "Y", "Z", "A", "C")
 
@@ -63,8 +64,8 @@ def test_lengths_radii_and_teeth_are_typed_in_millimetres(room: Room) -> None:
     mill(room)
     page = MillTools(room.desk)
     typed = {"length": "80.5", "radius": "12/2", "dl": "-.02", "teeth": "4", "life": "90"}
-    for name, text in typed.items():
-        types(room, page, text, name=name, row=19)
+    for name, value in typed.items():
+        types(room, page, value, name=name, row=19)
     row = kept(room, 20)
     assert row == MillRow(length=80.5, radius=6.0, dl=-0.02, teeth=4, life=90.0)
     page.undo()
@@ -179,7 +180,7 @@ def test_the_basic_rotation_follows_from_two_points_of_an_edge(room: Room) -> No
     ):
         at(room, *first)
         page.here()
-        assert "FIRST POINT TAKEN" in room.desk.notice
+        assert text("offsets.first-point") in room.desk.notice
         at(room, *last)
         for key in reads:
             page.typed(key)
@@ -201,7 +202,7 @@ def test_points_that_lie_together_are_no_edge_and_another_cell_forgets_the_first
     assert room.store.presets() == {}
     page.choose(0, page.columns.index("rotation"))
     page.here()
-    assert "FIRST POINT TAKEN" in room.desk.notice
+    assert text("offsets.first-point") in room.desk.notice
 
 
 # --- tool life ------------------------------------------------------------------------------------------
@@ -221,7 +222,7 @@ def test_cur_time_is_what_was_cut_and_goes_to_what_counts_it(room: Room) -> None
     types(room, page, "0", name="used")
     assert told == [(1, 0.0)]
     types(room, page, "5", name="used", row=8)
-    assert "T9 IS NOT IN THE TABLE YET" in room.desk.notice
+    assert text("offsets.not-in-table", number=9) in room.desk.notice
     assert told == [(1, 0.0)]
 
 
@@ -259,7 +260,7 @@ def test_nothing_changes_under_a_program(room: Room) -> None:
     types(room, page, "3", name="x")
     assert room.store.presets() == {}
     page.activate()
-    assert "A PROGRAM IS UNDER WAY" in room.desk.notice
+    assert text("offsets.between-cycles") in room.desk.notice
 
 
 def test_a_leaning_tool_touches_no_length_off(room: Room) -> None:
@@ -286,7 +287,7 @@ def test_an_axis_that_was_not_homed_touches_nothing_off(room: Room) -> None:
     page = MillTools(room.desk)
     page.choose(0, page.columns.index("length"))
     page.here()
-    assert "Z DOES NOT KNOW ITS POSITION" in room.desk.notice
+    assert text("offsets.not-homed", axes="Z") in room.desk.notice
 
 
 def test_a_preset_that_was_never_set_is_not_put_in_force(room: Room) -> None:

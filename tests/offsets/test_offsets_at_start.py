@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
@@ -12,6 +13,7 @@ from core.executor.snapshot import State
 from core.interpreter.job_setup import SecondaryOffset
 from core.store.store_rows import Kind
 from tests.offsets.conftest import LIMIT, Room
+from tests.texts import pattern
 
 
 @pytest.fixture
@@ -63,7 +65,7 @@ def test_no_start_when_the_program_cannot_be_read_again(room: Room, posted: list
     room.desk.session.settled(LIMIT)
     room.desk.start_button()
     assert CycleStart() not in posted
-    assert room.desk.notice.startswith("part.nc CANNOT BE LOADED")
+    assert re.fullmatch(pattern("offsets.cannot-load", program="part.nc"), room.desk.notice)
 
 
 def test_no_start_beside_the_automatic_page(room: Room, posted: list[Command]) -> None:

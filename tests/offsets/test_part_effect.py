@@ -17,6 +17,7 @@ from core.language.source import Source
 from core.store.store_rows import Kind
 from tests.desk.test_part_found import LIMIT, SHAFT, TOOLS
 from tests.offsets.conftest import Room
+from tests.texts import text
 
 INCH = Mode()
 
@@ -71,7 +72,7 @@ def test_a_thousandth_of_x_takes_two_off_each_diameter_and_leaves_shoulders(
     assert (turned.cells[2], turned.cells[3], turned.lit) == ("0.79800", "−0.00200", True)
     face = rows["SHOULDER0.00000"]
     assert (face.cells[2], face.cells[3], face.lit) == ("0.00000", "–", False)
-    assert shown.words == "1 FEATURE OF THE PART CHANGES; F6 SHOWS THE TABLE"
+    assert shown.words == text("offsets.one-feature")
 
 
 def test_in_mm_the_same_is_told_in_mm(room: Room, shown: EffectDisplay) -> None:
@@ -100,7 +101,7 @@ def test_a_program_that_makes_no_part_says_so(room: Room, shown: EffectDisplay) 
     types(room, shown, "1", "0-.501")
     turned_to_part(shown)
     assert shown.part is None
-    assert "THIS PROGRAM MAKES NO PART" in shown.words
+    assert text("offsets.no-part") in shown.words
 
 
 def test_of_a_program_that_is_too_long_no_part_is_compared(room: Room, shown: EffectDisplay) -> None:

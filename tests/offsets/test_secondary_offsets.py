@@ -13,6 +13,7 @@ from app.offsets.secondary_offsets import Step
 from core.executor.snapshot import State
 from core.store.store_rows import Kind, SecondaryRow
 from tests.offsets.conftest import LIMIT, Room
+from tests.texts import text
 
 
 def test_the_questions_in_their_order(room: Room) -> None:
@@ -52,7 +53,7 @@ def test_bare_return_keeps(room: Room) -> None:
     room.enter(page, "2", "", ".1", "")
     assert room.store.secondary()[2] == pytest.approx((0.05 * 25.4, 0.3 * 25.4, 0.3 * 25.4))
     room.enter(page, "2", "", "", "")
-    assert room.desk.notice == "D2 IS AS IT WAS"
+    assert room.desk.notice == text("offsets.as-it-was", number=2)
     assert len(room.store.history()) == 2
 
 
@@ -71,25 +72,30 @@ def test_arithmetic_and_the_preview_of_old_and_new(room: Room) -> None:
     assert page.old_to_new == "D1   not set  →  X +0.24900  Z +0.00000  R 0.00000"
 
 
+def would_become(name: str, value: str, low: str, high: str) -> str:
+    """Return the text about a correction that is out of range, in inches."""
+    return text("offsets.would-become", field=name, value=value, unit="in", low=low, high=high)
+
+
 @pytest.mark.parametrize(
     ("answers", "why"),
     [
-        (("0",), "REFUSED: D0 does not exist; offsets are D1…32"),
-        (("33",), "REFUSED: D33 does not exist; offsets are D1…32"),
-        (("1.5",), "REFUSED: D1.5 does not exist; offsets are D1…32"),
-        (("",), "REFUSED: nothing is entered; type a number"),
-        (("1", ".5-"), "REFUSED: .5- stops short; expected a number at its end"),
-        (("1", "0,5"), "REFUSED: , in 0,5 is no number; the decimal sign is a point"),
-        (("1", "1/0"), "REFUSED: 1/0 divides by zero"),
-        (("1", "21"), "REFUSED: D1 X would become 10.50000 in; it may be -10…10"),
-        (("1", "", "-10.1"), "REFUSED: D1 Z would become −10.10000 in; it may be -10…10"),
-        (("1", "", "", "-.01"), "REFUSED: D1 R would become −0.01000 in; it may be 0…2"),
+        (("0",), "D0 does not exist; offsets are D1…32"),
+        (("33",), "D33 does not exist; offsets are D1…32"),
+        (("1.5",), "D1.5 does not exist; offsets are D1…32"),
+        (("",), text("offsets.nothing-entered")),
+        (("1", ".5-"), ".5- stops short; expected a number at its end"),
+        (("1", "0,5"), ", in 0,5 is no number; the decimal sign is a point"),
+        (("1", "1/0"), text("offsets.divides-by-zero", text="1/0")),
+        (("1", "21"), would_become("D1 X", "10.50000", "-10", "10")),
+        (("1", "", "-10.1"), would_become("D1 Z", "−10.10000", "-10", "10")),
+        (("1", "", "", "-.01"), would_become("D1 R", "−0.01000", "0", "2")),
     ],
 )
 def test_refusals_say_what_and_why_and_ask_again(room: Room, answers: tuple[str, ...], why: str) -> None:
     page = room.page()
     room.enter(page, *answers)
-    assert room.desk.notice == why
+    assert room.desk.notice == text("offsets.refused", why=why)
     assert page.text == answers[-1]
     assert room.store.secondary() == {}
 
@@ -116,7 +122,7 @@ def test_escape_goes_back_step_by_step(room: Room) -> None:
     page = room.page()
     room.enter(page, "4", ".1")
     assert page.escape()
-    assert room.desk.notice == "D4 IS AS IT WAS"
+    assert room.desk.notice == text("offsets.as-it-was", number=4)
     assert page.question == "Offset Number?"
     assert not page.escape()
     assert room.store.secondary() == {}
@@ -127,7 +133,7 @@ def test_clear_asks_once_more(room: Room) -> None:
     room.enter(page, "1", ".1", "", "")
     room.enter(page, "9", "", ".1", "")
     assert page.typed("C")
-    assert room.desk.notice.startswith("PRESS Y TO CLEAR ALL 32")
+    assert room.desk.notice == text("offsets.clear-all")
     assert page.escape()
     page.typed("c")
     page.typed("7")  # any other key takes the question back
@@ -156,7 +162,7 @@ def test_clear_is_not_taken_in_the_middle_of_an_entry(room: Room) -> None:
     page.typed("C")
     room.settle(page)
     assert room.store.secondary()
-    assert "ONLY WHILE Offset Number?" in room.desk.notice
+    assert room.desk.notice == text("offsets.only-at-number")
 
 
 def test_undo_takes_back_secondary_offsets_only(room: Room) -> None:
@@ -170,7 +176,7 @@ def test_undo_takes_back_secondary_offsets_only(room: Room) -> None:
     assert room.desk.notice == "D1 TAKEN BACK"
     page.undo()
     room.settle(page)
-    assert room.desk.notice == "REFUSED: there is no offset change to undo"
+    assert room.desk.notice == text("offsets.refused", why=text("offsets.nothing-to-undo"))
 
 
 def test_the_history_has_time_from_to_and_reason(room: Room) -> None:
@@ -200,20 +206,20 @@ UNDER_WAY = [State.RUN, State.WAIT, State.HOLD, State.HOLDING, State.BLOCK_END, 
 
 
 @pytest.mark.parametrize("state", UNDER_WAY)
-@pytest.mark.parametrize(("repeat", "when"), [(True, "NEXT PART"), (False, "NEXT CYCLE START")])
+@pytest.mark.parametrize(("repeat", "when"), [(True, "next-part"), (False, "next-start")])
 def test_a_correction_while_parts_run_counts_from_the_next_one(
     room: Room, state: State, repeat: bool, when: str
 ) -> None:
     page = room.page()
     room.at(state)
     room.now[0] = replace(room.now[0], cycle_repeat=repeat)
-    assert f"COUNTS FROM THE {when}" in page.prompt(room.now[0])
+    assert text(f"offsets.prompt-{when}") in page.prompt(room.now[0])
     room.enter(page, "1", ".1", "", "")
-    assert room.desk.notice == f"D1 SAVED; IT COUNTS FROM THE {when}"
+    assert room.desk.notice == f"D1 SAVED{text(f'offsets.{when}')}"
     assert room.store.secondary()[1].x == pytest.approx(0.05 * 25.4)
     page.undo()
     room.settle(page)
-    assert room.desk.notice == f"D1 TAKEN BACK; IT COUNTS FROM THE {when}"
+    assert room.desk.notice == f"D1 TAKEN BACK{text(f'offsets.{when}')}"
 
 
 @pytest.mark.parametrize("state", UNDER_WAY)
@@ -223,7 +229,7 @@ def test_all_offsets_are_not_cleared_under_a_running_program(room: Room, state: 
     room.at(state)
     page.typed("C")
     page.typed("C")
-    assert room.desk.notice == "A PROGRAM IS UNDER WAY: ONLY WEAR AND F9 CORRECTIONS MAY CHANGE"
+    assert room.desk.notice == text("offsets.only-wear")
     room.settle(page)
     assert room.store.secondary()[1].x == pytest.approx(0.05 * 25.4)
 
@@ -233,7 +239,7 @@ def test_no_correction_while_a_hand_moves_the_slides(room: Room, state: State) -
     page = room.page()
     room.at(state)
     room.enter(page, "1")
-    assert room.desk.notice == "THE SLIDES ARE MOVING: OFFSETS CHANGE AT REST"
+    assert room.desk.notice == text("offsets.moving")
 
 
 def test_the_next_part_that_switches_to_diameters_does_not_take_the_entry_away(room: Room) -> None:
@@ -252,7 +258,7 @@ def test_the_next_part_that_switches_to_mm_does(room: Room) -> None:
     room.enter(page, "3", "-.0002")
     room.at(State.RUN, metric=True)
     room.settle(page)
-    assert room.desk.notice.startswith("THE CONTROL HAS CHANGED ITS UNIT")
+    assert room.desk.notice == text("offsets.unit-changed")
     assert 3 not in room.store.secondary()
 
 
@@ -261,9 +267,9 @@ def test_a_correction_at_a_stop_counts_when_the_job_has_ended(room: Room) -> Non
     room.desk.session.settled(LIMIT)
     page = room.page()
     room.at(State.PROGRAM_STOP)
-    assert "COUNTS FROM THE NEXT CYCLE START" in page.prompt(room.now[0])
+    assert text("offsets.prompt-next-start") in page.prompt(room.now[0])
     room.enter(page, "1", ".1", "", "")
-    assert room.desk.notice == "D1 SAVED; IT COUNTS FROM THE NEXT CYCLE START"
+    assert room.desk.notice == f"D1 SAVED{text('offsets.next-start')}"
     room.at(State.RUN)
     room.desk.look()
     assert room.loads == ["part.nc"]

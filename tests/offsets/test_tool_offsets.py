@@ -9,6 +9,7 @@ from app.offsets.tool_offsets import ToolOffsets
 from core.executor.snapshot import State
 from core.store.store_rows import ToolRow
 from tests.offsets.conftest import LIMIT, Room
+from tests.texts import text
 
 INCH = 25.4
 
@@ -67,7 +68,7 @@ def test_f2_adds_to_what_is_there(room: Room) -> None:
     assert room.store.tools()[1].wear_x == 0.0005 * INCH
     assert room.store.history()[0].why == "WEAR X + .0001"
     grid.add()
-    assert room.desk.notice.startswith("TYPE WHAT IS TO BE ADDED FIRST")
+    assert room.desk.notice == text("offsets.add-first")
 
 
 def test_quadrant_remark_and_the_sum_that_the_control_gets(room: Room) -> None:
@@ -104,7 +105,7 @@ def test_a_tool_that_was_never_set_needs_x_and_z_together(room: Room) -> None:
     grid = at(room, 7, "x")
     room.enter(grid, "1")
     assert room.store.tools() == {}
-    assert room.desk.notice == "NOW Z: T7 IS SET WHEN BOTH ARE THERE"
+    assert room.desk.notice == text("offsets.half-set", axis="Z", number=7)
     assert grid.name == "z"
     room.enter(grid, "-2")
     assert room.store.tools() == {7: ToolRow(INCH, -2 * INCH)}
@@ -114,7 +115,7 @@ def test_half_a_tool_is_forgotten_when_it_is_left(room: Room) -> None:
     grid = at(room, 7, "z")
     room.enter(grid, "1")
     grid.typed("Down")
-    assert room.desk.notice == "T7 IS NOT SET: X AND Z BELONG TOGETHER"
+    assert room.desk.notice == text("offsets.not-set", number=7)
     assert grid.cell(7, "z") == ""
     assert room.store.tools() == {}
 
@@ -123,7 +124,7 @@ def test_half_a_tool_is_forgotten_when_it_is_left(room: Room) -> None:
 def test_no_other_field_of_a_tool_that_was_never_set(room: Room, name: str) -> None:
     grid = at(room, 7, name)
     room.enter(grid, "0")
-    assert room.desk.notice.startswith("T7 WAS NEVER SET")
+    assert room.desk.notice == text("offsets.never-set", number=7)
     assert room.store.tools() == {}
 
 
@@ -131,7 +132,7 @@ def test_the_master_is_chosen_and_the_others_are_shown_from_it(room: Room) -> No
     set_tools(room)
     grid = at(room, 2, "master")
     grid.turn_relative()
-    assert room.desk.notice.startswith("NO TOOL IS THE MASTER")
+    assert room.desk.notice == text("offsets.no-master")
     before = {n: row.offset for n, row in room.store.tools().items()}
     room.enter(grid, "")
     assert room.desk.book.master == 2
@@ -154,7 +155,7 @@ def test_the_cursor_does_not_leave_what_is_typed(room: Room) -> None:
     write(grid, "1")
     grid.typed("Down")
     assert (grid.number, grid.text) == (1, "1")
-    assert room.desk.notice.startswith("PRESS RETURN TO SET IT")
+    assert room.desk.notice == text("offsets.set-it")
     assert grid.old_to_new == "−0.50000  →  +1.00000"
     assert grid.escape()
     grid.typed("Page down")
@@ -189,11 +190,11 @@ def test_while_a_part_runs_only_wear_may_change(room: Room, state: State, name: 
     room.at(state)
     grid = at(room, 1, name)
     room.enter(grid, "1" if name != "master" else "")
-    assert "ONLY WEAR" in room.desk.notice
+    assert room.desk.notice == text("offsets.only-wear")
     grid.escape()
     grid.choose(1, 4)
     room.enter(grid, "-.001")
-    assert room.desk.notice == "T1 SAVED; IT COUNTS FROM THE NEXT CYCLE START"
+    assert room.desk.notice == f"T1 SAVED{text('offsets.next-start')}"
     assert room.store.tools()[1].wear_x == pytest.approx(-0.0127)
 
 
@@ -228,15 +229,29 @@ def test_a_part_that_switches_to_diameters_leaves_an_entry_of_wear_alone(room: R
     assert room.store.tools()[1].wear_x == pytest.approx(-0.0127)
 
 
+def would_become(field: str, value: str, low: str, high: str) -> str:
+    """Return the notice about a value that is out of range, in inches."""
+    why = text("offsets.would-become", field=field, value=value, unit="in", low=low, high=high)
+    return text("offsets.refused", why=why)
+
+
 @pytest.mark.parametrize(
     ("name", "typed", "why"),
     [
-        ("x", "51", "REFUSED: X would become +51.00000 in; it may be -50…50"),
+        ("x", "51", would_become("X", "+51.00000", "-50", "50")),
         ("x", "0,5", "REFUSED: , in 0,5 is no number"),
-        ("nose_radius", "-.1", "REFUSED: nose radius would become −0.10000 in; it may be 0…2"),
-        ("wear_x", ".21", "REFUSED: wear X would become +0.21000 in; it may be -0.2…0.2"),
-        ("quadrant", "10", "REFUSED: tip quadrant takes 0…9"),
-        ("quadrant", "2.5", "REFUSED: tip quadrant takes 0…9"),
+        ("nose_radius", "-.1", would_become("nose radius", "−0.10000", "0", "2")),
+        ("wear_x", ".21", would_become("wear X", "+0.21000", "-0.2", "0.2")),
+        (
+            "quadrant",
+            "10",
+            text("offsets.refused", why=text("offsets.takes", field="tip quadrant", range="0…9")),
+        ),
+        (
+            "quadrant",
+            "2.5",
+            text("offsets.refused", why=text("offsets.takes", field="tip quadrant", range="0…9")),
+        ),
     ],
 )
 def test_what_is_no_value_is_refused_and_stays_to_be_mended(

@@ -11,6 +11,7 @@ from core.store.offset_fields import TOOL_KINDS
 from core.store.store_rows import Kind, ShapeRow
 from tests.offsets.conftest import LIMIT, Room
 from tests.screen.yes import read
+from tests.texts import text
 
 INCH = 25.4
 
@@ -154,7 +155,7 @@ def test_page_keys_go_to_the_next_tool_and_the_table_stands_there_too(room: Room
 def test_f3_takes_the_shape_away_after_asking_and_undo_brings_it_back(room: Room) -> None:
     page = shape_of(room, 3)
     page.remove()
-    assert "PRESS Y TO FORGET THE SHAPE OF T3" in room.desk.notice
+    assert text("offsets.forget-shape", number=3) in room.desk.notice
     assert 3 in room.store.shapes()
     read(room.desk)
     room.desk.yes()
@@ -175,13 +176,13 @@ def test_f3_takes_the_shape_away_after_asking_and_undo_brings_it_back(room: Room
         (1, "insert", ("Enter", "Delete", "CNXG432", "Enter"), "CNXG432: character 3, X, means nothing"),
         (1, "nose_radius", (".26", "Enter"), "the nose radius is larger than the insert CNMG432"),
         (1, "entry", ("101", "Enter"), "an entering angle of 101° leaves a point of 80° no clearance"),
-        (1, "entry", ("200", "Enter"), "entering angle takes 0…150 degrees"),
+        (1, "entry", ("200", "Enter"), text("offsets.takes", field="entering angle", range="0…150 degrees")),
         (1, "rear", ("Right", "Enter"), ""),
         (3, "diameter", ("-.25", "Enter"), "it may be 0…20"),
         (3, "diameter", ("1/", "Enter"), "REFUSED: "),
-        (3, "flutes", ("2.5", "Enter"), "flutes takes 0…20"),
+        (3, "flutes", ("2.5", "Enter"), text("offsets.takes", field="flutes", range="0…20")),
         (3, "quadrant", ("7", "Enter"), "T3 WAS NEVER SET"),
-        (1, "quadrant", ("10", "Enter"), "tip quadrant takes 0…9"),
+        (1, "quadrant", ("10", "Enter"), text("offsets.takes", field="tip quadrant", range="0…9")),
     ],
 )
 def test_value_that_means_nothing_is_refused_and_stays_to_be_mended(
@@ -206,14 +207,14 @@ def test_letters_are_no_figures(room: Room) -> None:
     write(page, "Up")
     page.go(0)
     write(page, "5")
-    assert room.desk.notice == "LEFT AND RIGHT TURN THROUGH WHAT THERE IS"
+    assert room.desk.notice == text("offsets.choices")
     assert page.text == ""
 
 
 def test_text_takes_nothing_before_it_is_opened(room: Room) -> None:
     page = shape_of(room, 1, "insert")
     write(page, "5")
-    assert room.desk.notice == "PRESS RETURN TO WRITE IT"
+    assert room.desk.notice == text("offsets.write-it")
     assert page.text == ""
 
 
@@ -223,9 +224,9 @@ def test_what_is_not_entered_keeps_the_cursor(room: Room) -> None:
     assert page.name == "diameter"
     write(page, "Page down")
     assert page.number == 3
-    assert room.desk.notice == "PRESS RETURN TO SET IT, OR ESC TO LEAVE IT AS IT WAS"
+    assert room.desk.notice == text("offsets.set-it")
     assert page.escape()
-    assert (page.text, room.desk.notice) == ("", "T3 IS AS IT WAS")
+    assert (page.text, room.desk.notice) == ("", text("offsets.shape-as-it-was", number=3))
     assert not page.escape()
 
 
@@ -246,5 +247,5 @@ def test_nothing_changes_while_a_program_is_under_way(room: Room) -> None:
 def test_there_is_no_shape_to_take_away(room: Room) -> None:
     page = shape_of(room, 2)
     page.remove()
-    assert room.desk.notice == "T2 HAS NO SHAPE"
+    assert room.desk.notice == text("offsets.no-shape", number=2)
     assert not room.desk.asked
