@@ -11,10 +11,12 @@ import pytest
 from app.cli.main import main
 from app.desk.command_errors import CommandError
 from app.offsets.offsets_file import read_rows, read_shape_rows, read_tool_shapes
+from core.coded_error import CodedError
 from core.part.tool_shape import Hand, ToolKind, ToolShape
 from core.store.offset_fields import HANDS, TOOL_KINDS
 from core.store.store import Store
 from core.store.store_rows import Kind, ShapeRow, ToolRow
+from tests.coded import recorded_refusals
 
 Captured = pytest.CaptureFixture[str]
 SHEET = """
@@ -51,30 +53,32 @@ def sheet(tmp_path: Path) -> Path:
     return path
 
 
-def wrong(path: Path, text: str) -> str:
-    """The sentence that a file with mistakes is refused with, by every reader alike."""
+def wrong(path: Path, text: str) -> CommandError:
+    """Return the error with which every reader refuses a file with mistakes."""
     path.write_text(text, encoding="utf-8")
-    told = set()
+    told = {}
     for read in (read_tool_shapes, read_shape_rows, read_rows):
         with pytest.raises(CommandError) as caught:
             read(path)
-        told.add(str(caught.value))
-    assert len(told) == 1
-    return told.pop()
+        told[str(caught.value), caught.value.code] = caught.value
+    (error,) = told.values()
+    return error
 
 
 def offsets(*argv: str) -> int:
     return main(["offsets", *argv])
 
 
-def refused(capsys: Captured, *argv: str) -> str:
-    """The one line that a refused command says."""
+def refused(capsys: Captured, *argv: str) -> CodedError:
+    """Return the error that a refused command prints on one line."""
     capsys.readouterr()
-    assert offsets(*argv) == 2
+    with pytest.MonkeyPatch.context() as patch:
+        refusals = recorded_refusals(patch)
+        assert offsets(*argv) == 2
     told = capsys.readouterr()
-    assert told.out == ""
+    assert (told.out, told.err) == ("", f"turndesk: {refusals[-1]}\n")
     assert told.err.count("\n") == 1
-    return told.err
+    return refusals[-1]
 
 
 def test_words_of_the_store_are_those_of_the_part() -> None:
@@ -118,55 +122,60 @@ def test_tool_with_a_shape_alone_was_never_touched_off(sheet: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "says"),
+    ("text", "code", "value"),
     [
-        ('[tool.3]\nkind = "turnin"', "tool.3.kind = turnin is unknown; did you mean turning?"),
-        ('[tool.3]\nkind = ""', 'tool.3.kind = "" is unknown; known here: turning, boring'),
-        ("[tool.3]\nkind = 3", "tool.3.kind must be a text"),
-        ('[tool.3]\nkind = "turning"\nhand = "lefd"', "tool.3.hand = lefd is unknown; did you mean left?"),
-        ('[tool.3]\nkind = "turning"\ninsrt = "CNMG432"', "[tool.3] insrt is unknown; did you mean insert?"),
-        ('[tool.3]\nkind = "turning"\ninsert = 432', "tool.3.insert must be a text"),
+        ('[tool.3]\nkind = "turnin"', "unknown-word", "tool.3.kind = turnin "),
+        ('[tool.3]\nkind = ""', "unknown-word", 'tool.3.kind = "" '),
+        ("[tool.3]\nkind = 3", "wrong-type", "tool.3.kind "),
+        ('[tool.3]\nkind = "turning"\nhand = "lefd"', "unknown-word", "tool.3.hand = lefd "),
+        ('[tool.3]\nkind = "turning"\ninsrt = "CNMG432"', "unknown-key", "[tool.3] insrt "),
+        ('[tool.3]\nkind = "turning"\ninsert = 432', "wrong-type", "tool.3.insert "),
         (
             '[tool.3]\nkind = "turning"\ninsert = "CNXG432"',
-            "tool.3.insert: CNXG432: character 3, X, means nothing",
+            "invalid-shape",
+            "tool.3.insert: CNXG432: ",
         ),
-        ('[tool.3]\nkind = "turning"\ntip = 10', "tool.3.tip = 10 is out of range; expected 0…9"),
-        ('[tool.3]\nkind = "turning"\ntip = 3\nquadrant = 4', "tool.3.quadrant is given under two names"),
-        ('[tool.3]\nkind = "turning"\nrear = 1', "tool.3.rear must be true or false"),
+        ('[tool.3]\nkind = "turning"\ntip = 10', "out-of-range", "tool.3.tip = 10 "),
+        ('[tool.3]\nkind = "turning"\ntip = 3\nquadrant = 4', "key-twice", "tool.3.quadrant "),
+        ('[tool.3]\nkind = "turning"\nrear = 1', "wrong-type", "tool.3.rear "),
         (
             '[tool.3]\nkind = "turning"\nholder = "0,0 4,4 4,0 0,5"',
-            "tool.3.holder: the outline crosses itself",
+            "invalid-shape",
+            "tool.3.holder: ",
         ),
-        ("[tool.5]\ndiameter = .25", "[tool.5] has no kind, and a shape is nothing without"),
-        ('[tool.5]\nkind = "drill"\ndiameter = "1/4"', "tool.5.diameter must be a number of inches"),
+        ("[tool.5]\ndiameter = .25", "no-kind", "[tool.5] "),
+        ('[tool.5]\nkind = "drill"\ndiameter = "1/4"', "wrong-type", "tool.5.diameter "),
         (
             '[tool.5]\nkind = "drill"\ndiameter = -.25',
-            "tool.5.diameter = -0.25 is out of range; expected 0…20 in",
+            "out-of-range",
+            "tool.5.diameter = -0.25 ",
         ),
-        ('[tool.5]\nkind = "drill"\nflutes = 2.5', "tool.5.flutes = 2.5 is out of range; expected 0…20"),
+        ('[tool.5]\nkind = "drill"\nflutes = 2.5', "out-of-range", "tool.5.flutes = 2.5 "),
         (
             '[tool.5]\nkind = "drill"\npoint = nan',
-            "tool.5.point = nan is out of range; expected 0…180 degrees",
+            "out-of-range",
+            "tool.5.point = nan ",
         ),
-        ('[tool.5]\nkind = "drill"\ntip = 3', "tool.5.tip: tip 3 is no end of a round tool"),
-        ('[tool.7]\nkind = "form"\nprofile = "0,0 1,1"', "tool.7.profile: a profile is three points or more"),
-        ('[tool.33]\nkind = "drill"', "[tool.33] does not exist; offsets are 1…32"),
-        ('[tools.3]\nkind = "drill"', "tools is unknown; did you mean tool?"),
-        ("[tool.3]\nkind = drill", "is no TOML"),
+        ('[tool.5]\nkind = "drill"\ntip = 3', "invalid-shape", "tool.5.tip: "),
+        ('[tool.7]\nkind = "form"\nprofile = "0,0 1,1"', "invalid-shape", "tool.7.profile: "),
+        ('[tool.33]\nkind = "drill"', "unknown-number", "[tool.33] "),
+        ('[tools.3]\nkind = "drill"', "unknown-key", "tools "),
+        ("[tool.3]\nkind = drill", "not-toml", "tools.toml"),
     ],
 )
-def test_mistake_is_named_by_file_and_key(tmp_path: Path, text: str, says: str) -> None:
+def test_mistake_is_named_by_file_and_key(tmp_path: Path, text: str, code: str, value: str) -> None:
     path = tmp_path / "tools.toml"
-    told = wrong(path, text)
-    assert told.startswith(f"{path}")
-    assert says in told
+    error = wrong(path, text)
+    assert error.code == code
+    assert str(error).startswith(f"{path}")
+    assert value in str(error)
 
 
 def test_every_mistake_is_named_at_once(tmp_path: Path) -> None:
     text = (
         '[tool.3]\nkind = "turnin"\ninsrt = ""\n[tool.4]\nkind = "turning"\ninsert = "CNXG432"\nwidth = -1\n'
     )
-    told = wrong(tmp_path / "tools.toml", text)
+    told = str(wrong(tmp_path / "tools.toml", text))
     for place in ("tool.3.kind", "insrt", "tool.4.insert", "tool.4.width"):
         assert place in told
 
@@ -229,24 +238,28 @@ def test_shapes_go_with_an_export(capsys: Captured, home: Path, tmp_path: Path) 
 
 
 @pytest.mark.parametrize(
-    ("argv", "says"),
+    ("argv", "code", "value"),
     [
-        (("T5", "diameter=.25"), "T5 has no shape yet; give its kind too"),
-        (("T5", "kind=dril"), "kind: dril is unknown; did you mean drill?"),
-        (("T5", "kind=drill", "hand=lft"), "hand: lft is unknown; did you mean left?"),
-        (("T5", "kind=drill", "diameter=21"), "diameter = 21 is out of range; expected 0…20 in"),
-        (("T5", "kind=drill", "point=200"), "T5 point angle 200 is out of range; enter 0…180 degrees"),
-        (("T5", "kind=drill", "rear=maybe"), "rear = maybe is neither 1 nor 0"),
-        (("T5", "kind=turning", "insert=CNXG432"), "T5: insert: CNXG432: character 3, X, means nothing"),
-        (("T5", "kind=turning", "tip=3"), "T5 was never set, and quadrant would stand beside an offset of 0"),
-        (("T5", "tip=3", "quadrant=3"), "quadrant is given twice"),
-        (("T5", "insrt=CNMG432"), "insrt is unknown; did you mean insert?"),
-        (("D5", "kind=drill"), "kind is unknown; known here: x, z, r"),
+        (("T5", "diameter=.25"), "no-shape", "T5"),
+        (("T5", "kind=dril"), "unknown-word", "kind: dril "),
+        (("T5", "kind=drill", "hand=lft"), "unknown-word", "hand: lft "),
+        (("T5", "kind=drill", "diameter=21"), "out-of-range", "diameter = 21 "),
+        (("T5", "kind=drill", "point=200"), "out-of-range", "T5 point angle 200 "),
+        (("T5", "kind=drill", "rear=maybe"), "not-a-flag", "rear = maybe "),
+        (("T5", "kind=turning", "insert=CNXG432"), "invalid-shape", "T5: insert: CNXG432: "),
+        (("T5", "kind=turning", "tip=3"), "needs-both-axes", "T5"),
+        (("T5", "tip=3", "quadrant=3"), "key-twice", "quadrant "),
+        (("T5", "insrt=CNMG432"), "unknown-key", "insrt "),
+        (("D5", "kind=drill"), "unknown-key", "x, z, r"),
     ],
 )
-def test_refusal_is_one_line_and_sets_nothing(capsys: Captured, argv: tuple[str, ...], says: str) -> None:
+def test_refusal_is_one_line_and_sets_nothing(
+    capsys: Captured, argv: tuple[str, ...], code: str, value: str
+) -> None:
     assert offsets("set", "T9", "kind=drill") == 0
-    assert says in refused(capsys, "set", *argv)
+    error = refused(capsys, "set", *argv)
+    assert error.code == code
+    assert value in str(error)
     capsys.readouterr()
     assert offsets("show") == 0
     assert capsys.readouterr().out == "T9  drill right\n"
@@ -254,7 +267,9 @@ def test_refusal_is_one_line_and_sets_nothing(capsys: Captured, argv: tuple[str,
 
 def test_contradiction_with_the_offset_of_the_tool_is_refused(capsys: Captured) -> None:
     assert offsets("set", "T5", "x=1", "z=1", "quadrant=3") == 0
-    assert "tip 3 is no end of a round tool" in refused(capsys, "set", "T5", "kind=drill")
+    error = refused(capsys, "set", "T5", "kind=drill")
+    assert error.code == "invalid-shape"
+    assert "T5: tip: " in str(error)
     assert offsets("set", "T5", "kind=drill", "quadrant=7") == 0
 
 
@@ -266,9 +281,11 @@ def test_shape_that_has_become_wrong_is_told_before_it_is_proved(capsys: Capture
     with Store.open(tmp_path / "home") as store:
         store.set_offset(Kind.SHAPE, 3, "on the page", {"kind": "turning"}).result()
     capsys.readouterr()
-    assert main(["prove", str(program), "--stock", "bar:1"]) == 2
-    told = capsys.readouterr().err
-    assert "T3 insert: MGMN300: character" in told
-    assert "mend it on the page of its shape (F8)" in told
+    with pytest.MonkeyPatch.context() as patch:
+        refusals = recorded_refusals(patch)
+        assert main(["prove", str(program), "--stock", "bar:1"]) == 2
+    assert [each.code for each in refusals] == ["invalid-shape"]
+    for value in ("T3 insert: MGMN300: ", "(F8)", "turndesk offsets set"):
+        assert value in str(refusals[0])
     assert offsets("set", "T3", "kind=none") == 0
     assert main(["prove", str(program), "--stock", "bar:1"]) != 2
