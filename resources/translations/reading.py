@@ -7,6 +7,8 @@ from collections.abc import Iterator
 
 _MISTAKES = frozenset(
     {"ValueError", "RuntimeError", "TypeError", "TimeoutError", "KeyError", "AssertionError"}
+    # ValueErrors with a code, whose texts are not translated either
+    | {"CodeEntryError", "GaugeError", "PartError", "ShiftTimesError"}
 )
 
 
