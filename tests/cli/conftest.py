@@ -48,8 +48,9 @@ def refusals(monkeypatch: pytest.MonkeyPatch) -> list[CodedError]:
 
 
 @pytest.fixture
-def turndesk(home: Path, capsys: pytest.CaptureFixture[str], refusals: list[CodedError]) -> Turndesk:
+def turndesk(home: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> Turndesk:
     """Run the command line; usage errors end as they do for a user."""
+    refusals = recorded_refusals(monkeypatch)
 
     def run(*argv: object) -> Told:
         refusals.clear()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -9,6 +10,7 @@ import pytest
 
 from app.editor.editor import Editor, Stage
 from tests.editor.shop import GOOD, Memory, editor_in
+from tests.texts import pattern, text
 
 TYPED = GOOD.replace("Z-.5", "Z-.75")
 LIMIT = 60.0
@@ -51,8 +53,8 @@ def program(editor: Editor, text: str = GOOD) -> Path:
 def type_in(editor: Editor, path: Path, *texts: str) -> None:
     editor.open(path)
     settle(editor)
-    for text in texts:
-        editor.changed(text)
+    for typed in texts:
+        editor.changed(typed)
     settle(editor)
 
 
@@ -69,7 +71,7 @@ def test_what_was_typed_before_the_end_is_in_the_history(start: Start, memory: M
     after.open(path)
     settle(after)
     assert after.text == GOOD  # the file is what it was
-    assert "NOT SAVED IS IN THE HISTORY" in after.notice
+    assert text("editor.in-history") in after.notice
     assert memory.kept["part.nc"] == [(TYPED.encode(), "typed and not saved")]
     assert drafts(after) == []
 
@@ -153,5 +155,5 @@ def test_a_folder_that_cannot_be_written_is_told_and_typing_goes_on(start: Start
     path = program(editor)
     editor.drafts.folder.write_text("a file where the folder should be")
     type_in(editor, path, TYPED)
-    assert "SAFE ONLY WHEN IT IS SAVED" in editor.notice
+    assert re.search(pattern("editor.safe-when-saved"), editor.notice)
     assert editor.stage is Stage.OPEN

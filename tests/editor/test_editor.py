@@ -11,6 +11,7 @@ from app.editor import editor_messages as messages
 from app.editor.editor import Editor, LeftProgram, Stage
 from app.editor.versions import VersionHistory
 from tests.editor.shop import GOOD, Memory, editor_in
+from tests.texts import text
 
 
 @pytest.fixture
@@ -69,7 +70,7 @@ def test_a_saving_that_fails_keeps_the_text_and_the_page(editor: Editor, left: l
     settle(editor)
     assert editor.stage is Stage.OPEN
     assert left == []
-    assert "zero bytes" in editor.notice
+    assert text("editor.zero-bytes", file="part.nc").split(":")[0] in editor.notice
     assert path.read_text() == GOOD
 
 
@@ -160,7 +161,7 @@ def test_history_compares_with_the_text_in_the_editor(editor: Editor, memory: Me
     history = VersionHistory(memory, editor.worker)
     history.look("part.nc", "X2\nM30\n")
     settle(editor)
-    assert (history.number, history.words()) == (2, "THE SAME AS IN THE EDITOR")
+    assert (history.number, history.words()) == (2, text("editor.same"))
     history.mark(99)
     settle(editor)
     assert (history.number, history.text) == (1, "X1\nM30\n")
@@ -171,6 +172,6 @@ def test_no_history_is_said(editor: Editor, memory: Memory) -> None:
     history = VersionHistory(memory, editor.worker)
     history.look("part.nc", "")
     settle(editor)
-    assert history.words() == "NO VERSION IS KEPT OF THIS PROGRAM YET"
+    assert history.words() == text("editor.no-version")
     history.mark(1)
     assert history.number == 0

@@ -15,6 +15,7 @@ from app.editor.live_proof import Findings, LiveProof, by_line
 from core.executor.job import Job, Proof
 from core.language.diagnostics import Diagnostic, Severity
 from tests.editor.shop import GOOD, workshop
+from tests.texts import text
 
 
 @pytest.fixture
@@ -109,7 +110,7 @@ def test_a_prover_that_fails_is_told_and_the_next_text_is_proved() -> None:
 
     checker = LiveProof(replace(workshop(), make_job=make_job))
     checker.submit("a.nc", GOOD)
-    assert settled(checker).trouble == "PROVING FAILED: the store is damaged"
+    assert settled(checker).trouble == text("editor.proving-failed", why="the store is damaged")
     checker.workshop = workshop()
     checker.submit("a.nc", GOOD)
     assert settled(checker).trouble == ""

@@ -16,7 +16,7 @@ from app.compose.gauge_wire import SILENT, GaugeWire
 from app.quality.gauge_line import LONGEST, GaugeError, LineReader, NoGauge, Reading, reading_of
 from core.machine.gauge_table import GaugeModel
 from tests.coded import raises_code
-from tests.texts import pattern
+from tests.texts import pattern, text
 
 
 @pytest.mark.parametrize(
@@ -158,12 +158,12 @@ def test_a_port_that_is_not_there(bench: Bench) -> None:
 def test_silence_is_told(bench: Bench) -> None:
     assert "F5 begins" in bench.wire.words
     listening(bench)
-    assert "is listened to" in bench.wire.words
+    assert re.fullmatch(pattern("quality.listening"), bench.wire.words)
     bench.now[0] += SILENT + 60.0
     assert "silent for 6 min" in bench.wire.words
     bench.send(b"2 mm\r")
     bench.hears(bool)
-    assert "is listened to" in bench.wire.words
+    assert re.fullmatch(pattern("quality.listening"), bench.wire.words)
 
 
 def test_listening_ends(bench: Bench) -> None:
@@ -174,5 +174,5 @@ def test_listening_ends(bench: Bench) -> None:
 
 def test_a_machine_without_a_gauge() -> None:
     none = NoGauge()
-    assert "NAMES NO GAUGE" in none.turn()
+    assert none.turn() == text("quality.no-gauge")
     assert list(none.received()) == []

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +15,7 @@ from app.shapes.shapes_model import Shapes
 from core.shapes.shape_setting import Setting, Shop
 from tests.drawings.hand import TOOLS, chain, dxf
 from tests.shapes.hand import machine
+from tests.texts import pattern, text
 
 STEP = ((0, 0), (0, 4), (-10, 4), (-10, 6), (-20, 6), (-20, 0))
 
@@ -128,7 +130,7 @@ def test_what_is_wrong_is_said_at_its_field(desk: Desk, tmp_path: Path) -> None:
     dxf(tmp_path / "a.dxf", chain(*STEP), unit=0)
     (tmp_path / "b.dxf").write_text("no drawing")
     form = desk.open()
-    assert "does not say its unit: choose MM or INCH" in form.troubles["DUNIT"]
+    assert form.troubles["DUNIT"] == text("shapes.no-unit", file="a.dxf")
     form.go_to("DUNIT")
     desk.strike("M")
     assert not form.troubles
@@ -147,12 +149,12 @@ def test_a_drawing_whose_program_is_wrong_is_not_written(desk: Desk, tmp_path: P
     form = desk.open()
     form.go_to("FROM")
     desk.strike("5")
-    assert "lies outside the stock of 5" in form.trouble
+    assert re.search(pattern("shapes.outside-stock", stock="5"), form.trouble)
     assert not form.lines
 
 
 def test_without_a_drawing_it_says_where_one_goes(desk: Desk) -> None:
-    assert "There is no drawing beside the programs" in desk.open().trouble
+    assert text("shapes.no-drawing") in desk.open().trouble
 
 
 def test_nothing_is_written_before_the_drawing_is_read(desk: Desk, tmp_path: Path) -> None:
@@ -160,5 +162,5 @@ def test_nothing_is_written_before_the_drawing_is_read(desk: Desk, tmp_path: Pat
     desk.shapes.open("x.nc", "", 1)
     desk.shapes.typed("x")
     desk.shapes.write()
-    assert desk.shapes.prompt() == "THE DRAWING IS BEING READ"
+    assert desk.shapes.prompt() == text("shapes.being-read")
     assert desk.shapes.text == ""

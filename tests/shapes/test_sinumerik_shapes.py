@@ -27,6 +27,7 @@ from core.shapes.shape_table import HELPERS, SHAPES_OF
 from core.tool_edges import edge_key
 from tests.shapes.hand import machine, setup_of
 from tests.sinumerik.lathe import LINEAR
+from tests.texts import text
 
 SHOP = Shop(slide_accel=3048.0)
 OURS, THEIRS = Dialect.SINUMERIK, Dialect.OMNITURN
@@ -194,8 +195,8 @@ def test_the_same_thread_as_in_omniturn(typed: dict[str, Value]) -> None:
     ours = written([("R", {**typed, **relief}, ())], OURS)
     theirs = written([("R", {**typed, **relief, "PULL": "NO"}, ())], THEIRS)
     last = []
-    for text, dialect in ((ours, OURS), (theirs, THEIRS)):
-        blocks = ReadProgram(source(text, dialect)).begin(setup_in(dialect)).blocks()
+    for program, dialect in ((ours, OURS), (theirs, THEIRS)):
+        blocks = ReadProgram(source(program, dialect)).begin(setup_in(dialect)).blocks()
         last.append([b for b in blocks if b.kind is Kind.THREAD][-1])
     mine, there = last
     assert (mine.x, mine.z, mine.feed) == pytest.approx((there.x, there.z, there.feed), abs=2 * NEAR)
@@ -315,4 +316,4 @@ def test_a_program_without_a_head_asks_for_it(desk: Shapes) -> None:
 
 def test_a_language_that_the_forms_do_not_write_is_refused(desk: Shapes) -> None:
     for table in (FORMS, HELPERS):
-        assert desk.open("x.h", "", 1, table).startswith("SHAPES ARE WRITTEN IN OMNITURN OR SINUMERIK")
+        assert desk.open("x.h", "", 1, table) == text("shapes.other-language")

@@ -243,7 +243,7 @@ def test_two_desks_of_one_name_are_refused_and_nothing_is_published(desk_at_fold
     two.desk = "lathe 1"
     write(two, "G01\n", "OTHER.NC")
     shared = two.look()
-    assert (shared.waiting, "another desk is called lathe 1 too" in shared.trouble) == (1, True)
+    assert (shared.waiting, "--claim" in shared.trouble) == (1, True)
     two.home = one.home  # claimed: that computer is gone
     assert two.look().trouble == ""
 
