@@ -70,7 +70,7 @@ class PolarField:
                 "A polar field needs one column of rays between each two edges.", "columns-and-edges"
             )
         if np.any(np.diff(edges) <= 0.0):
-            raise ValueError("The edges of a polar field have to rise.")
+            raise PartError("The edges of a polar field have to rise.", "edges-not-rising")
         self.edges, self.low, self.high = edges, low, high
         self.angles = np.arange(low.shape[2]) * (2.0 * math.pi / low.shape[2])
         self.changes = 0  # counts on with every cut: what is drawn of the field is stale

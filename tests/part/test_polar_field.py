@@ -138,9 +138,17 @@ def test_section_without_metal_is_refused() -> None:
         turned_field(np.linspace(0.0, 1.0, 11), np.ones((1, 10)), np.ones((1, 10)))
 
 
-@pytest.mark.parametrize("edges", [[0.0, 1.0], [0.0, 1.0, 2.0, 3.0], [0.0, 2.0, 1.0], [0.0, 0.0, 1.0]])
-def test_edges_that_do_not_fit_or_do_not_rise_are_refused(edges: list[float]) -> None:
-    with pytest.raises(ValueError, match="edges"):
+@pytest.mark.parametrize(
+    ("edges", "code"),
+    [
+        ([0.0, 1.0], "columns-and-edges"),
+        ([0.0, 1.0, 2.0, 3.0], "columns-and-edges"),
+        ([0.0, 2.0, 1.0], "edges-not-rising"),
+        ([0.0, 0.0, 1.0], "edges-not-rising"),
+    ],
+)
+def test_edges_that_do_not_fit_or_do_not_rise_are_refused(edges: list[float], code: str) -> None:
+    with raises_code(PartError, code):
         PolarField(np.array(edges), np.zeros((1, 2, 8)), np.ones((1, 2, 8)))
 
 
