@@ -13,6 +13,7 @@ from app.compose.journal import Journal
 from app.compose.machine_setup import read_machine, setup_for
 from app.compose.stored_offsets import book_of, stored_offsets
 from app.desk.command_errors import CommandError
+from core.coded_error import CodedError
 from core.language.diagnostics import Severity
 from core.language.source import load_source
 from core.proving.prove_program import prove
@@ -63,10 +64,10 @@ def test_no_real_machine_gets_offsets_of_samples(home: Path) -> None:
     assert not (home / "demo").exists()
 
 
-def test_it_is_the_screen_alone(home: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_it_is_the_screen_alone(home: Path, refusals: list[CodedError]) -> None:
     assert main(["--demo", "offsets", "show"]) == 2
-    assert "leave it out before offsets" in capsys.readouterr().err
     assert main(["--version", "--demo"]) == 2
+    assert [each.code for each in refusals] == ["screen-option", "version-alone"]
 
 
 MILLS = ("ac-table-mill", "bc-table-mill", "fork-head-mill", "head-table-mill")

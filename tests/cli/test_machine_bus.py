@@ -11,6 +11,7 @@ import pytest
 
 import resources
 from app.cli.main import main
+from core.coded_error import CodedError
 
 Captured = pytest.CaptureFixture[str]
 CAN = resources.machine_file("gt75-canopen.toml")
@@ -90,6 +91,6 @@ def test_a_program_runs_on_the_bus(capsys: Captured, tmp_path: Path, monkeypatch
     assert told["alarms"] == []
 
 
-def test_peer_needs_a_bus(capsys: Captured) -> None:
+def test_peer_needs_a_bus(refusals: list[CodedError]) -> None:
     assert main(["machine", "peer", str(Path(resources.__file__).parent / "machines" / "gt75.toml")]) == 2
-    assert "machine.backend is sim: nothing to be a peer of" in capsys.readouterr().err
+    assert [each.code for each in refusals] == ["no-peer"]

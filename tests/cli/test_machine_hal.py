@@ -9,6 +9,7 @@ import pytest
 
 import resources
 from app.cli.main import main
+from core.coded_error import CodedError
 
 Captured = pytest.CaptureFixture[str]
 
@@ -33,10 +34,12 @@ def test_out_writes_new_files_and_says_what_to_wire(capsys: Captured, tmp_path: 
 
 
 @pytest.mark.parametrize("there", ["gt75-ethercat.hal", "ethercat-conf.xml"])
-def test_nothing_is_replaced(there: str, capsys: Captured, tmp_path: Path) -> None:
+def test_nothing_is_replaced(there: str, refusals: list[CodedError], tmp_path: Path) -> None:
     (tmp_path / there).write_text("mine", encoding="utf-8")
     assert main(["machine", "hal", "gt75-ethercat", "--out", str(tmp_path / "gt75-ethercat.hal")]) == 2
-    assert f"{tmp_path / there} is there already and is never replaced" in capsys.readouterr().err
+    (error,) = refusals
+    assert error.code == "file-exists"
+    assert str(tmp_path / there) in str(error)
     assert [each.name for each in tmp_path.iterdir()] == [there]
     assert (tmp_path / there).read_text(encoding="utf-8") == "mine"
 
@@ -74,6 +77,6 @@ def test_what_has_no_hal_file(name: str, capsys: Captured) -> None:
     assert len(capsys.readouterr().err.splitlines()) == 1
 
 
-def test_a_folder_that_is_not_there(capsys: Captured, tmp_path: Path) -> None:
+def test_a_folder_that_is_not_there(refusals: list[CodedError], tmp_path: Path) -> None:
     assert main(["machine", "hal", "gt75-parport", "--out", str(tmp_path / "none" / "gt75-parport.hal")]) == 2
-    assert "cannot be written" in capsys.readouterr().err
+    assert [each.code for each in refusals] == ["cannot-write"]

@@ -35,12 +35,14 @@ def filled(home: Path) -> Path:
 
 
 def test_the_store_of_an_older_turndesk_is_brought_up_to_date(
-    filled: Path, monkeypatch: pytest.MonkeyPatch, capsys: Captured
+    filled: Path, monkeypatch: pytest.MonkeyPatch, capsys: Captured, refusals: list[CodedError]
 ) -> None:
     newer = (*database.migrations(), "CREATE TABLE extra (a);")
     monkeypatch.setattr(database, "migrations", lambda: newer)
     assert main(["offsets", "show"]) == 2
-    assert "bring it up to date: turndesk store upgrade\n" in capsys.readouterr().err
+    (error,) = refusals
+    assert error.code == "older-version"
+    assert "turndesk store upgrade" in str(error)
     assert main(["store", "upgrade"]) == 0
     assert main(["offsets", "show"]) == 0
     assert "T1" in capsys.readouterr().out
