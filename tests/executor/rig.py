@@ -24,7 +24,8 @@ from drivers.clocks import StepClock
 from drivers.simulated.simulated_machine import Simulation
 
 INCH = 25.4
-TICK = 0.01
+TICK = 0.02  # s; the longest that the executor has between two ticks
+FINE = 0.01  # s; what it has mostly, for tests of what a tick tells apart
 
 
 class CreepingClock(StepClock):

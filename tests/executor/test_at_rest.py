@@ -17,12 +17,12 @@ from core.ports import DriverError, Stop
 from drivers.clocks import StepClock
 from drivers.lookalikes.plant_config import PlannedFault
 from drivers.simulated.simulated_machine import build_simulation
-from tests.executor.rig import Rig
+from tests.executor.rig import FINE, Rig
 
 
 def rested(*, powered: bool = True) -> Rig:
     """Nothing has happened for two seconds."""
-    rig = Rig()
+    rig = Rig(every=FINE)
     if powered:
         rig.post(EnableDrives())
     rig.run(2.0)
@@ -41,7 +41,7 @@ def shown(rig: Rig, ticks: int) -> int:
 
 @pytest.mark.parametrize("powered", [True, False])
 def test_it_is_shown_twenty_times_a_second_once_it_has_rested_for_one(powered: bool) -> None:
-    rig = Rig()
+    rig = Rig(every=FINE)
     if powered:
         rig.post(EnableDrives())
     assert shown(rig, 90) == 90

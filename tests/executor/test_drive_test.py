@@ -20,7 +20,7 @@ from core.executor.commands import (
 )
 from core.executor.drive_test_path import PAUSE, DriveTestPath, Limits, Shape, braking, cut, reach, seconds
 from core.executor.snapshot import State
-from tests.executor.rig import INCH, TICK, Rig
+from tests.executor.rig import FINE, INCH, TICK, Rig
 from tests.executor.test_jog_steps import nothing_homed
 from tests.texts import text
 
@@ -33,7 +33,7 @@ LIMITS = Limits(top=100 * INCH / 60, amax=AMAX, rate=1000.0)
 
 
 def ready() -> Rig:
-    rig = Rig()
+    rig = Rig(every=FINE)
     rig.ready()
     return rig
 

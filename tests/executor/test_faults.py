@@ -17,7 +17,7 @@ from core.machine.machine_model import Machine
 from core.ports import ALL_UNKNOWN, StationState
 from drivers.clocks import RealClock
 from tests.executor.made import Maker
-from tests.executor.rig import INCH, Rig, unhomed_machine
+from tests.executor.rig import FINE, INCH, Rig, unhomed_machine
 from tests.texts import text
 
 pytestmark = pytest.mark.long
@@ -151,7 +151,7 @@ def test_so_does_what_was_pressed_while_the_host_was_away(pressed: Command, stat
 
 
 def test_a_hold_behind_which_the_host_is_late_shows_it_too() -> None:
-    rig = Rig()
+    rig = Rig(every=FINE)
     rig.start("G90G94F300\nG01F200\nZ-1.2\nX1.2Z-2.4\nM30\n")
     rig.until_true(lambda shot: shot.line == 3 and shot.actual[1] < -1.17 * INCH)
     rig.post(FeedHold())
@@ -528,7 +528,7 @@ def test_a_thread_without_an_encoder_is_an_alarm(monkeypatch: pytest.MonkeyPatch
 
 
 def test_a_silent_station_keeps_its_pots_and_holds() -> None:
-    rig = Rig()
+    rig = Rig(every=FINE)
     rig.start("G90G94F300\nG01F30Z-5\nM30\n")
     rig.run(1.0)
     rig.sim.machine.set_feed_pot(0.8)

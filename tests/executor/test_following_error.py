@@ -13,7 +13,7 @@ from core.executor.raised_alarm import AlarmError
 from core.executor.snapshot import State
 from core.ports import AxisSample
 from tests.coded import raises_code
-from tests.executor.rig import Rig
+from tests.executor.rig import FINE, Rig
 from tests.texts import text
 
 pytestmark = pytest.mark.long
@@ -160,7 +160,7 @@ def test_an_encoder_that_stops_counting_in_motion(text: str, most: float) -> Non
 @pytest.mark.parametrize("after", [0.0, 0.01, 0.02, 0.03, 0.04, 0.05])
 @pytest.mark.parametrize("text", [FEED, "G90G94F300\nG01F60Z-4\nM30\n", RAPID])
 def test_an_encoder_that_stops_counting_as_a_hold_begins(text: str, after: float) -> None:
-    rig = Rig()
+    rig = Rig(every=FINE)
     rig.start(text)
     rig.until_true(lambda shot: shot.actual[1] < -12.0)
     rig.executor.post(FeedHold())

@@ -24,7 +24,7 @@ from core.executor.handwheel import WheelClicks
 from core.executor.snapshot import State
 from core.machine.hardware_model import AnalogModel
 from core.machine.machine_model import InputModel, Machine
-from tests.executor.rig import INCH, TICK, Rig
+from tests.executor.rig import FINE, INCH, Rig
 from tests.texts import pattern, text
 
 THOU = 0.001 * INCH
@@ -50,6 +50,10 @@ class WheelRig(Rig):
 
     page: Wheel | None = None
 
+    def __post_init__(self) -> None:
+        self.every = FINE
+        super().__post_init__()
+
     def tick(self, dt: float | None = None) -> None:
         if self.page is not None:
             self.executor.post(self.page)
@@ -70,7 +74,7 @@ class WheelRig(Rig):
         """``each`` clicks at a time, so many ticks apart, until there were ``clicks``."""
         for _ in range(abs(clicks) // each):
             self.sim.machine.turn_handwheel(int(math.copysign(each, clicks)))
-            self.run(ticks * TICK)
+            self.run(ticks * FINE)
 
     def rests(self) -> float:
         took = self.until(State.IDLE, limit=5.0)
@@ -261,7 +265,7 @@ def test_a_page_that_is_silent_loses_it_within_its_lease() -> None:
     rig = ready()
     rig.select()
     rig.page = None
-    rig.spin(int(LEASE / TICK) + 5)
+    rig.spin(int(LEASE / FINE) + 5)
     ended(rig, text("executor.page-silent"))
 
 

@@ -21,7 +21,7 @@ from core.ports import ALL_UNKNOWN, DriverError, FloatArray, SampleSource, Unkno
 from core.records.record_errors import RecordError
 from core.records.record_file import open_record
 from core.records.ring_file import NOW, read_ring
-from tests.executor.rig import INCH, Rig
+from tests.executor.rig import FINE, INCH, Rig
 from tests.texts import pattern
 
 PART = "G90G94\nM03S600\nM08\nG01X.2Z-.2F20\nX0Z0\nM30\n"
@@ -35,6 +35,7 @@ class Recorded(Rig):
     recorder: Recorder
 
     def __post_init__(self) -> None:
+        self.every = FINE
         super().__post_init__()
         ports = self.sim.ports if self.own else dataclasses.replace(self.sim.ports, samples=None)
         self.recorder = Recorder(recorded_of(self.machine, ports), self.folder)

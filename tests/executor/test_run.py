@@ -12,7 +12,7 @@ from core.interpreter.omniturn.omniturn_program import read_program
 from core.language.source import Source
 from core.motion.axis_limits import MotionLimits
 from core.motion.motion_plan import plan
-from tests.executor.rig import INCH, CreepingClock, Rig
+from tests.executor.rig import FINE, INCH, CreepingClock, Rig
 from tests.motion.paths import build_path
 from tests.texts import text
 
@@ -58,7 +58,7 @@ def test_feed_waits_for_the_spindle_and_rapids_do_not() -> None:
 
 
 def test_dwell_and_collet_take_their_time() -> None:
-    rig = Rig()
+    rig = Rig(every=FINE)
     rig.start("G90G94F300\nG04F1.5\nM13\nM12\nM30\n")
     rig.until_true(lambda shot: shot.waiting_for == "DWELL")
     assert rig.until_true(lambda shot: shot.waiting_for == "COLLET") == pytest.approx(1.5, abs=0.02)

@@ -13,7 +13,7 @@ from core.executor.snapshot import State
 from core.machine.machine_model import Machine
 from core.ports import DriverError, Unknown
 from core.table_schema import MachineFileError
-from tests.executor.rig import Rig
+from tests.executor.rig import FINE, Rig
 from tests.texts import text
 
 PART = "G90G94F300\nX1Z.1\nG01F30Z-1\nG00Z.1\nM30\n"
@@ -52,7 +52,7 @@ def times(rig: Rig, seconds: float) -> dict[str, int]:
 
 @pytest.fixture
 def rig() -> Rig:
-    return Rig(with_lamps())
+    return Rig(with_lamps(), every=FINE)
 
 
 def test_nothing_is_lit_before_anything_runs(rig: Rig) -> None:
@@ -214,7 +214,7 @@ def test_a_machine_at_rest_sleeps_with_a_lamp_on(rig: Rig) -> None:
 
 
 def test_a_machine_without_lamps_is_as_it_was() -> None:
-    rig = Rig()
+    rig = Rig(every=FINE)
     assert rig.machine.lamps == ()
     rig.start(PART)
     rig.until(State.IDLE)

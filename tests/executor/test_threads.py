@@ -16,7 +16,7 @@ from core.executor.snapshot import Snapshot, State
 from core.executor.spindle_control import SpindleAngle
 from core.interpreter.job_setup import ToolOffset
 from core.motion.axis_limits import FloatArray
-from tests.executor.rig import INCH, CreepingClock, Rig
+from tests.executor.rig import FINE, INCH, CreepingClock, Rig
 from tests.texts import text
 
 pytestmark = pytest.mark.long
@@ -227,7 +227,7 @@ def test_hold_in_a_pass_acts_at_its_end(program: str, z: float, gear: bool) -> N
     ids=["P", "straight", "pull-out"],
 )
 def test_a_lost_spindle_never_goes_deeper(program: str, z: float, gear: bool) -> None:
-    rig = Rig(gear=gear)
+    rig = Rig(gear=gear, every=FINE)
     rig.start(program, TOOLS)
     in_thread(rig, z)
     depth = rig.shot.demand[0]
@@ -245,7 +245,7 @@ def test_a_lost_spindle_never_goes_deeper(program: str, z: float, gear: bool) ->
 @pytest.mark.parametrize("z", [-0.2, -1.19], ids=["thread", "pull-out"])
 def test_a_lost_thread_is_left_once(gear: bool, z: float) -> None:
     """While the tool is on its way out the spindle stays lost: nothing is begun anew by that."""
-    rig = Rig(gear=gear)
+    rig = Rig(gear=gear, every=FINE)
     rig.start(EXTERNAL, TOOLS)
     in_thread(rig, z)
     rig.sim.machine.spindle_bog(0.2)

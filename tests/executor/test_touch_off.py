@@ -14,7 +14,7 @@ from core.machine.hardware_model import AnalogModel
 from core.machine.machine_model import InputModel, Machine
 from core.machine.setter_table import SetterModel, runs_on
 from drivers.simulated.simulated_table import SimulatedTable
-from tests.executor.rig import INCH, Rig
+from tests.executor.rig import FINE, INCH, Rig
 from tests.texts import text
 
 LEASE = 0.25
@@ -44,6 +44,10 @@ class TouchRig(Rig):
 
     held: Touch | None = None
     presses = 0
+
+    def __post_init__(self) -> None:
+        self.every = FINE
+        super().__post_init__()
 
     def tick(self, dt: float | None = None) -> None:
         if self.held is not None:

@@ -211,11 +211,10 @@ def test_another_program_takes_its_place_only_when_that_is_meant(story: Story) -
     operator.key("Escape")
     operator.key("F2")
     operator.enters("other.nc")
-    operator.until(lambda: operator.says_yes(lambda: not operator.shows("INTERRUPTED:")), "it is given up")
-    operator.until(lambda: bool(operator.events("cleared")), "an entry of the log")
     operator.sees(fragment("desk.gives-job-up", name="other.nc"))
     job = opening("desk.interrupted")
     operator.until(lambda: operator.says_yes(lambda: not operator.shows(job)), "it is given up")
+    operator.until(lambda: bool(operator.events("cleared")), "an entry of the log")
     assert operator.events("cleared") == [wording("log.replaced-by", what=IN_THE_LOG, name="other.nc")]
 
 

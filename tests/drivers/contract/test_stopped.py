@@ -98,7 +98,7 @@ def test_reset_before_the_wire_is_mended_gives_nothing_free(broken: Broken) -> N
     control.run(outcome.rests + 1.0)
     stood = control.world.place()
     control.post(Reset())
-    for _ in range(400):
+    for _ in range(150):
         control.tick()
         assert control.shot.rpm_command == 0.0
         if control.shot.unknown:
