@@ -32,7 +32,7 @@ class Track(NamedTuple):
 
     def block(self, t: float) -> int:
         """Number of the block being played at ``t``."""
-        return int(self.profile.block_at(t - self.origin)[0])
+        return self.profile.block_of(t - self.origin)
 
 
 class Tracks:

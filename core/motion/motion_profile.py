@@ -172,6 +172,14 @@ class Profile:
         owner: IntArray = self.path.pieces.block[self.phases.piece[self._phase(times)]]
         return owner
 
+    def block_of(self, t: float) -> int:
+        """Return the number of the block that is executed at ``t``, s; quicker than ``block_at``."""
+        if not len(self):
+            return 0
+        found = int(self.phases.t.searchsorted(t, side="right")) - 1
+        piece = self.phases.piece[min(max(found, 0), len(self) - 1)]
+        return int(self.path.pieces.block[piece])
+
     def block_times(self) -> tuple[IntArray, FloatArray, FloatArray]:
         """Numbers of all blocks of the path and when each starts and ends, s; endless where it never does.
 

@@ -24,7 +24,7 @@ _QUICK = 8.0  # times the feeds and through the dwells: steps and places are the
 _LEAST_FEED = 1.0  # mm/s
 _TICK = 0.02
 _LONGEST = 1000.0  # s of the machine
-_APART = 5  # ticks of .08 s between a stop and the next start
+_APART = 2  # ticks of 0.19 s between a stop and the next start, which bounces for 0.3 s
 
 
 def with_room(machine: Machine) -> Machine:
@@ -118,6 +118,6 @@ def stepped_through(
         stops.append(rig.shot.block)
         assert len(stops) <= limit, f"still in line {rig.shot.line} after {limit} starts"
         for _ in range(_APART):
-            rig.tick(0.08)
+            rig.tick(0.19)
         rig.post(CycleStart())
     return rig, stops

@@ -34,13 +34,9 @@ def test_nothing_but_points_takes_no_time() -> None:
 def test_the_block_at_a_time_is_the_one_that_moves() -> None:
     profile = plan(build_path(polyline([(0, 0), (0, 50), (0, 50), (0, 100)], 100.0), LIMITS))
     middle = profile.duration / 2
-    assert profile.block_at(np.array([-1.0, 0.0, middle - 0.01, middle + 0.01, 99.0])).tolist() == [
-        1,
-        1,
-        1,
-        3,
-        3,
-    ]
+    times = [-1.0, 0.0, middle - 0.01, middle + 0.01, 99.0]
+    assert profile.block_at(np.array(times)).tolist() == [1, 1, 1, 3, 3]
+    assert [profile.block_of(t) for t in times] == [1, 1, 1, 3, 3]
 
 
 def test_blocks_behind_the_start_are_done() -> None:
