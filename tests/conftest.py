@@ -19,7 +19,7 @@ from tests import late_computer
 from tests.named import SAFETY, not_run
 from tests.steady_examples import same_examples_whatever_is_loaded
 from tests.store_template import use_template
-from tests.waiting_apart import KINDER, URGENT, WaitingApart, in_order, waits_first
+from tests.waiting_apart import KINDER, URGENT, WaitingApart, in_order, shuffled, waits_first
 
 settings.register_profile("steady", derandomize=True, deadline=None)
 settings.register_profile("search", deadline=None)
@@ -55,8 +55,12 @@ class SafetyRan:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """What waits, for a machine or another process, in an order in which it does not wait for itself."""
-    items[:] = in_order(items)
+    """What waits, for a machine or another process, in an order in which it does not wait for itself.
+
+    ``TEST_ORDER=SEED`` shuffles files, and the tests of each file, to show that none needs another.
+    """
+    seed = os.environ.get("TEST_ORDER")
+    items[:] = in_order(items if seed is None else shuffled(items, int(seed)))
 
 
 def pytest_collection_finish() -> None:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
-from tests.waiting_apart import STORIES, WaitingApart, in_order, portions, waits
+from tests.waiting_apart import STORIES, WaitingApart, in_order, portions, shuffled, waits
 
 HAL = [f"tests/drivers/hal/test_{name}.py::test_{number}" for name in "ab" for number in range(3)]
 TOLD = [f"{STORIES}test_stops.py::test_{number}" for number in range(4)]
@@ -97,3 +98,14 @@ def test_files_of_hal_lie_apart() -> None:
     assert ordered[:4] == [TOLD[0], *HAL[:3]]
     assert ordered[4:10] == [TOLD[1], TOLD[2], *HAL[3:], TOLD[3]][:6]
     assert ordered[len(HAL + TOLD) :] == RECKON
+
+
+def test_a_drawn_order_keeps_files_together_and_every_test() -> None:
+    items: list[Any] = [SimpleNamespace(nodeid=each) for each in RECKON + HAL + TOLD]
+    drawn = [item.nodeid for item in shuffled(items, 7)]
+    assert sorted(drawn) == sorted(RECKON + HAL + TOLD)
+    assert drawn != RECKON + HAL + TOLD
+    assert drawn == [item.nodeid for item in shuffled(items, 7)]
+    files = [name.partition("::")[0] for name in drawn]
+    changes = sum(one != other for one, other in pairwise(files))
+    assert changes == len(set(files)) - 1

@@ -7,6 +7,7 @@ others.
 
 from __future__ import annotations
 
+import random
 from collections import Counter
 from collections.abc import Sequence
 from itertools import groupby
@@ -112,6 +113,16 @@ def in_order(items: Sequence[pytest.Item]) -> list[pytest.Item]:
         places += [((number + 0.5) / len(groups), group) for number, group in enumerate(groups)]
     waiting = [item for _, group in sorted(places, key=itemgetter(0)) for item in group]
     return [*waiting, *(item for item in items if not waits(item.nodeid))]
+
+
+def shuffled(items: Sequence[pytest.Item], seed: int) -> list[pytest.Item]:
+    """Return the files in an order drawn by ``seed``, and the tests of each file in another."""
+    draw = random.Random(seed)
+    files = [list(group) for _, group in groupby(items, key=lambda item: item.nodeid.partition("::")[0])]
+    draw.shuffle(files)
+    for file in files:
+        draw.shuffle(file)
+    return [item for file in files for item in file]
 
 
 def _unit(nodeid: str) -> str:
