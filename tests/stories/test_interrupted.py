@@ -25,6 +25,12 @@ def in_the_cut(operator: Operator) -> None:
     operator.lets_it_run(lambda: operator.machine["line"] == 7 and operator.slides[1] < CUT, "the cut")
 
 
+def stored(operator: Operator) -> tuple[object, int]:
+    """Return the interrupted job and the parts that the store has; it is written behind the screen."""
+    with operator.store() as store:
+        return store.setting("under_way"), store.parts("part.nc")
+
+
 def twists_the_estop_out(operator: Operator) -> None:
     operator.answers("u", fragment("screen.twist-e-stop-out"), lambda: operator.state != "E-STOP")
 
@@ -138,9 +144,7 @@ def test_the_part_is_finished_by_searchto_and_the_row_goes(story: Story) -> None
     operator.reaches("READY")
     operator.until(lambda: not operator.shows(opening("desk.interrupted")), "nothing is interrupted")
     operator.until(lambda: operator.status["interrupted"] is None, "status.json")
-    with operator.store() as store:
-        assert store.setting("under_way") is None
-        assert store.parts("part.nc") == 1
+    operator.until(lambda: stored(operator) == (None, 1), "the store")
 
 
 @pytest.mark.parametrize("keys", [("y", "F11", "F12"), ("F11", "y", "F12")], ids=" ".join)

@@ -34,7 +34,7 @@ def finished(operator: Operator) -> None:
     operator.reaches("READY")
     operator.until(lambda: operator.is_at((0.0, 0.0)), "the end of the program")
     operator.until(lambda: operator.status.get("parts") == 1, operator.status)
-    assert len(operator.events("part")) == 1
+    operator.until(lambda: len(operator.events("part")) == 1, "the part in the store's log")
 
 
 def test_off_and_auto_in_feed_hold_turn_nothing_and_the_palms_do(story: Story) -> None:

@@ -27,6 +27,12 @@ def made(operator: Operator, parts: int) -> None:
     operator.until(lambda: len(operator.events("part")) == parts, "the store's log")
 
 
+def parts_in_the_store(operator: Operator) -> int:
+    """Return how many parts the store has counted."""
+    with operator.store() as store:
+        return store.parts("again.nc")
+
+
 def at_the_end(operator: Operator) -> None:
     """Screen, status file, store and slides tell the same."""
     made(operator, 3)
@@ -34,8 +40,8 @@ def at_the_end(operator: Operator) -> None:
     assert operator.status["program"] == "again.nc"
     assert operator.machine["outputs"] == ["collet"]
     operator.until(lambda: operator.machine["rpm"] == 0, "the spindle at rest")
+    operator.until(lambda: parts_in_the_store(operator) == 3, "the store")
     with operator.store() as store:
-        assert store.parts("again.nc") == 3
         assert store.tools()[1].offset == (pytest.approx(0.0), pytest.approx(-1.0 * INCH))
     operator.sees(text("screen.to-start"))
 
