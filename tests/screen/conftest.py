@@ -33,10 +33,11 @@ from tests.screen.pictures import Stage
 STALL = event_times.STALL
 
 
-def left_over() -> list[str]:
-    """Windows, running timers and threads that nobody has put away."""
+def left_over(*, collect: bool) -> list[str]:
+    """Windows, running timers and threads that nobody has put away; without ``collect`` also garbage."""
     QCoreApplication.sendPostedEvents(None, QEvent.Type.DeferredDelete)
-    gc.collect()
+    if collect:
+        gc.collect()
     names = [thread.name for thread in threading.enumerate()]
     found = [f"thread {name}" for name in names if name.startswith(("loading", "editing"))]
     for thing in shiboken6.getAllValidWrappers():
@@ -49,17 +50,12 @@ def left_over() -> list[str]:
     return found
 
 
-_before: list[set[str]] = []  # what the test before has left, where one ran: each look collects garbage
-
-
 @pytest.fixture(autouse=True)
 def nothing_left(qapp: QApplication) -> Iterator[None]:
     """Fails a test that leaks; set up first, so that it looks last."""
-    before = _before[0] if _before else set(left_over())
+    before = set(left_over(collect=False))
     yield
-    after = left_over()
-    _before[:] = [set(after)]
-    leaked = [name for name in after if name not in before]
+    leaked = [name for name in left_over(collect=True) if name not in before]
     speak_in(ENGLISH)  # a window on the desk speaks its language in every picture, also in the last one
     assert not leaked, f"left over: {leaked}"
 

@@ -103,6 +103,10 @@ class Eyes(QObject):
         while True:
             desk = _desk()
             now = _machine(desk) if desk is not None else {}
+            _note_prompt()
+            if now.get("line") == _SLOW_AT[0]:
+                _SLOW_AT[0] = None
+                patient_clock.CLOCK.run_at(1.0)
             if now and now != before:
                 before = now
                 tell({"machine": now, "at": time.monotonic()})
@@ -111,7 +115,11 @@ class Eyes(QObject):
     def listen(self) -> None:
         """Hand on what is asked."""
         for line in sys.stdin:
-            self.asked.emit(json.loads(line))
+            asked = json.loads(line)
+            if asked["ask"] == "time":  # also while Qt's thread is frozen
+                tell({"answer": asked["number"], "is": patient_clock.CLOCK.now()})
+            else:
+                self.asked.emit(asked)
 
     # --- in Qt's thread --------------------------------------------------------------------------------
 
@@ -127,7 +135,8 @@ class Eyes(QObject):
             "spoil": _spoil,
             "kill": _kill,
             "real time": lambda _asked: patient_clock.run_in_real_time(),
-            "hurry": lambda told: patient_clock.CLOCK.run_at(told["rate"]),
+            "hurry": _hurry,
+            "prompts": lambda _asked: _PROMPTS,
         }
         tell({"answer": asked["number"], "is": doing[asked["ask"]](asked)})
 
@@ -193,6 +202,19 @@ def _targets(panel: Panel) -> list[tuple[float, float, float, float]]:
     return [(corner.x() + box.x(), corner.y() + box.y(), box.width(), box.height()) for box in boxes]
 
 
+def _hurry(told: Told) -> None:
+    """Let machine time pass faster, until the control comes to a line of the program."""
+    _SLOW_AT[0] = told["until_line"]
+    patient_clock.CLOCK.run_at(told["rate"])
+
+
+def _note_prompt() -> None:
+    window = _WINDOW[0] if _WINDOW else None
+    prompt = window.frame.prompt.text if window is not None and window.frame is not None else ""
+    if prompt and (not _PROMPTS or _PROMPTS[-1] != prompt):
+        _PROMPTS.append(prompt)
+
+
 def _break(told: Told) -> None:
     """Something of the simulated lathe breaks, by the name of its method."""
     desk = _desk()
@@ -243,6 +265,8 @@ def _desk() -> Desk | None:
 
 
 _WINDOW: list[MainWindow] = []
+_PROMPTS: list[str] = []  # what the prompt line has shown, in its order
+_SLOW_AT: list[int | None] = [None]  # line at which a hurry ends
 _RELEASED = [0]  # keys that have come up
 _CLICKED = [0]  # buttons of the mouse that have come up
 _FORGOTTEN = [0]  # presses that the screen has said to have forgotten

@@ -158,14 +158,26 @@ class Operator:
         """Wait for it."""
         until(true, lambda: f"{what} is not so: {self.machine}, {self.last_words}")
 
-    def lets_it_run(self, true: Callable[[], bool], what: object = "") -> None:
-        """Wait for it with hands off; the machine's time passes several times as fast meanwhile."""
-        self.ask("hurry", rate=HURRY)
+    def lets_it_run(self, true: Callable[[], bool], what: object = "", until_line: int | None = None) -> None:
+        """Wait for it with hands off; the machine's time passes several times as fast meanwhile.
+
+        ``until_line``: no longer than until the control comes to this line, where a hand is needed soon.
+        """
+        self.ask("hurry", rate=HURRY, until_line=until_line)
         try:
             self.until(true, what)
         finally:
             if not self._ended:
-                self.ask("hurry", rate=1.0)
+                self.ask("hurry", rate=1.0, until_line=None)
+
+    def passes(self, seconds: float) -> None:
+        """Let so much time of the machine pass: on a busy computer it may stand still meanwhile."""
+        began = self.ask("time")
+        self.until(lambda: self.ask("time") - began >= seconds, f"{seconds} s of the machine")
+
+    def was_prompted(self, text: str) -> bool:
+        """Whether the prompt line has shown this since the start, if only for a moment."""
+        return any(text in each for each in self.ask("prompts"))
 
     def keeps(self, true: Callable[[], bool], seconds: float, what: object = "") -> None:
         """It stays so for as long."""
@@ -197,12 +209,13 @@ class Operator:
 
         def still() -> bool:
             before, at[0] = at[0], self.slides
-            self.during(0.1)
+            self.passes(0.1)
             return max(abs(a - b) for a, b in zip(before, self.slides, strict=True)) < NEAR
 
         self.until(still, "rest")
         stands = self.slides
-        self.keeps(lambda: self.is_at(stands), seconds, f"rest at {stands}")
+        self.passes(seconds)
+        assert self.is_at(stands), f"no rest at {stands}: {self.machine}, {self.last_words}"
         return stands
 
     def is_at(self, place: Sequence[float]) -> bool:

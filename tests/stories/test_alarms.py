@@ -32,7 +32,7 @@ OURS = ("setpoint", "too early", "splice", "Error", "queue")  # words of whoever
 def in_the_cut(operator: Operator) -> None:
     operator.drives_on()
     operator.starts()
-    operator.lets_it_run(lambda: operator.machine["line"] == 7, "the cut")
+    operator.lets_it_run(lambda: operator.machine["line"] == 7, "the cut", until_line=7)
     operator.until(lambda: operator.state == "RUNNING", "feeding")
 
 

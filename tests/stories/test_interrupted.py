@@ -22,7 +22,9 @@ CUT = (-2.0 - 0.3) * 25.4  # machine Z in the middle of line 7
 def in_the_cut(operator: Operator) -> None:
     operator.drives_on()
     operator.starts()
-    operator.lets_it_run(lambda: operator.machine["line"] == 7 and operator.slides[1] < CUT, "the cut")
+    operator.lets_it_run(
+        lambda: operator.machine["line"] == 7 and operator.slides[1] < CUT, "the cut", until_line=7
+    )
 
 
 def stored(operator: Operator) -> tuple[object, int]:

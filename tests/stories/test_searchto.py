@@ -54,6 +54,7 @@ def in_the_second_groove(operator: Operator) -> None:
             operator.machine["line"] == 8 and abs(tip(operator)[1] + 0.4) < 0.002 and tip(operator)[0] < 0.99
         ),
         "the second groove",
+        until_line=8,
     )
 
 

@@ -51,7 +51,7 @@ def test_half_a_second_of_stall_at_a_standstill_is_told_and_nothing_starts_unrea
     operator.until(lambda: not operator.is_at((0.05 * INCH, 0.0)), "feeding")
     assert operator.machine["rpm"] > 500
     operator.reaches("READY")
-    operator.sees(fragment("screen.not-counted"))
+    operator.until(lambda: operator.was_prompted(fragment("screen.not-counted")), "it is no part")
     assert operator.machine["parts"] == 0
     operator.until(lambda: len(operator.events("uncounted")) == 1, "told in the store")
     (said,) = operator.events("disturbed")
