@@ -23,8 +23,10 @@ LOOK, STALL = 0.02, 0.15  # s
 LATE = frozenset(
     {"late", "low-queue", "queue-dry", "hal-silent", "hal-thread", "feeder-tripped", "feeder-silent"}
 )
-# What a machine behind HAL makes of a control that it has not heard for a quarter of a second.
+# What a machine behind HAL makes of a control that it has not heard for a quarter of a second, or of a servo
+# thread that stood still.
 OF_SILENCE = frozenset({"spindle-has-stopped"})
+OF_A_STILL_THREAD = frozenset({"no-power"})
 _CODES = {str(entry.number): code for code, entry in CATALOGUE.items()}
 _told: list[str] = []  # by the machines of the test that runs
 
@@ -48,11 +50,13 @@ def command_was_late(home: Path) -> bool:
     """Whether a command that has this folder has told that first; it is told to the test too."""
     for log in sorted((home / "logs").glob("*.jsonl")):
         away = False
-        for event in map(json.loads, log.read_text(encoding="utf-8").splitlines()):
-            code = _CODES.get(event["text"].partition(" ")[0], "")
+        events = [json.loads(line) for line in log.read_text(encoding="utf-8").splitlines()]
+        codes = [_CODES.get(event["text"].partition(" ")[0], "") for event in events]
+        for event, code in zip(events, codes, strict=True):
             away = away or event["kind"] == "starved"
+            still = code in OF_A_STILL_THREAD and "hal-thread" in codes
             if event["kind"] == "alarm" or (event["kind"] == "stop" and code in LATE | OF_SILENCE):
-                tell("late" if away and code in OF_SILENCE else code)
+                tell("late" if still or (away and code in OF_SILENCE) else code)
     return told_late()
 
 

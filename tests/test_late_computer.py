@@ -72,3 +72,11 @@ def test_a_process_that_stood_still_is_told_and_one_that_did_not_is_not() -> Non
     with stalls_told(1e9):
         tick.wait(0.1)
     assert not told_late()
+
+
+def test_drives_without_power_are_the_computers_only_with_a_thread_that_stood_still(tmp_path: Path) -> None:
+    off = "alarm", "106 DRIVES STAY OFF: something"
+    assert not told_by(tmp_path, off)
+    forget()
+    assert told_by(tmp_path, off, ("alarm", "533 HAL'S REAL-TIME THREAD STANDS: something"))
+    forget()

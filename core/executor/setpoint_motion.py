@@ -112,10 +112,13 @@ class SetpointMotion:
         """Follow switches and overrides, take read-ahead blocks in, and say how far it is."""
         if not self.active:
             return Progress.DONE
-        if self._wanted() != self._overrides or self._context.switches.single_block != self._single:
+        ran_dry = self.starving < self._axes.now()  # within this tick: the next one holds the cycle
+        changed = self._wanted() != self._overrides or self._context.switches.single_block != self._single
+        if changed and not ran_dry:
             self._go()
-        if self.moving:
-            self._refill(feed)
+        if ran_dry or self.moving:
+            if not ran_dry:
+                self._refill(feed)
             return Progress.MOVING
         if self._last is not None and self._stepped_over(self._last):
             return Progress.BLOCK_END if self._steps_left() else Progress.DONE

@@ -147,6 +147,32 @@ def test_a_late_computer_in_a_cut_is_a_hold_and_the_part_is_made(
     assert rig.shot.demand[:2] == pytest.approx((0.5 * 25.4, -0.5 * 25.4))
 
 
+def test_a_computer_that_is_late_within_a_tick_does_not_go_on_by_itself(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The queue runs dry between two looks of one tick: the slides rest, and only the palms go on."""
+    rig = cutting()
+    cycle = rig.executor._control.cycle
+    assert cycle is not None
+    step = cycle.step
+
+    def late() -> None:
+        monkeypatch.setattr(cycle, "step", step)
+        rig.clock.advance(3.0)
+        step()
+
+    monkeypatch.setattr(cycle, "step", late)
+    rig.tick()
+    stood = rig.sim.machine.true_position()
+    rig.until(State.HOLD, limit=0.1)
+    rig.run(1.0)
+    assert rig.state is State.HOLD
+    assert rig.sim.machine.true_position() == pytest.approx(stood, abs=1e-4)
+    rig.post(CycleStart())
+    rig.until(State.PROGRAM_STOP)
+    assert rig.shot.demand[:2] == pytest.approx((0.5 * 25.4, -0.5 * 25.4))
+
+
 def test_a_late_computer_before_the_first_move_is_a_hold_too(
     too_late: Callable[[Rig, bool], None],
 ) -> None:

@@ -129,7 +129,8 @@ def test_c_looks_for_its_index_positions_and_turns_again(homed: LiveLathe) -> No
     homed.run("G90G94F100\nM19\nC90S60\nM30\n")  # it has never turned: its index is looked for
     c = homed.shot.axes.index("C")
     turns = feedback(homed, "spindle.position-fb")  # whole at its index
-    assert homed.shot.actual[c] == pytest.approx(90.0, abs=0.2)
+    # Whole turns of programs that ran before it do not matter.
+    assert math.remainder(homed.shot.actual[c] - 90.0, 360.0) == pytest.approx(0.0, abs=0.2)
     assert math.remainder(turns - 0.25, 1.0) == pytest.approx(0.0, abs=0.002)
     homed.run("G90G94F100\nM03S300\nG04F.3\nM05\nM30\n")  # the same drive turns as the spindle again
     assert homed.pin("c-or-speed.sel") == 0.0
