@@ -15,6 +15,6 @@ class CodedError(Exception):
         self.code = code
 
 
-def code_of(error: BaseException) -> str:
+def error_code(error: BaseException) -> str:
     """Return the code of an error that another error replaces, or an empty code where it has none."""
     return error.code if isinstance(error, CodedError) else ""

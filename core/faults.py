@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from typing import Literal
 
+from core.coded_error import CodedError
+
 FaultCode = Literal[
     # axes
     "axis",
@@ -82,7 +84,7 @@ def code_of(fault: str, otherwise: FaultCode) -> FaultCode:
     return fault.code if isinstance(fault, Fault) else otherwise
 
 
-class DriverError(Exception):
+class DriverError(CodedError):
     """A driver cannot do what it was asked; the sentence says what, where and what to do.
 
     ``code`` is the alarm that it becomes when nobody deals with it. The code of a ``Fault`` that is handed

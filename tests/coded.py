@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from app.cli import refusal
+from app.desk import command_errors
 from core.coded_error import CodedError
 
 
@@ -26,11 +26,11 @@ def raises_code(kind: type[Exception], code: str, *values: object) -> Iterator[p
 def recorded_refusals(monkeypatch: pytest.MonkeyPatch) -> list[CodedError]:
     """Return a list that receives every error that ends a command of this process from now on."""
     refusals = list[CodedError]()
-    refused = refusal.refused
+    report = command_errors.report_refusal
 
     def record(error: CodedError) -> int:
         refusals.append(error)
-        return refused(error)
+        return report(error)
 
-    monkeypatch.setattr(refusal, "refused", record)
+    monkeypatch.setattr(command_errors, "report_refusal", record)
     return refusals

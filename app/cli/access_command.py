@@ -13,7 +13,7 @@ from app.cli.store_command import opened_store
 from app.cli.who_changes import add_as_option, asked_pin, who_changes
 from app.desk.command_errors import EXIT_OK, CommandError
 from core.access.access_table import RULES, Act, Level
-from core.coded_error import code_of
+from core.coded_error import error_code
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
@@ -109,7 +109,7 @@ def _kept(store: Store, args: argparse.Namespace, name: str, level: Level, done:
     try:
         check_pin(pin)
     except PinError as error:
-        raise CommandError(str(error), code_of(error)) from error
+        raise CommandError(str(error), error_code(error)) from error
     if asked_pin("the same again: ") != pin:
         raise CommandError("those were two different PINs; nothing was kept", "pins-differ")
     row = people.PersonRow(name, level, *hashed(pin))

@@ -16,7 +16,7 @@ from app.cli.machine_hal import add_hal_parser, write_hal
 from app.cli.who_changes import COMMAND_LINE, add_as_option, who_changes
 from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, EXIT_USAGE, CommandError
 from core.access.access_table import Act
-from core.coded_error import code_of
+from core.coded_error import error_code
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
@@ -206,7 +206,7 @@ def write_model(file: str) -> int:
     try:
         sys.stdout.write(device_model(machine, datetime.now(UTC)))
     except DriverError as error:
-        raise CommandError(str(error), code_of(error)) from error
+        raise CommandError(str(error), error_code(error)) from error
     if not told_to_agents(machine):
         sys.stderr.write(f"turndesk: {file}: [mtconnect] enabled = false: no agent will find the adapter\n")
     return EXIT_OK
@@ -238,7 +238,7 @@ def play(file: str) -> int:
     try:
         play_it(machine, lambda: not ended, _say, _typed())
     except DriverError as error:
-        raise CommandError(str(error), code_of(error)) from error
+        raise CommandError(str(error), error_code(error)) from error
     return EXIT_OK
 
 

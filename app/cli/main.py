@@ -12,9 +12,10 @@ import sys
 import threading
 from collections.abc import Sequence
 
-from app.cli import dropped_interrupt, refusal
+from app.cli import dropped_interrupt
 from app.cli.command_parser import Parser, add_screen_options, settled
 from app.cli.crash_report import report_crash, report_thread
+from app.desk import command_errors
 from app.desk.command_errors import EXIT_INTERRUPTED, EXIT_OK, EXIT_USAGE, CommandError
 from app.desk.data_folder import DataFolderError, check_data_folder
 from app.desk.standard_input import nothing_taken
@@ -85,7 +86,7 @@ def main(argv: Sequence[str] | None = None) -> int:
             dropped_interrupt.look()
             return status
     except (CommandError, DataFolderError) as error:
-        return refusal.refused(error)
+        return command_errors.report_refusal(error)
     except ImportError as error:
         if not _library_missing(error):
             raise

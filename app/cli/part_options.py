@@ -12,7 +12,7 @@ from app.cli.figures import MM_PER_INCH
 from app.cli.program_options import STDIN, circumstances, read_source
 from app.desk.command_errors import CommandError
 from app.desk.kept_part import lasting
-from core.coded_error import code_of
+from core.coded_error import error_code
 from core.part.stock_forms import FORMS
 
 if TYPE_CHECKING:
@@ -103,7 +103,7 @@ def _said(
     try:
         return said_stock(text, ProgramBefore(read, around.setup, around.machine, setting))
     except StockError as error:
-        raise CommandError(f"--stock {error}", code_of(error)) from error
+        raise CommandError(f"--stock {error}", error_code(error)) from error
 
 
 def _shapes(args: argparse.Namespace) -> Mapping[int, ToolShape]:

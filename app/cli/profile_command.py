@@ -13,7 +13,7 @@ from app.cli.store_command import opened_store
 from app.cli.who_changes import add_as_option, note_change, who_may
 from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError
 from core.access.access_table import Act
-from core.coded_error import code_of
+from core.coded_error import error_code
 from core.language.source import Dialect, dialect_of
 from core.shapes.cutting_data import MATERIALS
 
@@ -90,7 +90,7 @@ def run(args: argparse.Namespace) -> int:
     try:
         return _run(args)
     except DrawingError as error:
-        raise CommandError(str(error), code_of(error)) from error
+        raise CommandError(str(error), error_code(error)) from error
 
 
 def _run(args: argparse.Namespace) -> int:
@@ -270,7 +270,7 @@ def _write(text: str, args: argparse.Namespace) -> None:
     try:
         write_new(Path(args.out), text.encode("ascii"))
     except FileError as error:
-        raise CommandError(str(error), code_of(error)) from error
+        raise CommandError(str(error), error_code(error)) from error
     note_change(opened_store, args.who, f"program {Path(args.out).name} made of {Path(args.file).name}")
 
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from app.desk.command_errors import CommandError
 from app.desk.standard_input import DASH, standard_input
-from core.coded_error import code_of
+from core.coded_error import error_code
 from core.language.source import Dialect, dialect_of
 
 if TYPE_CHECKING:
@@ -96,7 +96,7 @@ def read_source(path: Path, args: argparse.Namespace) -> Source:
         )
     except SourceError as error:
         # The screen calls a program by its name; a script that proves many needs the folder too.
-        raise CommandError(str(error).replace(path.name, str(path), 1), code_of(error)) from error
+        raise CommandError(str(error).replace(path.name, str(path), 1), error_code(error)) from error
     from core.language.called_files import with_called_files
 
     return with_called_files(source, [path.parent])

@@ -10,7 +10,6 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.cli import refusal
 from app.cli.part_options import add_part_options
 from app.cli.program_options import (
     add_ideal_option,
@@ -19,6 +18,7 @@ from app.cli.program_options import (
     read_source,
 )
 from app.cli.progress_bar import Progress
+from app.desk import command_errors
 from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError
 from core.tool_edges import edge_name
 
@@ -156,7 +156,7 @@ def _status(path: Path, jobs: FittingJobs, args: argparse.Namespace, report: Rep
     except CommandError as error:
         if report is not None:
             report.add(path, Proof({}, fault=str(error)))
-        return refusal.refused(error)
+        return command_errors.report_refusal(error)
     found = _prove(path, source, job, args)
     if report is not None:
         report.add(path, Proof({}, found.section))

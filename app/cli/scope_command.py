@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from app.desk.command_errors import EXIT_OK, CommandError
-from core.coded_error import code_of
+from core.coded_error import error_code
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
@@ -51,7 +51,7 @@ def run(args: argparse.Namespace) -> int:
         if args.csv is not None:
             save_csv(record, Path(args.csv))
     except RecordError as error:
-        raise CommandError(str(error), code_of(error)) from error
+        raise CommandError(str(error), error_code(error)) from error
     told = json.dumps(_object(path, record, args.csv)) if args.json else _text(path, record, args.csv)
     sys.stdout.write(told + "\n")
     return EXIT_OK

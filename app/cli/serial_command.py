@@ -11,7 +11,7 @@ from app.cli.store_command import opened_store
 from app.cli.who_changes import add_as_option, note_change, who_may
 from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError
 from core.access.access_table import Act
-from core.coded_error import code_of
+from core.coded_error import error_code
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
@@ -114,7 +114,7 @@ def _ports() -> int:
     try:
         found = serial_ports()
     except DriverError as error:
-        raise CommandError(str(error), code_of(error)) from error
+        raise CommandError(str(error), error_code(error)) from error
     sys.stdout.write("".join(f"{device}  {what}".rstrip() + "\n" for device, what in found))
     if not found:
         sys.stderr.write("turndesk: this computer has no serial port; plug the adapter in\n")

@@ -13,7 +13,7 @@ from app.cli.store_command import opened_store
 from app.cli.who_changes import add_as_option, note_change, who_may
 from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError
 from core.access.access_table import Act
-from core.coded_error import code_of
+from core.coded_error import error_code
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
@@ -81,7 +81,7 @@ def _refusals() -> Iterator[None]:
     try:
         yield
     except (SharingError, TakeError) as error:
-        raise CommandError(str(error), code_of(error)) from error
+        raise CommandError(str(error), error_code(error)) from error
 
 
 # --- the actions -----------------------------------------------------------------------------------------

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from app.cli.store_command import opened_store
 from app.desk.command_errors import EXIT_OK, CommandError
-from core.coded_error import code_of
+from core.coded_error import error_code
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
@@ -72,7 +72,7 @@ def _shift(store: Store, args: argparse.Namespace) -> Shift:
         try:
             return between(args.since, args.until)
         except ValueError as error:
-            raise CommandError(str(error), code_of(error)) from error
+            raise CommandError(str(error), error_code(error)) from error
     if not 0 <= args.back <= 10_000:
         raise CommandError(f"--back {args.back}: so many shifts ago, 0 to 10000", "back")
     return shift_of(hours_of(store.setting(SETTING)), datetime.now().astimezone(), args.back)
@@ -86,7 +86,7 @@ def _write(found: ShiftFigures, path: Path, *, metric: bool) -> None:
     try:
         write_out(path, shift_html(found, "", made, metric=metric).encode("utf-8", "backslashreplace"))
     except (FileError, OSError) as error:
-        raise CommandError(str(error), code_of(error)) from error
+        raise CommandError(str(error), error_code(error)) from error
     sys.stdout.write(f"{path} has the report: {found.parts} parts\n")
 
 

@@ -14,7 +14,7 @@ from app.cli.who_changes import COMMAND_LINE, add_as_option, note_change, who_ch
 from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError
 from app.desk.data_folder import data_folder
 from core.access.access_table import Act
-from core.coded_error import code_of
+from core.coded_error import error_code
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
@@ -56,7 +56,7 @@ def store_refusals() -> Iterator[None]:
     try:
         yield
     except StoreError as error:
-        raise CommandError(str(error), code_of(error)) from error
+        raise CommandError(str(error), error_code(error)) from error
 
 
 @contextmanager

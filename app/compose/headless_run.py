@@ -16,7 +16,7 @@ from app.desk.command_errors import CommandError
 from app.desk.data_folder import RECORDS, data_folder
 from app.desk.run_without_screen import HeadlessRun
 from app.quality.parts_book import tools_of
-from core.coded_error import code_of
+from core.coded_error import error_code
 from core.executor.executor import Executor
 from core.executor.interrupted_job import InterruptedJob
 from core.executor.interruption_watch import Note
@@ -100,7 +100,7 @@ def _connected(machine: Machine, paced: bool) -> Iterator[tuple[RealClock | Step
     try:
         connected = connect(machine, clock)
     except DriverError as error:
-        raise CommandError(str(error), code_of(error)) from error
+        raise CommandError(str(error), error_code(error)) from error
     try:
         yield clock, connected
     finally:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from app.desk.command_errors import CommandError
 from app.desk.data_folder import data_folder
 from app.desk.kept_part import NOTHING_KEPT, KeptPart, kept_part
-from core.coded_error import code_of
+from core.coded_error import error_code
 from core.store.store_file import has_store
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ def kept_with_all(programs: Iterable[str]) -> dict[str, KeptPart]:
         with Store.open(folder, read_only=True) as store:
             found = {program: kept_part(store.setting, program) for program in programs}
     except StoreError as error:
-        raise CommandError(str(error), code_of(error)) from error
+        raise CommandError(str(error), error_code(error)) from error
     return {program: kept for program, kept in found.items() if kept != NOTHING_KEPT}
 
 
@@ -48,7 +48,7 @@ def keep_stock(program: str, text: str, stick_out: float | None) -> None:
             kept = replace(kept_part(store.setting, program), stock=text)
             write(store, program, kept if stick_out is None else replace(kept, stick_out=stick_out))
     except StoreError as error:
-        raise CommandError(str(error), code_of(error)) from error
+        raise CommandError(str(error), error_code(error)) from error
 
 
 def write(store: Store, program: str, kept: KeptPart) -> None:

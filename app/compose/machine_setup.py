@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from app.desk.command_errors import CommandError
-from core.coded_error import code_of
+from core.coded_error import error_code
 from core.interpreter.job_setup import ControlLimits, SecondaryOffset, Setup, ToolOffset, ZeroOffset
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ def read_machine(path: str | None) -> Machine:
     try:
         return named_machine(path)
     except MachineFileError as error:
-        raise CommandError(str(error), code_of(error)) from error
+        raise CommandError(str(error), error_code(error)) from error
 
 
 def control_limits(machine: Machine) -> ControlLimits:

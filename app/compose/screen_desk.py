@@ -48,7 +48,7 @@ from app.desk.translation import tr
 from app.offsets.mill_touch import MillTouch
 from app.offsets.offset_effect import Effect
 from core.access.access_table import Act
-from core.coded_error import code_of
+from core.coded_error import error_code
 from core.executor.commands import LeftInterrupted
 from core.executor.executor import Executor
 from core.executor.interrupted_job import InterruptedJob
@@ -344,7 +344,7 @@ def _connected(machine: Machine, clock: Clock) -> Connected:
     try:
         return connect(machine, clock)
     except DriverError as error:
-        raise CommandError(str(error), code_of(error)) from error
+        raise CommandError(str(error), error_code(error)) from error
 
 
 def _drives(machine: Machine) -> str:

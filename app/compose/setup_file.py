@@ -20,7 +20,7 @@ from app.compose.journal import UNDER_WAY
 from app.compose.machine_setup import read_machine
 from app.desk.command_errors import CommandError
 from app.desk.data_folder import data_folder
-from core.coded_error import code_of
+from core.coded_error import error_code
 from core.file_placing import make_folder, put_in_place, write_in_place
 from core.store import backup
 from core.store.store import Store
@@ -87,7 +87,7 @@ def _copy_of_store(folder: Path, beside: Path) -> Path:
             store.set_setting(UNDER_WAY, None).result()
         backup.backup(home, beside / STORE)
     except StoreError as error:
-        raise CommandError(str(error), code_of(error)) from error
+        raise CommandError(str(error), error_code(error)) from error
     return beside / STORE
 
 
@@ -160,7 +160,7 @@ def load_setup(source: Path) -> tuple[SetupTold, Path | None]:
             kept = backup.restore(folder, Path(name) / STORE)
             beside.take_places()
         except StoreError as error:
-            raise CommandError(str(error), code_of(error)) from error
+            raise CommandError(str(error), error_code(error)) from error
         except OSError as error:
             where = error.filename or folder  # a full disk does not say which file it was
             raise CommandError(f"{where} cannot be written: {error.strerror}", "cannot-write") from error
@@ -229,7 +229,7 @@ def _unpacked(source: Path, folder: Path) -> list[str]:
     try:
         found = backup.problems(folder / STORE)
     except StoreError as error:
-        raise CommandError(f"{source}: {error}", code_of(error)) from error
+        raise CommandError(f"{source}: {error}", error_code(error)) from error
     if found:
         raise CommandError(f"{source}: {found[0]}; make it anew with 'turndesk setup save'", "damaged-store")
     for name in names:

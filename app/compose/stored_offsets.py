@@ -12,7 +12,7 @@ from app.desk.command_errors import CommandError
 from app.desk.data_folder import data_folder
 from app.offsets.mill_offsets import MillOffsets, rows_of, with_mill
 from app.offsets.offsets_in_force import PRESET, preset_of, secondary_offsets, tool_offsets
-from core.coded_error import code_of
+from core.coded_error import error_code
 from core.interpreter.job_setup import SecondaryOffset, Setup, ToolOffset, ZeroOffset
 from core.store.store_file import has_store
 from core.store.store_rows import SecondaryRow, ToolRow, ZeroRow
@@ -81,7 +81,7 @@ def stored_offsets() -> Offsets:
                 raise CommandError(damaged[0], "damaged-row")
             return offsets_of(store)
     except StoreError as error:
-        raise CommandError(str(error), code_of(error)) from error
+        raise CommandError(str(error), error_code(error)) from error
 
 
 def stored_shapes() -> dict[int, ToolShape]:
@@ -99,7 +99,7 @@ def stored_shapes() -> dict[int, ToolShape]:
         with Store.open(folder, read_only=True) as store:
             shapes, tools = store.shapes(), store.tools()
     except StoreError as error:
-        raise CommandError(str(error), code_of(error)) from error
+        raise CommandError(str(error), error_code(error)) from error
     if wrong := wrong_shapes(shapes, tools):
         way = "mend it on the page of its shape (F8), or with 'turndesk offsets set'"
         raise CommandError(f"a tool shape of the store cannot be: {'; '.join(wrong)}; {way}", "invalid-shape")

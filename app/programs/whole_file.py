@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
-from core.coded_error import CodedError, code_of
+from core.coded_error import CodedError, error_code
 from core.file_placing import all_to_disk, folder_to_disk, make_folder, put_in_place
 from core.language.source import SourceError, load_source
 from core.unfinished import unfinished_folder
@@ -42,7 +42,7 @@ def write_whole(path: Path, data: bytes) -> None:
         except OSError as error:
             raise FileError(f"{target.name} CANNOT BE WRITTEN: {error.strerror}", "cannot-write") from error
         except SourceError as error:
-            raise FileError(f"NOT SAVED: {error}", code_of(error)) from error
+            raise FileError(f"NOT SAVED: {error}", error_code(error)) from error
 
 
 def write_out(target: Path, data: bytes) -> None:

@@ -15,7 +15,7 @@ from pathlib import Path
 
 from app.programs.whole_file import FileError, write_new, write_whole
 from app.sharing.program_files import FilesOfMachine, SharedFile
-from core.coded_error import CodedError, code_of
+from core.coded_error import CodedError, error_code
 from core.sharing.shared_place import Found, Published, SharedPlace
 from core.sharing.sharing_errors import Cause, SharingError
 from core.sharing.version_record import DeskState, new_version
@@ -241,7 +241,7 @@ class Sharing:
                 (write_whole if family.here else write_new)(target, text)
             except FileError as error:
                 store.write(lambda c: shared_versions.withdraw(c, taken)).result()
-                raise TakeError(str(error), code_of(error)) from error
+                raise TakeError(str(error), error_code(error)) from error
             # Behind the file: a power cut between them leaves a text that the next look knows.
             store.write(lambda c: shared_versions.set_here(c, version.key, taken.id)).result()
             self._tell(store, None, self.now.trouble)

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 
 import pytest
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from drivers.lookalikes.servo_axis import Servo
@@ -35,8 +36,8 @@ def test_one_evaluation_is_as_many_steps(
     setpoints = Setpoints(start + off, speed * DT, 0.5 * accel * DT * DT)
     stepped, glided = moving(start, speed), moving(start, speed)
     response = glided.foresee(setpoints, steps)
-    if response is None:
-        return
+    assume(response is not None)
+    assert response is not None
     glided.glide(setpoints, response, steps)
     for k in range(steps):
         t = k * DT
@@ -51,17 +52,40 @@ def test_an_even_move_is_foreseen() -> None:
     assert moving(0.0, 100.0).foresee(Setpoints(0.08, 0.1, 0.0), 1000) is not None
 
 
+EVEN = Setpoints(0.017, 0.02, 0.0)  # 20 mm/s, a little beside what the slide trails there
+
+
 @pytest.mark.parametrize(
-    ("p", "v", "setpoints"),
-    [
-        (0.0, 0.0, Setpoints(3.0, 0.0, 0.0)),  # beyond the following window
-        (0.0, 0.0, Setpoints(0.5, 0.0, 0.0)),  # more force than the drive has
-        (0.0, 120.0, Setpoints(0.0, 0.15, 0.0)),  # faster than the axis
-        (0.0, 0.0, Setpoints(0.0, 0.0, 0.01)),  # harder than the drive accelerates
-    ],
+    "limit", [{"following_window": 0.005}, {"amax": 20.0}, {"vmax": 15.0}], ids=["window", "force", "speed"]
 )
-def test_where_a_limit_may_act_it_is_stepped(p: float, v: float, setpoints: Setpoints) -> None:
-    assert moving(p, v).foresee(setpoints, 50) is None
+def test_where_one_limit_may_act_it_is_stepped(limit: dict[str, float]) -> None:
+    free, bound = Servo(SLIDE, DT), Servo(dataclasses.replace(SLIDE, **limit), DT)
+    free.v = bound.v = 20.0
+    assert free.foresee(EVEN, 50) is not None
+    assert bound.foresee(EVEN, 50) is None
+
+
+def test_a_start_beside_the_setpoint_counts_for_the_window() -> None:
+    narrow = Servo(dataclasses.replace(SLIDE, following_window=0.005), DT)
+    assert narrow.foresee(Setpoints(0.001, 0.0, 0.0), 50) is not None
+    assert narrow.foresee(Setpoints(0.006, 0.0, 0.0), 50) is None
+
+
+@pytest.mark.parametrize(("share", "foreseen"), [(0.9, True), (1.1, False)])
+def test_the_force_of_the_first_step_counts(share: float, foreseen: bool) -> None:
+    """Alone in its fast mode the slide needs most force in the first step, by ``1 / fast_mode`` more."""
+    loop = ServoLoop(2.0 * math.pi * SLIDE.bandwidth * DT, SLIDE.feed_forward)
+    first = share * SLIDE.amax * SLIDE.reserve * DT * DT
+    p = first * loop.fast_mode / loop.fast_bend
+    servo = moving(p, (p - p / loop.fast_mode) / DT)
+    assert (servo.foresee(Setpoints(0.0, 0.0, 0.0), 50) is not None) is foreseen
+
+
+@pytest.mark.parametrize(("accel", "foreseen"), [(1500.0, True), (4000.0, False)])
+def test_an_acceleration_beyond_the_drives_is_stepped(accel: float, foreseen: bool) -> None:
+    """1.3 times 3048 mm/s² is what it has; the first step alone asks for no force yet."""
+    response = moving(0.0, 0.0).foresee(Setpoints(0.0, 0.0, 0.5 * accel * DT * DT), 4)
+    assert (response is not None) is foreseen
 
 
 @pytest.mark.parametrize(

@@ -180,12 +180,14 @@ class Operator:
         return any(text in each for each in self.ask("prompts"))
 
     def keeps(self, true: Callable[[], bool], seconds: float, what: object = "") -> None:
-        """It stays so for as long."""
+        """Check that it stays so for so long; the machine's time counts, which a busy computer delays."""
+        began = self.ask("time")
 
-        def look() -> None:
+        def is_over() -> bool:
             assert true(), f"{what} has not stayed so: {self.machine}, {self.last_words}"
+            return bool(self.ask("time") - began >= seconds)
 
-        throughout(seconds, look)
+        self.until(is_over, f"{seconds} s of the machine")
 
     def during(self, seconds: float) -> None:
         """A hand does what it does for as long."""
