@@ -79,19 +79,19 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Producer) -> Waiting
 
 
 def pytest_runtest_setup() -> None:
-    """Every test begins on a computer that is not late."""
+    """Forget what the machine of an earlier test reported."""
     late_computer.forget()
 
 
 @pytest.fixture(autouse=True)
 def _copied_stores(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Let an empty store be a copy."""
+    """Copy an empty store instead of creating one."""
     use_template(request.node, monkeypatch)
 
 
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_makereport(item: pytest.Item) -> Generator[None, pytest.TestReport, pytest.TestReport]:
-    """A test of real processes has no verdict on a computer that was late."""
+    """Skip a failed test of real processes if the computer was late."""
     report = yield
     late_computer.without_verdict(item, report)
     return report

@@ -1,8 +1,8 @@
-"""A computer that is late for a machine in real time: how it is noticed, and what follows for a test.
+"""Detection of a computer that is too slow for a machine in real time.
 
-A computer that stands still for some tenths of a second, as a busy one does, stops a machine, and rightly. A
-test of real processes cannot judge the machine then. It ends without a verdict (skipped, with this reason)
-when lateness is what the machine reported first; any other cause fails. Nothing is run again.
+A busy computer may stop all processes for some tenths of a second. The machine then stops too, as it must,
+and a test of real processes cannot judge it. Such a test is skipped, with this reason, if its machine reports
+first that the computer was late. Any other cause is a failure. No test is retried.
 """
 
 from __future__ import annotations

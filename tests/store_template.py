@@ -1,4 +1,4 @@
-"""One empty store per process, copied wherever a test begins without one.
+"""Empty store that tests copy instead of creating their own.
 
 Making a store runs every migration (16 ms of processor time); most tests only need the result. Tests of the
 store itself, in ``tests/store``, make theirs as the product does.

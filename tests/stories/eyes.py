@@ -203,7 +203,7 @@ def _targets(panel: Panel) -> list[tuple[float, float, float, float]]:
 
 
 def _hurry(told: Told) -> None:
-    """Let machine time pass faster, until the control comes to a line of the program."""
+    """Speed machine time up until the control reaches a line of the program."""
     _SLOW_AT[0] = told["until_line"]
     patient_clock.CLOCK.run_at(told["rate"])
 
@@ -266,7 +266,7 @@ def _desk() -> Desk | None:
 
 _WINDOW: list[MainWindow] = []
 _PROMPTS: list[str] = []  # what the prompt line has shown, in its order
-_SLOW_AT: list[int | None] = [None]  # line at which a hurry ends
+_SLOW_AT: list[int | None] = [None]  # line of the program at which machine time slows down again
 _RELEASED = [0]  # keys that have come up
 _CLICKED = [0]  # buttons of the mouse that have come up
 _FORGOTTEN = [0]  # presses that the screen has said to have forgotten

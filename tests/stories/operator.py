@@ -22,7 +22,7 @@ READS = 1.2  # s of looking at the prompt before the palms
 READ = 0.6  # s in which a question is read
 AGAIN = 3.0  # s behind which somebody does again what has done nothing
 MEANS = {"y", "F10"}
-HURRY = 5.0  # times as fast passes the machine's time while nobody's hand is needed
+HURRY = 5.0  # seconds of machine time per second while a story only waits for the machine
 _TRIES = 20  # of a hand that the screen has forgotten behind a stall
 NEAR = 0.01  # mm: what a slide at rest may tremble
 FINGERTIP = 18  # pixels: 4 mm of a screen of 1024x600 that is 10 inches across
@@ -159,9 +159,9 @@ class Operator:
         until(true, lambda: f"{what} is not so: {self.machine}, {self.last_words}")
 
     def lets_it_run(self, true: Callable[[], bool], what: object = "", until_line: int | None = None) -> None:
-        """Wait for it with hands off; the machine's time passes several times as fast meanwhile.
+        """Wait until ``true`` holds; machine time runs ``HURRY`` times as fast meanwhile.
 
-        ``until_line``: no longer than until the control comes to this line, where a hand is needed soon.
+        ``until_line``: the line of the program at which machine time slows down to real time again.
         """
         self.ask("hurry", rate=HURRY, until_line=until_line)
         try:
@@ -171,16 +171,16 @@ class Operator:
                 self.ask("hurry", rate=1.0, until_line=None)
 
     def passes(self, seconds: float) -> None:
-        """Let so much time of the machine pass: on a busy computer it may stand still meanwhile."""
+        """Wait for so many seconds of machine time, which stops while the computer is too busy."""
         began = self.ask("time")
         self.until(lambda: self.ask("time") - began >= seconds, f"{seconds} s of the machine")
 
     def was_prompted(self, text: str) -> bool:
-        """Whether the prompt line has shown this since the start, if only for a moment."""
+        """Return whether the prompt line has shown this text at any moment since the start."""
         return any(text in each for each in self.ask("prompts"))
 
     def keeps(self, true: Callable[[], bool], seconds: float, what: object = "") -> None:
-        """Check that it stays so for so long; the machine's time counts, which a busy computer delays."""
+        """Check that ``true`` holds for so many seconds of machine time."""
         began = self.ask("time")
 
         def is_over() -> bool:

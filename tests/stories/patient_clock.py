@@ -1,8 +1,8 @@
-"""Machine time of a story: it runs while control and screen keep up, and stops while the computer is busy.
+"""Machine time of a story: it stops while the computer is too busy for the control or the screen.
 
-A story shows what hands do and what the desk does, not how fast this computer is. The control's thread and
-Qt's thread therefore beat. Machine time never runs ahead of the older beat by more than ``GRACE``, so no tick
-and no look of the screen is late. A story about a stall calls ``run_in_real_time`` before the stall.
+A story tests what TurnDesk does, not how fast this computer is. The control's thread and Qt's thread each
+report a beat whenever they run. Machine time is never later than the older beat plus ``GRACE``, so neither
+thread is ever late. A story about a stall calls ``run_in_real_time`` before the stall.
 """
 
 from __future__ import annotations
@@ -35,11 +35,11 @@ class PatientClock:
             return self._time()
 
     def beat_of_screen(self) -> None:
-        """Note that Qt's thread handles events."""
+        """Report that Qt's thread handles events."""
         self._beat(_SCREEN)
 
     def run_in_real_time(self) -> None:
-        """Let lateness count from now on."""
+        """Follow the monotonic clock from now on, so that delays count."""
         with self._lock:
             self._settle(self._time())
             self._is_real, self.rate = True, 1.0
@@ -74,7 +74,7 @@ _STALL = event_times.STALL
 
 
 def install() -> None:
-    """Give every clock of this process patient time, and let no key be late."""
+    """Replace the time of every ``RealClock`` of this process, and let no key count as late."""
 
     def begin(clock: RealClock, zero: float | None = None) -> None:
         clock.zero = CLOCK.now() if zero is None else zero
@@ -92,6 +92,6 @@ def install() -> None:
 
 
 def run_in_real_time() -> None:
-    """Let lateness of machine time and of keys count from now on."""
+    """Let delays of machine time and of keys count from now on."""
     event_times.STALL = _STALL
     CLOCK.run_in_real_time()
