@@ -105,8 +105,11 @@ class Cutter:
     def thread(self, part: TurnedPart, start: Point, end: Point, lead: float, turns: float) -> Cut:
         """The form of a thread in the section: the edge stands once a turn on its way.
 
-        ``turns`` is how far the spindle has turned since the pass began in step.
+        ``turns`` is how far the spindle has turned since the pass began in step. A lead finer than a column
+        leaves nothing standing between two turns that a column could show.
         """
+        if lead <= part.columns.step:
+            return self.cut(part, start, end)
         count = abs(end[0] - start[0]) / lead
         met, at = NOTHING, np.ceil(turns - _PHASE) - turns
         while at <= count + _PHASE:
