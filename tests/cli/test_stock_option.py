@@ -51,9 +51,13 @@ def test_without_a_word_the_bar_is_assumed_and_told(
 def test_a_finding_of_the_part_refuses_the_program(turndesk: Turndesk, tmp_path: Path, offsets: Path) -> None:
     path = written(tmp_path, PART.replace("G95F.004Z-.5", "G00Z-.5"))
     told = turndesk("prove", path, "--offsets", offsets, "--json")
+    assert told.status == 0
+    (found,) = [each for each in told.lines[0]["diagnostics"] if each["check"] == "rapid-into-stock"]
+    assert (found["line"], found["severity"], found["assumed"]) == (9, "warning", ["stock"])
+    told = turndesk("prove", path, "--offsets", offsets, "--stock", "bar:1.0:2+.02", "--json")
     assert told.status == 1
     (found,) = [each for each in told.lines[0]["diagnostics"] if each["check"] == "rapid-into-stock"]
-    assert (found["line"], found["severity"], found["n"] > 0) == (9, "error", True)
+    assert (found["line"], found["severity"], found["n"] > 0, found["assumed"]) == (9, "error", True, [])
 
 
 def test_a_second_program_works_on_what_the_first_leaves(
@@ -234,7 +238,7 @@ def test_a_silenced_check_is_a_note_and_counted(turndesk: Turndesk, tmp_path: Pa
     assert told.status == 1
     assert told.lines[0]["silenced"] == 0
     check = found[0]["check"]
-    assert found[0]["assumed"] == ["T1"]
+    assert found[0]["assumed"] == []
     machine = written(
         tmp_path, resources.machine_file("gt75.toml") + f'\n[checks]\nsilenced = ["{check}"]\n', "quiet.toml"
     )
