@@ -210,7 +210,7 @@ class PartMaking:
         else:  # a turning tool takes nothing where a live tool was before it
             self._removed += part.whole - self.milling.left - sum(piece.volume for piece in pieces)
         self._pieces += pieces
-        if part.removed or self.milling is not None:
+        if part.removed or self.milling is not None or self._last is None:
             self._last = pieces[-1] if pieces else part.rest()
         self.part = self.milling = None
 

@@ -6040,11 +6040,6 @@
     </message>
     <message>
       <location filename="app/desk/program_loading.py" />
-      <source>%1 Assumed: %2.</source>
-      <translation>%1 Supuesto: %2.</translation>
-    </message>
-    <message>
-      <location filename="app/desk/program_loading.py" />
       <source>DRAWING</source>
       <translation>DIBUJO</translation>
     </message>
@@ -29175,6 +29170,11 @@
     </message>
     <message>
       <location filename="core/proving/cutting_checks.py" />
+      <source>S sets a speed, but nothing starts the spindle before this cut.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/cutting_checks.py" />
       <source>Start it with M03 or M04 before it.</source>
       <translation>Arránquelo antes con M03 o M04.</translation>
     </message>
@@ -29210,11 +29210,6 @@
     </message>
     <message>
       <location filename="core/proving/cutting_checks.py" />
-      <source>This move cuts after the program has stopped the spindle, and no live tool is on.</source>
-      <translation>Este movimiento corta después de que el programa paró el husillo, y no hay herramienta motorizada encendida.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/cutting_checks.py" />
       <source>This move cuts with no tool: its numbers count from the machine's home.</source>
       <translation>Este movimiento corta sin herramienta: sus números cuentan desde la referencia de la máquina.</translation>
     </message>
@@ -29227,6 +29222,11 @@
       <location filename="core/proving/cutting_checks.py" />
       <source>This move cuts with the spindle held as C, and no live tool is on.</source>
       <translation>Este movimiento corta con el husillo sostenido como C, y no hay herramienta motorizada encendida.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/cutting_checks.py" />
+      <source>This move cuts with the spindle stopped, and no live tool is on.</source>
+      <translation type="unfinished" />
     </message>
     <message>
       <location filename="core/proving/cutting_checks.py" />
@@ -29270,6 +29270,11 @@
     </message>
     <message>
       <location filename="core/proving/edge_checks.py" />
+      <source>%1 cuts %2 off the spindle axis.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/edge_checks.py" />
       <source>%1 cuts at Z %2; the part ends at %3.</source>
       <translation>%1 corta en Z %2; la pieza termina en %3.</translation>
     </message>
@@ -29300,13 +29305,28 @@
     </message>
     <message>
       <location filename="core/proving/edge_checks.py" />
-      <source>%1 goes in at %2°, and the back of its insert clears %3°.</source>
-      <translation>%1 entra a %2°, y la parte trasera de su inserto libra %3°.</translation>
+      <source>%1 goes in at %2°, and the back of its insert clears</source>
+      <translation type="unfinished" />
     </message>
     <message>
       <location filename="core/proving/edge_checks.py" />
-      <source>%1, on the side where it does not stand.</source>
-      <translation>%1, en el lado donde no está.</translation>
+      <source>%1 is fed %2 into solid material.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/edge_checks.py" />
+      <source>%1 is fed to Z %2; the stock ends at %3.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/edge_checks.py" />
+      <source>%1, a %2-hand tool in front of the axis, cuts with %3.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/edge_checks.py" />
+      <source>%1, on the side where it is not mounted.</source>
+      <translation type="unfinished" />
     </message>
     <message>
       <location filename="core/proving/edge_checks.py" />
@@ -29345,8 +29365,18 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
+      <source>A boring tool enters solid material.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
       <source>A commanded speed over max_rpm under [clamping] of the machine file.</source>
       <translation>Una velocidad mandada por encima de max_rpm en [clamping] del archivo de máquina.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>A cut ends more than .1 in, and a drill more than .1 in and its diameter, beyond the stated stock.</source>
+      <translation type="unfinished" />
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29372,6 +29402,11 @@
       <location filename="core/proving/part_checks.py" />
       <source>A drill goes deeper than its flutes are long.</source>
       <translation>Una broca entra más que la longitud de sus canales.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>A drill, reamer or tap cuts beside the spindle axis.</source>
+      <translation type="unfinished" />
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29430,6 +29465,11 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
+      <source>A tap cuts more than its thread: it has no hole, or goes beyond the bottom of the hole.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
       <source>A tap is drawn out of its thread and not turned out.</source>
       <translation>Un macho se saca de su rosca sin girarlo.</translation>
     </message>
@@ -29447,6 +29487,16 @@
       <location filename="core/proving/part_checks.py" />
       <source>A thread does not fit its lead.</source>
       <translation>Una rosca no corresponde a su paso.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>A tool is fed beyond the far end of the stock.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>A tool that works in a bore is fed .04 in and more into material that has no bore yet.</source>
+      <translation type="unfinished" />
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29515,6 +29565,11 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
+      <source>Check Z, the length of the stock and how far it sticks out of the chuck.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
       <source>Check the stock, and X as a radius or a diameter.</source>
       <translation>Compruebe el material, y X como radio o como diámetro.</translation>
     </message>
@@ -29527,6 +29582,16 @@
       <location filename="core/proving/part_checks.py" />
       <source>Correct the number, or name it under [io.in].</source>
       <translation>Corrija el número o nómbrelo en [io.in].</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>Drill the bore first, or check the bore of the stock.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>Drill the hole for the tap, deep enough for its chamfer.</source>
+      <translation type="unfinished" />
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29572,6 +29637,16 @@
       <location filename="core/proving/part_checks.py" />
       <source>It leaves by a rapid, with the spindle stopped or not reversed, by another feed, or the spindle needs more than .5 in to stand. Not asked of a holder that reverses by itself, as its comment says.</source>
       <translation>Sale en rápido, con el husillo parado o sin invertir, con otro avance, o el husillo necesita más de .5 in para pararse. No se pide a un portamachos que invierte por sí mismo, según su comentario.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>It takes off material more than .01 in off the axis while the spindle turns.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>It takes off more than its pitch in r.</source>
+      <translation type="unfinished" />
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29625,8 +29700,8 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>M04 with a right-hand drill, reamer or tap, M03 with a left-hand one; or one edge is made to cut both ways.</source>
-      <translation>M04 con broca, escariador o macho a derechas, M03 con uno a izquierdas; o un mismo filo tiene que cortar en ambos sentidos.</translation>
+      <source>M04 with a right-hand drill, reamer or tap, M03 with a left-hand one; M04 with a turning or boring tool in front of the axis that is mounted upright; or one edge is made to cut both ways.</source>
+      <translation type="unfinished" />
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29650,6 +29725,11 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
+      <source>Move to X0 before drilling, and check the X offset of the tool.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
       <source>One stays more than .08 in from all metal for 5 s and .2 in, or several in a row for 20 s.</source>
       <translation>Uno queda a más de .08 in de todo metal durante 5 s y .2 in, o varios seguidos durante 20 s.</translation>
     </message>
@@ -29657,6 +29737,11 @@
       <location filename="core/proving/part_checks.py" />
       <source>Over .8 of the nose radius; .25 of the width of a groover; .1 of the diameter of a drill.</source>
       <translation>Más de .8 del radio de punta; .25 del ancho de una ranuradora; .1 del diámetro de una broca.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>Remove the offset of the tool that is not mounted.</source>
+      <translation type="unfinished" />
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29740,6 +29825,11 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
+      <source>The offsets of two described tools are less than .04 in apart.</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
       <source>The part is larger than its stock: a contour is cut in the air outside the bar.</source>
       <translation>La pieza es mayor que su material: se corta un contorno en el aire, fuera de la barra.</translation>
     </message>
@@ -29762,6 +29852,11 @@
       <location filename="core/proving/part_checks.py" />
       <source>The tool retracts through the part.</source>
       <translation>La herramienta se retira a través de la pieza.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>Two tools have the same offset.</source>
+      <translation type="unfinished" />
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29797,6 +29892,31 @@
       <location filename="core/proving/part_checks.py" />
       <source>Write F as the pitch: 1 divided by the threads per inch.</source>
       <translation>Escriba F como el paso: 1 dividido por los hilos por pulgada.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>earlier holes</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>kind of tool</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/part_findings.py" />
+      <source>%1 Assumed: %2.</source>
+      <translation>%1 Supuesto: %2.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_findings.py" />
+      <source>%1 and %2 have the same offset; neither is checked</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="core/proving/part_findings.py" />
+      <source>%1 as a neighbour of the other.</source>
+      <translation type="unfinished" />
     </message>
     <message>
       <location filename="core/proving/part_findings.py" />
@@ -29969,6 +30089,11 @@
       <translation>Este avance se aleja de la pieza, y ningún otro corta detrás de Z0.</translation>
     </message>
     <message>
+      <location filename="core/proving/program_tools.py" />
+      <source>its diameter as</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
       <location filename="core/proving/thread_checks.py" />
       <source>%1 cuts a pitch of %2; the lead is %3.</source>
       <translation>%1 corta un paso de %2; el avance de rosca es %3.</translation>
@@ -30002,6 +30127,11 @@
       <location filename="core/proving/thread_checks.py" />
       <source>%1 is torn out of its thread by a rapid.</source>
       <translation>%1 se arranca de su rosca en rápido.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/thread_checks.py" />
+      <source>%1 takes off %2 in r; its pitch is %3.</source>
+      <translation type="unfinished" />
     </message>
     <message>
       <location filename="core/proving/thread_checks.py" />
