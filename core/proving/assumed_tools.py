@@ -133,6 +133,7 @@ class Assumed:
     shape: ToolShape | None
     words: str
     named: bool = False
+    sized: bool = False  # its diameter is assumed
 
     def with_diameter(self, use: ToolUse, bore: Sequence[TipMove]) -> Assumed:
         """A drill without a diameter gets one: just under what is cut in the ``bore`` behind it."""
@@ -143,7 +144,7 @@ class Assumed:
         inside = [abs(r) for m in bore if not m.quick for z, r in m.points if z < -_SQUARE]
         diameter = max(2.0 * min(inside) - _ALLOWANCE, _SMALLEST) if inside else _USUAL
         words = f"{self.words}, its diameter as {_size(diameter, use)}"
-        return replace(self, shape=replace(shape, diameter=diameter), words=words)
+        return replace(self, shape=replace(shape, diameter=diameter), words=words, sized=True)
 
     def with_width(self, use: ToolUse, threads: Sequence[TipMove]) -> Assumed:
         """A grooving or parting tool without a width gets one: see ``groove_width``."""

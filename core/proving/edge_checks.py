@@ -144,8 +144,11 @@ class EdgeChecks:
         face = (self.stock.front if self.stock is not None else 0.0) - _BEHIND_FACE
         beyond = max((-r * cutter.across for z, r in move.points[1:] if z < face), default=0.0)
         if cutter.side is Side.OUTSIDE and beyond > _OVER_AXIS:
-            words = f"{edge_name(tool)} cuts {move.modal.length_text(beyond)} beyond the axis"
-            yield Found("over-axis", f"{words}, on the side where it is not mounted.")
+            deep = move.modal.length_text(beyond)
+            yield Found(
+                "over-axis",
+                f"{edge_name(tool)} cuts {deep} beyond the axis, on the side where it is not mounted.",
+            )
 
     def _past_part_off(self, move: TipMove, shape: ToolShape, cutter: Cutter, tool: int) -> Iterator[Found]:
         if self.parted_at is None or cutter.drills or shape.kind is ToolKind.PARTING:
@@ -237,8 +240,10 @@ def _wrong_side(
         behind = met.front - start[0] if forward < 0 else start[0] - met.back
         faces = behind <= _FACED and not _stands_behind(part, met, forward, abs(end[1]), cutter.side)
         if behind > 2.0 * shape.nose_radius + _BEHIND and met.depth > _BEHIND and not faces:
-            words = f"{edge_name(tool)} goes in at {steep:.0f}°, and the back of its insert clears"
-            yield Found("wrong-side", f"{words} {clears:.0f}°.")
+            words = (
+                f"{edge_name(tool)} goes in at {steep:.0f}°, and the back of its insert clears {clears:.0f}°."
+            )
+            yield Found("wrong-side", words)
             return
 
 

@@ -179,8 +179,11 @@ class PartFindings:
         """The program has ended."""
         self._tell_left()
         for one, other in self.neighbours.in_one_place if self.neighbours is not None else ():
-            words = f"{edge_name(one)} and {edge_name(other)} have the same offset; neither is checked"
-            self._tell("tools-in-one-place", 0, 0, f"{words} as a neighbour of the other.")
+            words = (
+                f"{edge_name(one)} and {edge_name(other)} have the same offset; "
+                "neither is checked as a neighbour of the other."
+            )
+            self._tell("tools-in-one-place", 0, 0, words)
         for line, n, tool in self._airs.never_milled:
             self._tell(
                 "unmade-cut", line, n, f"The live tool {edge_name(tool)} is fed, and never meets metal."

@@ -94,7 +94,7 @@ class ProgramTools:
         return [
             n
             for n, each in sorted(self.assumed.items())
-            if each.shape is not None and each.shape.kind in OPENS and "its diameter as" in each.words
+            if each.shape is not None and each.shape.kind in OPENS and each.sized
         ]
 
     def described(self, number: int) -> bool:

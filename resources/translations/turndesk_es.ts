@@ -29171,7 +29171,7 @@
     <message>
       <location filename="core/proving/cutting_checks.py" />
       <source>S sets a speed, but nothing starts the spindle before this cut.</source>
-      <translation type="unfinished" />
+      <translation>S fija una velocidad, pero nada arranca el husillo antes de este corte.</translation>
     </message>
     <message>
       <location filename="core/proving/cutting_checks.py" />
@@ -29226,7 +29226,7 @@
     <message>
       <location filename="core/proving/cutting_checks.py" />
       <source>This move cuts with the spindle stopped, and no live tool is on.</source>
-      <translation type="unfinished" />
+      <translation>Este movimiento corta con el husillo parado y ninguna herramienta motorizada está conectada.</translation>
     </message>
     <message>
       <location filename="core/proving/cutting_checks.py" />
@@ -29255,8 +29255,8 @@
     </message>
     <message>
       <location filename="core/proving/edge_checks.py" />
-      <source>%1 cuts %2 beyond the axis</source>
-      <translation>%1 corta %2 más allá del eje</translation>
+      <source>%1 cuts %2 beyond the axis, on the side where it is not mounted.</source>
+      <translation>%1 corta %2 más allá del eje, en el lado donde no está montada.</translation>
     </message>
     <message>
       <location filename="core/proving/edge_checks.py" />
@@ -29271,7 +29271,7 @@
     <message>
       <location filename="core/proving/edge_checks.py" />
       <source>%1 cuts %2 off the spindle axis.</source>
-      <translation type="unfinished" />
+      <translation>%1 corta a %2 del eje del husillo.</translation>
     </message>
     <message>
       <location filename="core/proving/edge_checks.py" />
@@ -29305,28 +29305,23 @@
     </message>
     <message>
       <location filename="core/proving/edge_checks.py" />
-      <source>%1 goes in at %2°, and the back of its insert clears</source>
-      <translation type="unfinished" />
+      <source>%1 goes in at %2°, and the back of its insert clears %3°.</source>
+      <translation>%1 entra a %2°, y el dorso de su plaquita libra %3°.</translation>
     </message>
     <message>
       <location filename="core/proving/edge_checks.py" />
       <source>%1 is fed %2 into solid material.</source>
-      <translation type="unfinished" />
+      <translation>%1 avanza %2 en material macizo.</translation>
     </message>
     <message>
       <location filename="core/proving/edge_checks.py" />
       <source>%1 is fed to Z %2; the stock ends at %3.</source>
-      <translation type="unfinished" />
+      <translation>%1 avanza hasta Z %2; el material termina en %3.</translation>
     </message>
     <message>
       <location filename="core/proving/edge_checks.py" />
       <source>%1, a %2-hand tool in front of the axis, cuts with %3.</source>
-      <translation type="unfinished" />
-    </message>
-    <message>
-      <location filename="core/proving/edge_checks.py" />
-      <source>%1, on the side where it is not mounted.</source>
-      <translation type="unfinished" />
+      <translation>%1, una herramienta de mano %2 delante del eje, corta con %3.</translation>
     </message>
     <message>
       <location filename="core/proving/edge_checks.py" />
@@ -29366,7 +29361,7 @@
     <message>
       <location filename="core/proving/part_checks.py" />
       <source>A boring tool enters solid material.</source>
-      <translation type="unfinished" />
+      <translation>Una herramienta de mandrinar entra en material macizo.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29376,7 +29371,7 @@
     <message>
       <location filename="core/proving/part_checks.py" />
       <source>A cut ends more than .1 in, and a drill more than .1 in and its diameter, beyond the stated stock.</source>
-      <translation type="unfinished" />
+      <translation>Un corte termina más de .1 in, y una broca más de .1 in y su diámetro, más allá del material indicado.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29406,7 +29401,7 @@
     <message>
       <location filename="core/proving/part_checks.py" />
       <source>A drill, reamer or tap cuts beside the spindle axis.</source>
-      <translation type="unfinished" />
+      <translation>Una broca, un escariador o un macho corta fuera del eje del husillo.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29466,7 +29461,7 @@
     <message>
       <location filename="core/proving/part_checks.py" />
       <source>A tap cuts more than its thread: it has no hole, or goes beyond the bottom of the hole.</source>
-      <translation type="unfinished" />
+      <translation>Un macho corta más que su rosca: no tiene agujero o pasa del fondo del agujero.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29491,12 +29486,12 @@
     <message>
       <location filename="core/proving/part_checks.py" />
       <source>A tool is fed beyond the far end of the stock.</source>
-      <translation type="unfinished" />
+      <translation>Una herramienta avanza más allá del extremo del material.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
       <source>A tool that works in a bore is fed .04 in and more into material that has no bore yet.</source>
-      <translation type="unfinished" />
+      <translation>Una herramienta de interiores avanza .04 in o más en material que aún no tiene agujero.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29566,7 +29561,7 @@
     <message>
       <location filename="core/proving/part_checks.py" />
       <source>Check Z, the length of the stock and how far it sticks out of the chuck.</source>
-      <translation type="unfinished" />
+      <translation>Compruebe Z, la longitud del material y cuánto sobresale del plato.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29586,12 +29581,12 @@
     <message>
       <location filename="core/proving/part_checks.py" />
       <source>Drill the bore first, or check the bore of the stock.</source>
-      <translation type="unfinished" />
+      <translation>Taladre antes el agujero o compruebe el agujero del material.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
       <source>Drill the hole for the tap, deep enough for its chamfer.</source>
-      <translation type="unfinished" />
+      <translation>Taladre el agujero para el macho, con profundidad suficiente para su chaflán.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29641,12 +29636,12 @@
     <message>
       <location filename="core/proving/part_checks.py" />
       <source>It takes off material more than .01 in off the axis while the spindle turns.</source>
-      <translation type="unfinished" />
+      <translation>Quita material a más de .01 in del eje mientras gira el husillo.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
       <source>It takes off more than its pitch in r.</source>
-      <translation type="unfinished" />
+      <translation>Quita más que su paso en r.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29701,7 +29696,7 @@
     <message>
       <location filename="core/proving/part_checks.py" />
       <source>M04 with a right-hand drill, reamer or tap, M03 with a left-hand one; M04 with a turning or boring tool in front of the axis that is mounted upright; or one edge is made to cut both ways.</source>
-      <translation type="unfinished" />
+      <translation>M04 con una broca, un escariador o un macho a derechas, M03 con uno a izquierdas; M04 con una herramienta de tornear o mandrinar delante del eje y montada derecha; o un filo que debe cortar en ambos sentidos.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29726,7 +29721,7 @@
     <message>
       <location filename="core/proving/part_checks.py" />
       <source>Move to X0 before drilling, and check the X offset of the tool.</source>
-      <translation type="unfinished" />
+      <translation>Vaya a X0 antes de taladrar y compruebe el corrector X de la herramienta.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29741,7 +29736,7 @@
     <message>
       <location filename="core/proving/part_checks.py" />
       <source>Remove the offset of the tool that is not mounted.</source>
-      <translation type="unfinished" />
+      <translation>Borre el corrector de la herramienta que no está montada.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29826,7 +29821,7 @@
     <message>
       <location filename="core/proving/part_checks.py" />
       <source>The offsets of two described tools are less than .04 in apart.</source>
-      <translation type="unfinished" />
+      <translation>Los correctores de dos herramientas descritas distan menos de .04 in.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29856,7 +29851,7 @@
     <message>
       <location filename="core/proving/part_checks.py" />
       <source>Two tools have the same offset.</source>
-      <translation type="unfinished" />
+      <translation>Dos herramientas tienen el mismo corrector.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29896,12 +29891,12 @@
     <message>
       <location filename="core/proving/part_checks.py" />
       <source>earlier holes</source>
-      <translation type="unfinished" />
+      <translation>agujeros anteriores</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
       <source>kind of tool</source>
-      <translation type="unfinished" />
+      <translation>tipo de herramienta</translation>
     </message>
     <message>
       <location filename="core/proving/part_findings.py" />
@@ -29910,13 +29905,8 @@
     </message>
     <message>
       <location filename="core/proving/part_findings.py" />
-      <source>%1 and %2 have the same offset; neither is checked</source>
-      <translation type="unfinished" />
-    </message>
-    <message>
-      <location filename="core/proving/part_findings.py" />
-      <source>%1 as a neighbour of the other.</source>
-      <translation type="unfinished" />
+      <source>%1 and %2 have the same offset; neither is checked as a neighbour of the other.</source>
+      <translation>%1 y %2 tienen el mismo corrector; ninguna se comprueba como vecina de la otra.</translation>
     </message>
     <message>
       <location filename="core/proving/part_findings.py" />
@@ -30089,11 +30079,6 @@
       <translation>Este avance se aleja de la pieza, y ningún otro corta detrás de Z0.</translation>
     </message>
     <message>
-      <location filename="core/proving/program_tools.py" />
-      <source>its diameter as</source>
-      <translation type="unfinished" />
-    </message>
-    <message>
       <location filename="core/proving/thread_checks.py" />
       <source>%1 cuts a pitch of %2; the lead is %3.</source>
       <translation>%1 corta un paso de %2; el avance de rosca es %3.</translation>
@@ -30131,7 +30116,7 @@
     <message>
       <location filename="core/proving/thread_checks.py" />
       <source>%1 takes off %2 in r; its pitch is %3.</source>
-      <translation type="unfinished" />
+      <translation>%1 quita %2 en r; su paso es %3.</translation>
     </message>
     <message>
       <location filename="core/proving/thread_checks.py" />
