@@ -450,11 +450,6 @@
     </message>
     <message>
       <location filename="" />
-      <source>A dwell of %1 s is out of range: 0.1 s to an hour.</source>
-      <translation>Una espera de %1 s está fuera de rango: de 0.1 s a una hora.</translation>
-    </message>
-    <message>
-      <location filename="" />
       <source>A groove with square flanks from the point SPD (a diameter), SPL: WIDG wide, DIAG deep; VARI 5 towards minus Z, 1 towards plus, 7 and 3 inside. Its width is the way from D to _DN, or to D+1.</source>
       <translation>Ranura de flancos rectos desde el punto SPD (diámetro), SPL: ancho WIDG, profundidad DIAG; VARI 5 hacia Z negativo, 1 hacia positivo, 7 y 3 por dentro. Su ancho es la distancia de D a _DN, o a D+1.</translation>
     </message>
@@ -1672,6 +1667,11 @@
       <location filename="" />
       <source>G04 does not say how long.</source>
       <translation>G04 no dice cuánto.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>G04F%1: the shortest dwell is 0.1 s.</source>
+      <translation>G04F%1: la pausa más corta es de 0,1 s.</translation>
     </message>
     <message>
       <location filename="" />
@@ -4715,8 +4715,8 @@
     </message>
     <message>
       <location filename="" />
-      <source>seconds: 0.1 … 3600</source>
-      <translation>segundos: 0.1 … 3600</translation>
+      <source>seconds</source>
+      <translation>segundos</translation>
     </message>
     <message>
       <location filename="" />
@@ -6037,11 +6037,6 @@
       <location filename="app/desk/program_folder.py" />
       <source>{name} IS NOT ON THE DISK ANY MORE: WHAT IS SHOWN IS WHAT RUNS</source>
       <translation>{name} YA NO ESTÁ EN EL DISCO: LO QUE SE MUESTRA ES LO QUE CORRE</translation>
-    </message>
-    <message>
-      <location filename="app/desk/program_loading.py" />
-      <source>%1 Assumed: %2.</source>
-      <translation>%1 Supuesto: %2.</translation>
     </message>
     <message>
       <location filename="app/desk/program_loading.py" />
@@ -20605,8 +20600,8 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/arc_moves.py" />
-      <source>R is %1, and the ends are so far apart that it takes %2 at least.</source>
-      <translation>R es %1, y los extremos están tan separados que necesita al menos %2.</translation>
+      <source>R is %1; an arc between these points needs a radius of %2 or more.</source>
+      <translation>R es %1; un arco entre estos puntos necesita un radio de %2 o más.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/arc_moves.py" />
@@ -20622,6 +20617,11 @@
       <location filename="core/interpreter/omniturn/arc_moves.py" />
       <source>The centre of the arc is its start point.</source>
       <translation>El centro del arco es su punto de inicio.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/arc_moves.py" />
+      <source>X is a radius here (G73). If the X words are diameters, write G72 before them.</source>
+      <translation>X es un radio aquí (G73). Si las palabras X son diámetros, escriba G72 antes de ellas.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/c_axis.py" />
@@ -21062,6 +21062,11 @@
       <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
       <source>This line stands after the end of the program and is in no subroutine.</source>
       <translation>Esta línea está después del final del programa y en ninguna subrutina.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
+      <source>Write M30 at the end of the program, or delete the line.</source>
+      <translation>Escriba M30 al final del programa o borre la línea.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
@@ -21840,6 +21845,16 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/threading_cycles.py" />
+      <source>%1: the first pass would be deeper than the lead.</source>
+      <translation>%1: la primera pasada sería más profunda que el paso.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
+      <source>%1: the least lead is %2.</source>
+      <translation>%1: el paso mínimo es %2.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
       <source>A larger I takes fewer; look at I and at the X where the tool starts.</source>
       <translation>Una I mayor hace menos; vea I y la X en que empieza la herramienta.</translation>
     </message>
@@ -21847,6 +21862,11 @@
       <location filename="core/interpreter/omniturn/threading_cycles.py" />
       <source>At %1 rpm this lead is %2; %3 is the most.</source>
       <translation>A %1 rpm este paso es %2; lo más es %3.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
+      <source>Correct I, the depth of the first pass, or K.</source>
+      <translation>Corrija I, la profundidad de la primera pasada, o K.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/threading_cycles.py" />
@@ -21930,6 +21950,11 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/tools_and_offsets.py" />
+      <source>G92 presets the position here; no thread is cut. A thread is G33.</source>
+      <translation>G92 preselecciona la posición aquí; no se corta ninguna rosca. Una rosca es G33.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/tools_and_offsets.py" />
       <source>G96 is active at a tool change: the spindle drive has to follow every jump of X.</source>
       <translation>G96 está activo en un cambio de herramienta: el husillo tiene que seguir cada salto de X.</translation>
     </message>
@@ -21952,6 +21977,11 @@
       <location filename="core/interpreter/omniturn/tools_and_offsets.py" />
       <source>Set their offsets.</source>
       <translation>Ponga sus correctores.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/tools_and_offsets.py" />
+      <source>Write G33XnZnInKn.</source>
+      <translation>Escriba G33XnZnInKn.</translation>
     </message>
     <message>
       <location filename="core/interpreter/restart/loop_passes.py" />
@@ -26919,6 +26949,156 @@
       <translation>Escríbalas detrás de la fila: 6/"X,Y".</translation>
     </message>
     <message>
+      <location filename="core/language/omniturn/foreign_program.py" />
+      <source>Rewrite it with the codes of this control; each finding below names the code to use.</source>
+      <translation>Reescríbalo con los códigos de este control; cada aviso siguiente indica el código que debe usar.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/foreign_program.py" />
+      <source>This program was written for a %1 control. TurnDesk runs OmniTurn programs.</source>
+      <translation>Este programa se escribió para un control %1. TurnDesk ejecuta programas OmniTurn.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/intended_code.py" />
+      <source>Delete the line: G75 ends with a pass along the contour.</source>
+      <translation>Borre la línea: G75 termina con una pasada a lo largo del contorno.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/intended_code.py" />
+      <source>Fractions are not read.</source>
+      <translation>Las fracciones no se leen.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/intended_code.py" />
+      <source>G04 takes seconds as F.</source>
+      <translation>G04 toma los segundos como F.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/intended_code.py" />
+      <source>G7 and G8 of LinuxCNC are G72 (diameters) and G73 (radii) here.</source>
+      <translation>G7 y G8 de LinuxCNC son aquí G72 (diámetros) y G73 (radios).</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/intended_code.py" />
+      <source>G70 selects inch here; finishing a contour is the last pass of G75.</source>
+      <translation>G70 selecciona pulgadas aquí; el acabado de un contorno es la última pasada de G75.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/intended_code.py" />
+      <source>G71 selects metric here; roughing to a contour is G75.</source>
+      <translation>G71 selecciona milímetros aquí; el desbaste de un contorno es G75.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/intended_code.py" />
+      <source>G72 selects diameters here; roughing to a contour is G75.</source>
+      <translation>G72 selecciona diámetros aquí; el desbaste de un contorno es G75.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/intended_code.py" />
+      <source>G73 selects radii here; roughing to a contour is G75.</source>
+      <translation>G73 selecciona radios aquí; el desbaste de un contorno es G75.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/intended_code.py" />
+      <source>G74 roughs a box here; peck drilling is G83.</source>
+      <translation>G74 desbasta un rectángulo aquí; el taladrado con picoteo es G83.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/intended_code.py" />
+      <source>G75 roughs a contour here; it does not cut grooves in pecks.</source>
+      <translation>G75 desbasta un contorno aquí; no ranura con picoteo.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/intended_code.py" />
+      <source>G76 is the minimum rpm for constant surface speed here; threads are G33.</source>
+      <translation>G76 es aquí la velocidad mínima (rpm) con velocidad de corte constante; las roscas son G33.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/intended_code.py" />
+      <source>G92 presets the position here; the maximum rpm for constant surface speed is G77.</source>
+      <translation>G92 preselecciona la posición aquí; la velocidad máxima (rpm) con velocidad de corte constante es G77.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/intended_code.py" />
+      <source>M98 has no repeat count.</source>
+      <translation>M98 no tiene número de repeticiones.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/intended_code.py" />
+      <source>O words of LinuxCNC are not read; a subroutine is }n … M99 here, and its call M98Pn.</source>
+      <translation>Las palabras O de LinuxCNC no se leen; aquí una subrutina es }n … M99, y su llamada M98Pn.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/intended_code.py" />
+      <source>Put LS%1 before the call and LF after it.</source>
+      <translation>Ponga LS%1 antes de la llamada y LF después.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/intended_code.py" />
+      <source>The peck depth is K here.</source>
+      <translation>La profundidad de picoteo es K aquí.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/intended_code.py" />
+      <source>Variables are not read.</source>
+      <translation>Las variables no se leen.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/intended_code.py" />
+      <source>Write %1%2.</source>
+      <translation>Escriba %1%2.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/intended_code.py" />
+      <source>Write G04F%1.</source>
+      <translation>Escriba G04F%1.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/intended_code.py" />
+      <source>Write G75InUnFn, then the contour and RF.</source>
+      <translation>Escriba G75InUnFn, después el contorno y RF.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/intended_code.py" />
+      <source>Write G77%1.</source>
+      <translation>Escriba G77%1.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/intended_code.py" />
+      <source>Write G83ZnKnFn.</source>
+      <translation>Escriba G83ZnKnFn.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/intended_code.py" />
+      <source>Write K%1 in G83.</source>
+      <translation>Escriba K%1 en G83.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/intended_code.py" />
+      <source>Write the moves of the groove, or G74.</source>
+      <translation>Escriba los movimientos de la ranura, o G74.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/intended_code.py" />
+      <source>Write the number where it is used.</source>
+      <translation>Escriba el número donde se usa.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/intended_code.py" />
+      <source>Write }n, M99 and M98Pn.</source>
+      <translation>Escriba }n, M99 y M98Pn.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/omniturn_lexer.py" />
+      <source>%1: letter l in a number.</source>
+      <translation>%1: letra l en un número.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/other_controls.py" />
+      <source>% marks the ends of a transfer.</source>
+      <translation>% marca los extremos de una transferencia.</translation>
+    </message>
+    <message>
       <location filename="core/language/omniturn/other_controls.py" />
       <source>%1 numbers a program elsewhere; here the file has a name.</source>
       <translation>%1 numera un programa en otros controles; aquí el archivo tiene nombre.</translation>
@@ -26937,11 +27117,6 @@
       <location filename="core/language/omniturn/other_controls.py" />
       <source>A feed is F here, and the lead of a thread K.</source>
       <translation>Aquí un avance es F, y el paso de una rosca K.</translation>
-    </message>
-    <message>
-      <location filename="core/language/omniturn/other_controls.py" />
-      <source>A line of % stands round a program that is transferred, not in it.</source>
-      <translation>Una línea de % va alrededor de un programa que se transfiere, no dentro de él.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/other_controls.py" />
@@ -26972,6 +27147,16 @@
       <location filename="core/language/omniturn/other_controls.py" />
       <source>Cycles act on their own line here, and nothing has to end them.</source>
       <translation>Aquí los ciclos actúan en su propia línea, y nada tiene que terminarlos.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/other_controls.py" />
+      <source>Delete it.</source>
+      <translation>Bórrelo.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/other_controls.py" />
+      <source>Delete the line.</source>
+      <translation>Borre la línea.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/other_controls.py" />
@@ -27135,11 +27320,6 @@
     </message>
     <message>
       <location filename="core/language/omniturn/other_controls.py" />
-      <source>Write G33XnZnInKn.</source>
-      <translation>Escriba G33XnZnInKn.</translation>
-    </message>
-    <message>
-      <location filename="core/language/omniturn/other_controls.py" />
       <source>Write G77Sn or G92.</source>
       <translation>Escriba G77Sn o G92.</translation>
     </message>
@@ -27230,8 +27410,8 @@
     </message>
     <message>
       <location filename="core/language/omniturn/other_controls.py" />
-      <source>what a transfer puts round a program, and no line of it</source>
-      <translation>lo que una transferencia pone alrededor de un programa, y no es línea suya</translation>
+      <source>the mark at the ends of a transfer</source>
+      <translation>la marca de los extremos de una transferencia</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/plane_switching_lines.py" />
@@ -27375,13 +27555,23 @@
     </message>
     <message>
       <location filename="core/language/omniturn/word_faults.py" />
+      <source>%1: a feed rate cannot be negative.</source>
+      <translation>%1: un avance no puede ser negativo.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/word_faults.py" />
+      <source>%1: letter O in a number.</source>
+      <translation>%1: letra O en un número.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/word_faults.py" />
       <source>%1: offsets go from 1 to 32.</source>
       <translation>%1: los correctores van de 1 a 32.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/word_faults.py" />
-      <source>%1: tools go from 1 to 32.</source>
-      <translation>%1: las herramientas van de 1 a 32.</translation>
+      <source>%1: tools are T1 to T32.</source>
+      <translation>%1: las herramientas van de T1 a T32.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/word_faults.py" />
@@ -27410,6 +27600,11 @@
     </message>
     <message>
       <location filename="core/language/omniturn/word_faults.py" />
+      <source>A comment is inside another comment.</source>
+      <translation>Un comentario está dentro de otro comentario.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/word_faults.py" />
       <source>A number stands without a letter.</source>
       <translation>Hay un número sin letra.</translation>
     </message>
@@ -27432,6 +27627,11 @@
       <location filename="core/language/omniturn/word_faults.py" />
       <source>Correct the count.</source>
       <translation>Corrija la cuenta.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/word_faults.py" />
+      <source>Correct the tool number; T0 cancels the tool.</source>
+      <translation>Corrija el número de herramienta; T0 cancela la herramienta.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/word_faults.py" />
@@ -27460,6 +27660,16 @@
     </message>
     <message>
       <location filename="core/language/omniturn/word_faults.py" />
+      <source>Remove the inner parentheses.</source>
+      <translation>Quite los paréntesis interiores.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/word_faults.py" />
+      <source>Remove the sign.</source>
+      <translation>Quite el signo.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/word_faults.py" />
       <source>Round it.</source>
       <translation>Redondéelo.</translation>
     </message>
@@ -27467,11 +27677,6 @@
       <location filename="core/language/omniturn/word_faults.py" />
       <source>Split it into two words.</source>
       <translation>Divídalo en dos palabras.</translation>
-    </message>
-    <message>
-      <location filename="core/language/omniturn/word_faults.py" />
-      <source>T0 cancels the tool.</source>
-      <translation>T0 cancela la herramienta.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/word_faults.py" />
@@ -27485,18 +27690,8 @@
     </message>
     <message>
       <location filename="core/language/omniturn/word_faults.py" />
-      <source>The letter O stands where a zero belongs.</source>
-      <translation>Hay una letra O donde va un cero.</translation>
-    </message>
-    <message>
-      <location filename="core/language/omniturn/word_faults.py" />
       <source>The number has two decimal points.</source>
       <translation>El número tiene dos puntos decimales.</translation>
-    </message>
-    <message>
-      <location filename="core/language/omniturn/word_faults.py" />
-      <source>Write %1%2.</source>
-      <translation>Escriba %1%2.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/word_faults.py" />
@@ -28975,6 +29170,11 @@
     </message>
     <message>
       <location filename="core/proving/cutting_checks.py" />
+      <source>S sets a speed, but nothing starts the spindle before this cut.</source>
+      <translation>S fija una velocidad, pero nada arranca el husillo antes de este corte.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/cutting_checks.py" />
       <source>Start it with M03 or M04 before it.</source>
       <translation>Arránquelo antes con M03 o M04.</translation>
     </message>
@@ -29010,11 +29210,6 @@
     </message>
     <message>
       <location filename="core/proving/cutting_checks.py" />
-      <source>This move cuts after the program has stopped the spindle, and no live tool is on.</source>
-      <translation>Este movimiento corta después de que el programa paró el husillo, y no hay herramienta motorizada encendida.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/cutting_checks.py" />
       <source>This move cuts with no tool: its numbers count from the machine's home.</source>
       <translation>Este movimiento corta sin herramienta: sus números cuentan desde la referencia de la máquina.</translation>
     </message>
@@ -29027,6 +29222,11 @@
       <location filename="core/proving/cutting_checks.py" />
       <source>This move cuts with the spindle held as C, and no live tool is on.</source>
       <translation>Este movimiento corta con el husillo sostenido como C, y no hay herramienta motorizada encendida.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/cutting_checks.py" />
+      <source>This move cuts with the spindle stopped, and no live tool is on.</source>
+      <translation>Este movimiento corta con el husillo parado y ninguna herramienta motorizada está conectada.</translation>
     </message>
     <message>
       <location filename="core/proving/cutting_checks.py" />
@@ -29055,8 +29255,8 @@
     </message>
     <message>
       <location filename="core/proving/edge_checks.py" />
-      <source>%1 cuts %2 beyond the axis</source>
-      <translation>%1 corta %2 más allá del eje</translation>
+      <source>%1 cuts %2 beyond the axis, on the side where it is not mounted.</source>
+      <translation>%1 corta %2 más allá del eje, en el lado donde no está montada.</translation>
     </message>
     <message>
       <location filename="core/proving/edge_checks.py" />
@@ -29067,6 +29267,11 @@
       <location filename="core/proving/edge_checks.py" />
       <source>%1 cuts %2 deep; its edge reaches %3.</source>
       <translation>%1 corta %2 de profundidad; su filo llega a %3.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/edge_checks.py" />
+      <source>%1 cuts %2 off the spindle axis.</source>
+      <translation>%1 corta a %2 del eje del husillo.</translation>
     </message>
     <message>
       <location filename="core/proving/edge_checks.py" />
@@ -29101,12 +29306,22 @@
     <message>
       <location filename="core/proving/edge_checks.py" />
       <source>%1 goes in at %2°, and the back of its insert clears %3°.</source>
-      <translation>%1 entra a %2°, y la parte trasera de su inserto libra %3°.</translation>
+      <translation>%1 entra a %2°, y el dorso de su plaquita libra %3°.</translation>
     </message>
     <message>
       <location filename="core/proving/edge_checks.py" />
-      <source>%1, on the side where it does not stand.</source>
-      <translation>%1, en el lado donde no está.</translation>
+      <source>%1 is fed %2 into solid material.</source>
+      <translation>%1 avanza %2 en material macizo.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/edge_checks.py" />
+      <source>%1 is fed to Z %2; the stock ends at %3.</source>
+      <translation>%1 avanza hasta Z %2; el material termina en %3.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/edge_checks.py" />
+      <source>%1, a %2-hand tool in front of the axis, cuts with %3.</source>
+      <translation>%1, una herramienta de mano %2 delante del eje, corta con %3.</translation>
     </message>
     <message>
       <location filename="core/proving/edge_checks.py" />
@@ -29145,8 +29360,18 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
+      <source>A boring tool enters solid material.</source>
+      <translation>Una herramienta de mandrinar entra en material macizo.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
       <source>A commanded speed over max_rpm under [clamping] of the machine file.</source>
       <translation>Una velocidad mandada por encima de max_rpm en [clamping] del archivo de máquina.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>A cut ends more than .1 in, and a drill more than .1 in and its diameter, beyond the stated stock.</source>
+      <translation>Un corte termina más de .1 in, y una broca más de .1 in y su diámetro, más allá del material indicado.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29172,6 +29397,11 @@
       <location filename="core/proving/part_checks.py" />
       <source>A drill goes deeper than its flutes are long.</source>
       <translation>Una broca entra más que la longitud de sus canales.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>A drill, reamer or tap cuts beside the spindle axis.</source>
+      <translation>Una broca, un escariador o un macho corta fuera del eje del husillo.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29230,6 +29460,11 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
+      <source>A tap cuts more than its thread: it has no hole, or goes beyond the bottom of the hole.</source>
+      <translation>Un macho corta más que su rosca: no tiene agujero o pasa del fondo del agujero.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
       <source>A tap is drawn out of its thread and not turned out.</source>
       <translation>Un macho se saca de su rosca sin girarlo.</translation>
     </message>
@@ -29247,6 +29482,16 @@
       <location filename="core/proving/part_checks.py" />
       <source>A thread does not fit its lead.</source>
       <translation>Una rosca no corresponde a su paso.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>A tool is fed beyond the far end of the stock.</source>
+      <translation>Una herramienta avanza más allá del extremo del material.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>A tool that works in a bore is fed .04 in and more into material that has no bore yet.</source>
+      <translation>Una herramienta de interiores avanza .04 in o más en material que aún no tiene agujero.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29315,6 +29560,11 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
+      <source>Check Z, the length of the stock and how far it sticks out of the chuck.</source>
+      <translation>Compruebe Z, la longitud del material y cuánto sobresale del plato.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
       <source>Check the stock, and X as a radius or a diameter.</source>
       <translation>Compruebe el material, y X como radio o como diámetro.</translation>
     </message>
@@ -29327,6 +29577,16 @@
       <location filename="core/proving/part_checks.py" />
       <source>Correct the number, or name it under [io.in].</source>
       <translation>Corrija el número o nómbrelo en [io.in].</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>Drill the bore first, or check the bore of the stock.</source>
+      <translation>Taladre antes el agujero o compruebe el agujero del material.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>Drill the hole for the tap, deep enough for its chamfer.</source>
+      <translation>Taladre el agujero para el macho, con profundidad suficiente para su chaflán.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29372,6 +29632,16 @@
       <location filename="core/proving/part_checks.py" />
       <source>It leaves by a rapid, with the spindle stopped or not reversed, by another feed, or the spindle needs more than .5 in to stand. Not asked of a holder that reverses by itself, as its comment says.</source>
       <translation>Sale en rápido, con el husillo parado o sin invertir, con otro avance, o el husillo necesita más de .5 in para pararse. No se pide a un portamachos que invierte por sí mismo, según su comentario.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>It takes off material more than .01 in off the axis while the spindle turns.</source>
+      <translation>Quita material a más de .01 in del eje mientras gira el husillo.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>It takes off more than its pitch in r.</source>
+      <translation>Quita más que su paso en r.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29425,8 +29695,8 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>M04 with a right-hand drill, reamer or tap, M03 with a left-hand one; or one edge is made to cut both ways.</source>
-      <translation>M04 con broca, escariador o macho a derechas, M03 con uno a izquierdas; o un mismo filo tiene que cortar en ambos sentidos.</translation>
+      <source>M04 with a right-hand drill, reamer or tap, M03 with a left-hand one; M04 with a turning or boring tool in front of the axis that is mounted upright; or one edge is made to cut both ways.</source>
+      <translation>M04 con una broca, un escariador o un macho a derechas, M03 con uno a izquierdas; M04 con una herramienta de tornear o mandrinar delante del eje y montada derecha; o un filo que debe cortar en ambos sentidos.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29450,6 +29720,11 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
+      <source>Move to X0 before drilling, and check the X offset of the tool.</source>
+      <translation>Vaya a X0 antes de taladrar y compruebe el corrector X de la herramienta.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
       <source>One stays more than .08 in from all metal for 5 s and .2 in, or several in a row for 20 s.</source>
       <translation>Uno queda a más de .08 in de todo metal durante 5 s y .2 in, o varios seguidos durante 20 s.</translation>
     </message>
@@ -29457,6 +29732,11 @@
       <location filename="core/proving/part_checks.py" />
       <source>Over .8 of the nose radius; .25 of the width of a groover; .1 of the diameter of a drill.</source>
       <translation>Más de .8 del radio de punta; .25 del ancho de una ranuradora; .1 del diámetro de una broca.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>Remove the offset of the tool that is not mounted.</source>
+      <translation>Borre el corrector de la herramienta que no está montada.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29540,6 +29820,11 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
+      <source>The offsets of two described tools are less than .04 in apart.</source>
+      <translation>Los correctores de dos herramientas descritas distan menos de .04 in.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
       <source>The part is larger than its stock: a contour is cut in the air outside the bar.</source>
       <translation>La pieza es mayor que su material: se corta un contorno en el aire, fuera de la barra.</translation>
     </message>
@@ -29562,6 +29847,11 @@
       <location filename="core/proving/part_checks.py" />
       <source>The tool retracts through the part.</source>
       <translation>La herramienta se retira a través de la pieza.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>Two tools have the same offset.</source>
+      <translation>Dos herramientas tienen el mismo corrector.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29597,6 +29887,26 @@
       <location filename="core/proving/part_checks.py" />
       <source>Write F as the pitch: 1 divided by the threads per inch.</source>
       <translation>Escriba F como el paso: 1 dividido por los hilos por pulgada.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>earlier holes</source>
+      <translation>agujeros anteriores</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>kind of tool</source>
+      <translation>tipo de herramienta</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_findings.py" />
+      <source>%1 Assumed: %2.</source>
+      <translation>%1 Supuesto: %2.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_findings.py" />
+      <source>%1 and %2 have the same offset; neither is checked as a neighbour of the other.</source>
+      <translation>%1 y %2 tienen el mismo corrector; ninguna se comprueba como vecina de la otra.</translation>
     </message>
     <message>
       <location filename="core/proving/part_findings.py" />
@@ -29802,6 +30112,11 @@
       <location filename="core/proving/thread_checks.py" />
       <source>%1 is torn out of its thread by a rapid.</source>
       <translation>%1 se arranca de su rosca en rápido.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/thread_checks.py" />
+      <source>%1 takes off %2 in r; its pitch is %3.</source>
+      <translation>%1 quita %2 en r; su paso es %3.</translation>
     </message>
     <message>
       <location filename="core/proving/thread_checks.py" />

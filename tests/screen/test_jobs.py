@@ -270,7 +270,7 @@ def test_a_job_whose_program_is_not_on_the_desk_is_proved_and_loaded_like_any_ot
     opened(day)
     day.sees(lambda: model(day).sheet(day.shot).rows[0].cells[4] == wording("screen.tool-complete"))
     loaded(day, "peg.nc")
-    assert day.desk.counter.words == "0/3"
+    day.sees(lambda: day.desk.counter.words == "0/3")
 
 
 def test_an_empty_queue_says_how_a_job_is_added(day: Day) -> None:
