@@ -129,9 +129,7 @@ def test_an_answer_to_m3_that_is_lost_is_missed_behind_the_longest_wait() -> Non
         ("N2G1X1", {ON: "4.0", TOLERANCE: "5.0"}, 0.0),
     ],
 )
-def test_the_longest_wait_follows_the_settings(
-    line: str, settings: dict[int, str], seconds: float
-) -> None:
+def test_the_longest_wait_follows_the_settings(line: str, settings: dict[int, str], seconds: float) -> None:
     assert longest_wait(line, settings) == seconds
 
 
