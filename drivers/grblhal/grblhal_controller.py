@@ -332,7 +332,7 @@ class Controller:
         return self.figure(110, letter) / 60.0
 
     def wait_of(self, line: str) -> float:
-        """Return the seconds that the controller may wait for spindle or coolant before it acknowledges a line."""
+        """Return the seconds that the controller may wait for spindle or coolant in a line."""
         return longest_wait(line, self.settings)
 
     @property

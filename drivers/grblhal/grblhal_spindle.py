@@ -213,8 +213,8 @@ class GrblSpindle:
             self._blocks.jog_stop()  # a line would be refused; M5 follows when the slide rests
 
     def _ends_wait(self) -> bool:
-        """Whether M3 or M4 is unanswered. In the firmware's wait for the speed M5 is not read and the toggle of
-        a hold has no effect: what stops the spindle is the end of everything, a reset.
+        """Return whether M3 or M4 is unanswered. In the firmware's wait for the speed M5 is not read and the
+        toggle of a hold has no effect: what stops the spindle is the end of everything, a reset.
         """
         word = self._word
         if word is None or word.done:

@@ -1,9 +1,9 @@
 """Time that the firmware may take to acknowledge a line, by its own settings.
 
-``spindle_control.c`` and ``coolant_control.c`` of grblHAL: M3, M4 and M5 wait for the measured speed where the
-at-speed tolerance ($340) is set, at most for the delay of $394 (on) or $539 (off), or a minute where that is 0;
-then comes ALARM:14. Without a tolerance they wait for the delay. M7 and M8 wait for $673. Meanwhile the state is
-Idle, status reports are answered, and no later line is read.
+``spindle_control.c`` and ``coolant_control.c`` of grblHAL: M3, M4 and M5 wait for the measured speed where
+the at-speed tolerance ($340) is set, at most for the delay of $394 (on) or $539 (off), or a minute where that
+is 0; then comes ALARM:14. Without a tolerance they wait for the delay. M7 and M8 wait for $673. Meanwhile the
+state is Idle, status reports are answered, and no later line is read.
 """
 
 from __future__ import annotations

@@ -37,8 +37,9 @@ class Obedience:
             self._since = now
 
     def judge(self, now: float, look: Look, took: float = 0.0) -> str:
-        """Return why it has not obeyed for a second and ``took``, the seconds of one exchange; empty while all is
-        well or may become so.
+        """Return why it has not obeyed for a second and ``took``, the seconds of one exchange.
+
+        Empty while all is well or may become so.
         """
         if self._unseen:  # it may have been getting faster when the command came
             self._lowest, self._unseen = max(self._lowest, look.output), False

@@ -1,7 +1,7 @@
 """The waits of the simulated firmware inside M3, M4, M5, M7 and M8.
 
-As ``spindle_set_state_wait`` and ``coolant_set_state`` of grblHAL do: no line is acknowledged or read in a wait,
-reports are answered, and a feed hold stops its clock.
+As ``spindle_set_state_wait`` and ``coolant_set_state`` of grblHAL do: no line is acknowledged or read in a
+wait, reports are answered, and a feed hold stops its clock.
 """
 
 from __future__ import annotations

@@ -15,7 +15,6 @@ from core.interpreter.job_setup import Setup
 from core.language.source import Source
 from drivers.clocks import StepClock
 
-
 ESTOP = make_alarm("estop", "", 0, 0.0)
 
 
