@@ -86,9 +86,10 @@ def test_one_that_obeys_at_last_is_forgiven_what_was() -> None:
 
 
 def test_a_stop_while_it_gets_faster_is_compared_with_the_next_look() -> None:
-    """On a slow line the look before the stop is old: it was at 10 Hz there, and at 30 Hz when the stop came."""
+    """On a slow line the look before the stop is old: 10 Hz there, 30 Hz when the stop came."""
     obedience = Obedience()
     obedience.command(-1.0, 50.0, STOOD)
+    assert obedience.judge(-0.5, look(5.0, 50.0)) == ""
     obedience.command(0.0, 0.0, look(10.0, 50.0))
     for t, output in ((0.95, 30.0), (1.70, 25.0), (2.45, 15.0)):
         assert obedience.judge(t, look(output, run=False)) == "", t
