@@ -117,14 +117,14 @@ def build_desk(machine_file: str | None = None, offsets: Callable[[], Offsets] =
 
     desk.shut = shut
     executor.stirs = lambda: desk.stirs()  # noqa: PLW0108  the window gives it later
-    desk.differs = lambda: file.differs
+    desk.differs, desk.saved_here = (lambda: file.differs), file.hurry
     desk.not_kept, desk.waiting = (lambda: journal.trouble or log.trouble), (lambda: journal.held)
     gc.freeze()  # modules and the like: collections need not look at them again
     gc.set_threshold(*_OFTEN)
     thread.start()
     recorder.start()
-    watchdog.start()
     file.start()
+    watchdog.start()
     return desk
 
 

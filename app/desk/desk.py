@@ -53,6 +53,7 @@ if TYPE_CHECKING:
 
 SWITCHES = frozenset({"single_block", "optional_stop", "cycle_repeat", "no_count"})
 SILENT = "CONTROL SILENT"
+LAST_PROGRAM = "last_program"  # setting: the path of the program that was loaded last
 BY_SCREEN = "key or finger at the screen"  # who holds, for the log
 
 
@@ -106,6 +107,7 @@ class Desk:
     shut: Callable[[], None] = field(default=lambda: None)  # what drives the machine
     waiting: Callable[[], str] = str  # what of it waits in memory, in words
     differs: Callable[[], str] = str  # how the file on the disk is not the program on the desk
+    saved_here: Callable[[], None] = lambda: None  # called when the editor has written a program file
     not_kept: Callable[[], str] = str  # why events, parts and versions are not being kept
     clock: Callable[[], float] = time.monotonic
     time_of_day: Callable[[], str] = field(default=partial(time.strftime, "%H:%M:%S"))
@@ -301,7 +303,8 @@ class Desk:
         self.rebuilding.look(snapshot, self.book, self.post)
         loaded = self.session.now
         if snapshot.starts is not Starts.LINE:  # a line of MDI is no run of the program
-            self.counter.see(snapshot, self.post, self.say)
+            text = loaded.job.text_digest if loaded.job is not None else self.counter.text
+            self.counter.see(snapshot, self.post, self.say, text)
             self.record.see(snapshot, loaded)
             for watcher in self.watches:
                 watcher.see(snapshot, loaded)
@@ -309,6 +312,7 @@ class Desk:
         self._tell_part(snapshot, loaded)
         if self.settings.now.first_job:
             self.first_job.see(snapshot, loaded, self.counter.count)
+            self.keep(partial(self.first_job.save, self.settings.persistence))
         third = self.lathe.third_axis if self.lathe is not None else "C"
         table = self.lathe is None or self.lathe.table_turns
         view = status_of(
@@ -340,8 +344,7 @@ class Desk:
         standing = prompt_line.prompt(snapshot, loaded, self.start_words, self.release_words)
         if snapshot.state is State.WAIT:
             standing = how_it_ends(snapshot, self.set_input is not None) or standing
-        other = self.differs() if snapshot.state in {State.IDLE, State.DISABLED} and not loaded.busy else ""
-        return " · ".join(each for each in (other, self._due(snapshot, standing), standing) if each)
+        return " · ".join(each for each in (self._due(snapshot, standing), standing) if each)
 
     def _due(self, snapshot: Snapshot, standing: str) -> str:
         """What is to be done some time soon; behind an alarm, an interrupted job or a refusal it can wait."""
@@ -395,6 +398,7 @@ class Desk:
     def _load(self, path: Path) -> None:
         if self.may_choose():
             self.session.load(path, self.session.now.block_delete)
+            self.keep(partial(self.settings.persistence.save_setting, LAST_PROGRAM, str(path)))
 
     def begin_with(self, named: str | None) -> None:
         """At the start: the program that was interrupted, or else the one that is ``named``."""

@@ -77,6 +77,11 @@ class Entry:
 
     words: bool = False
     text: str = ""
+    offered: str = ""  # a text that the first character replaces, and Back edits
+
+    def offer(self, text: str) -> None:
+        """Start with a text that was not typed."""
+        self.text = self.offered = text
 
     def takes(self, key: str) -> bool:
         """Whether a character belongs to it."""
@@ -86,5 +91,6 @@ class Entry:
         """A key; False when it means nothing here. Return is the caller's."""
         taken = self.takes(key) or key in {"Back", "Delete"}
         if taken:
-            self.text = edited(self.text, key)
+            replaced = self.takes(key) and self.text == self.offered
+            self.text, self.offered = edited("" if replaced else self.text, key), ""
         return taken

@@ -242,12 +242,21 @@ class EditorPage(Page):
     def _text_keys(self) -> Keys:
         return {
             2: Key("SAVE", self.save),
-            3: Key("LEAVE", partial(self.leave_to, page_table.AUTOMATIC)),
+            3: Key(self._load_label(), partial(self.leave_to, page_table.AUTOMATIC)),
             4: Key("FIND", partial(self.enter, Mode.FIND)),
             5: Key("GO TO", partial(self.enter, Mode.GO_TO)),
             6: Key("YES", self.answer) if self.editor.asked else Key("NEXT ERR", self.next_finding),
             7: Key("HISTORY", partial(self.enter, Mode.HISTORY)),
         }
+
+    def _load_label(self) -> str:
+        """What F3 does: it loads what was written, and what is not the loaded text."""
+        editor, now = self.editor, self.desk.session.now
+        if self.typed_text.dirty:
+            return "SAV+LOAD"
+        document = editor.document
+        other = document is not None and document.path == now.path and self.desk.differs()
+        return "LOAD" if editor.was_saved or other or now.path is None else "LEAVE"
 
     def enter(self, mode: Mode) -> None:
         """From now on the keys are for this."""

@@ -133,7 +133,8 @@ class CopyRenameDelete:
             self.desk.say(self._fixed(here))
         else:
             self.desk.clear()
-            self.question, self.entry.text = question, without_ending(here.name)
+            self.question = question
+            self.entry.offer(without_ending(here.name))
 
     def _fixed(self, program: Program) -> str:
         """Why a program stays as it is; empty when it may be changed."""

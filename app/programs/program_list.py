@@ -213,7 +213,7 @@ class ProgramList:
         if self.transfer.open:
             return self.transfer.prompt()
         if self.question:
-            return "TYPE A NAME AND PRESS RETURN; ESC KEEPS EVERYTHING AS IT IS"
+            return "TYPE A NAME, OR PRESS BACKSPACE TO EDIT THIS ONE. RETURN: ACCEPT    ESC: CANCEL"
         if not self.may_type:
             return "TAB: A NAME TO LOOK FOR OR TO BEGIN; F3 OPENS THE MARKED PROGRAM IN THE EDITOR; H HOLDS"
         if self.find.text and not self.listed:

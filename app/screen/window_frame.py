@@ -347,12 +347,15 @@ class Frame(QWidget):
             rows.append(replace(found, keys=_KEYS[not may_go_on(loaded) :] if offered else ()))
         if here and desk.settings.now.first_job:
             rows.append(desk.first_job.row)
+        differs = desk.differs()
+        if differs:
+            rows.append(NoticeRow(differs))
         offered_job = desk.offered(snapshot) if here else None
         if offered_job is not None:
             rows.append(offered_job)
         if desk.not_kept():
             held = desk.waiting()
-            waits = tr("HELD IN MEMORY, WRITTEN WHEN THERE IS ROOM: {what}").format(what=held) if held else ""
+            waits = tr("IN MEMORY UNTIL THE STORE CAN BE WRITTEN: {what}").format(what=held) if held else ""
             rows.append(NoticeRow(tr("NOT KEPT: {why}").format(why=desk.not_kept()), waits))
         return tuple(rows)
 

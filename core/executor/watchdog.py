@@ -77,7 +77,7 @@ def running(name: str) -> bool:
 
 
 class Watchdog:
-    """Watches the executor's thread, and others by their names: those that run when it starts.
+    """Watches the executor's thread, and others by their names, from the poll at which each is running.
 
     ``halt`` is the drivers' own way to stop everything, None where there is none. ``tell`` is told of another
     thread's end, once; the executor's own end is an alarm.
@@ -87,7 +87,8 @@ class Watchdog:
         self, executor: ExecutorThread, halt: Callable[[], None] | None, others: Iterable[str], tell: Tell
     ) -> None:
         self._executor, self._halt, self._tell = executor, halt, tell
-        self._others = list(others)
+        self._others = frozenset(others)
+        self._running = frozenset[str]()  # those of the others that ran at the last poll
         self._closing = threading.Event()
         self._thread = threading.Thread(target=self._watch, name="watchdog", daemon=True)
         self._looks = 0
@@ -101,8 +102,8 @@ class Watchdog:
         return self._thread.is_alive()
 
     def start(self) -> None:
-        """Begin to look, once the other threads run."""
-        self._others = [name for name in self._others if running(name)]
+        """Start polling. The other threads may start before or after."""
+        self._running = self._alive()
         self._thread.start()
 
     def close(self) -> None:
@@ -145,6 +146,10 @@ class Watchdog:
         self._halted += 1
 
     def _mind_others(self) -> None:
-        for name in [name for name in self._others if not running(name)]:
-            self._others.remove(name)
+        before, self._running = self._running, self._alive()
+        for name in sorted(before - self._running):
             self._tell(name)
+
+    def _alive(self) -> frozenset[str]:
+        """Names of the other threads that are running."""
+        return frozenset(name for name in self._others if running(name))

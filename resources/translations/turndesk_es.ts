@@ -6030,13 +6030,18 @@
     </message>
     <message>
       <location filename="app/desk/program_folder.py" />
-      <source>{name} HAS CHANGED ON THE DISK: F2 READS IT ANEW, THE START RUNS WHAT IS SHOWN</source>
-      <translation>{name} CAMBIÓ EN EL DISCO: F2 LO LEE DE NUEVO, EL ARRANQUE CORRE LO QUE SE MUESTRA</translation>
+      <source>{name} CANNOT BE READ: CHECK THE PROGRAM FOLDER. CYCLE START RUNS THE LOADED TEXT</source>
+      <translation>NO SE PUEDE LEER {name}: REVISE LA CARPETA DE PROGRAMAS. EL INICIO DE CICLO EJECUTA EL TEXTO CARGADO</translation>
     </message>
     <message>
       <location filename="app/desk/program_folder.py" />
-      <source>{name} IS NOT ON THE DISK ANY MORE: WHAT IS SHOWN IS WHAT RUNS</source>
-      <translation>{name} YA NO ESTÁ EN EL DISCO: LO QUE SE MUESTRA ES LO QUE CORRE</translation>
+      <source>{name} IS NOT ON THE DISK. CYCLE START RUNS THE LOADED TEXT</source>
+      <translation>{name} NO ESTÁ EN EL DISCO. EL INICIO DE CICLO EJECUTA EL TEXTO CARGADO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/program_folder.py" />
+      <source>{name} ON THE DISK IS NOT THE LOADED TEXT. CYCLE START RUNS THE LOADED TEXT. F2: RELOAD</source>
+      <translation>{name} EN EL DISCO NO ES EL TEXTO CARGADO. EL INICIO DE CICLO EJECUTA EL TEXTO CARGADO. F2: VOLVER A CARGAR</translation>
     </message>
     <message>
       <location filename="app/desk/program_loading.py" />
@@ -6800,13 +6805,13 @@
     </message>
     <message>
       <location filename="app/editor/editor_messages.py" />
-      <source>F3 SAVES AND PUTS WHAT WAS WRITTEN ON THE DESK; F1 SAVES AND LEAVES THE DESK AS IT IS</source>
-      <translation>F3 GUARDA Y CARGA LO ESCRITO; F1 GUARDA Y DEJA CARGADO LO QUE HAY</translation>
+      <source>F3 SAVE AND LOAD    F1 SAVE ONLY</source>
+      <translation>F3 GUARDAR Y CARGAR    F1 SOLO GUARDAR</translation>
     </message>
     <message>
       <location filename="app/editor/editor_messages.py" />
-      <source>F6 LEAVES WITHOUT SAVING, F3 SAVES AND LEAVES, ESC GOES ON</source>
-      <translation>F6 SALE SIN GUARDAR, F3 GUARDA Y SALE, ESC SIGUE</translation>
+      <source>F6 LEAVE WITHOUT SAVING    F3 SAVE AND LOAD    ESC CONTINUE EDITING</source>
+      <translation>F6 SALIR SIN GUARDAR    F3 GUARDAR Y CARGAR    ESC SEGUIR EDITANDO</translation>
     </message>
     <message>
       <location filename="app/editor/editor_messages.py" />
@@ -6815,8 +6820,8 @@
     </message>
     <message>
       <location filename="app/editor/editor_messages.py" />
-      <source>NOT SAVED YET: F3 SAVES AND LEAVES, F10 LEAVES WITHOUT SAVING</source>
-      <translation>AÚN SIN GUARDAR: F3 GUARDA Y SALE, F10 SALE SIN GUARDAR</translation>
+      <source>NOT SAVED YET. F3 SAVE AND LOAD    F1 SAVE ONLY    F10 NO SAVE</source>
+      <translation>SIN GUARDAR. F3 GUARDAR Y CARGAR    F1 SOLO GUARDAR    F10 NO GUARDAR</translation>
     </message>
     <message>
       <location filename="app/editor/editor_messages.py" />
@@ -6900,18 +6905,23 @@
     </message>
     <message>
       <location filename="app/editor/editor_messages.py" />
-      <source>{name} IS SAVED; F2 PUTS IT ON THE DESK</source>
-      <translation>{name} ESTÁ GUARDADO; F2 LO CARGA</translation>
+      <source>{name} IS SAVED, NOT LOADED. CYCLE START RUNS THE OLD TEXT. PRESS F2 TO LOAD IT</source>
+      <translation>{name} ESTÁ GUARDADO, NO CARGADO. EL INICIO DE CICLO EJECUTA EL TEXTO ANTERIOR. PULSE F2 PARA CARGARLO</translation>
     </message>
     <message>
       <location filename="app/editor/editor_messages.py" />
-      <source>{name} IS SAVED; {other} STAYS ON THE DESK</source>
-      <translation>{name} ESTÁ GUARDADO; {other} SIGUE CARGADO</translation>
+      <source>{name} IS SAVED, NOT LOADED. PRESS F2 TO LOAD IT</source>
+      <translation>{name} ESTÁ GUARDADO, NO CARGADO. PULSE F2 PARA CARGARLO</translation>
     </message>
     <message>
       <location filename="app/editor/editor_messages.py" />
-      <source>{name} WAS ONLY LOOKED AT: {other} STAYS ON THE DESK</source>
-      <translation>{name} SÓLO SE MIRÓ: {other} SIGUE CARGADO</translation>
+      <source>{name} IS SAVED. {other} IS STILL LOADED</source>
+      <translation>{name} ESTÁ GUARDADO. SIGUE CARGADO {other}</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_messages.py" />
+      <source>{name} WAS NOT CHANGED. {other} IS STILL LOADED</source>
+      <translation>{name} NO HA CAMBIADO. SIGUE CARGADO {other}</translation>
     </message>
     <message>
       <location filename="app/editor/editor_messages.py" />
@@ -6982,6 +6992,11 @@
       <location filename="app/editor/editor_view.py" />
       <source>LINE %1: %2 %3</source>
       <translation>LÍNEA %1: %2 %3</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_view.py" />
+      <source>LOAD</source>
+      <translation>CARGA</translation>
     </message>
     <message>
       <location filename="app/editor/editor_view.py" />
@@ -7417,11 +7432,6 @@
       <location filename="app/jobs/jobs_model.py" />
       <source>jobs: those that are done are cleared</source>
       <translation>trabajos: se quitan los hechos</translation>
-    </message>
-    <message>
-      <location filename="app/jobs/jobs_view.py" />
-      <source>LOAD</source>
-      <translation>CARGA</translation>
     </message>
     <message>
       <location filename="app/jobs/jobs_watch.py" />
@@ -10245,8 +10255,8 @@
     </message>
     <message>
       <location filename="app/programs/program_list.py" />
-      <source>TYPE A NAME AND PRESS RETURN; ESC KEEPS EVERYTHING AS IT IS</source>
-      <translation>ESCRIBA UN NOMBRE Y PULSE RETURN; ESC DEJA TODO COMO ESTÁ</translation>
+      <source>TYPE A NAME, OR PRESS BACKSPACE TO EDIT THIS ONE. RETURN: ACCEPT    ESC: CANCEL</source>
+      <translation>ESCRIBA UN NOMBRE, O PULSE RETROCESO PARA EDITAR ESTE. INTRO: ACEPTAR    ESC: CANCELAR</translation>
     </message>
     <message>
       <location filename="app/programs/program_list.py" />
@@ -12815,8 +12825,8 @@
     </message>
     <message>
       <location filename="app/screen/window_frame.py" />
-      <source>HELD IN MEMORY, WRITTEN WHEN THERE IS ROOM: {what}</source>
-      <translation>EN MEMORIA, SE ESCRIBE CUANDO HAYA ESPACIO: {what}</translation>
+      <source>IN MEMORY UNTIL THE STORE CAN BE WRITTEN: {what}</source>
+      <translation>EN MEMORIA HASTA QUE SE PUEDA ESCRIBIR EN EL ALMACÉN: {what}</translation>
     </message>
     <message>
       <location filename="app/screen/window_frame.py" />

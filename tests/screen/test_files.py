@@ -87,7 +87,9 @@ def test_a_name_is_found_by_typing_and_loaded_by_return(shop: Shop) -> None:
     assert shop.frame.page is shop.page
     shop.sees(lambda: shop.prompt().startswith(wording("screen.to-start")))
     assert any(isinstance(command, LoadJob) for command in shop.machine.posted)
-    shop.sees(lambda: shop.journal is not None and any(row.proof for row in shop.journal.runs()))
+    shop.sees(
+        lambda: shop.journal is not None and any(row.proof for row in shop.journal.runs_by_text().values())
+    )
     shop.open_list()
     shop.sees(
         lambda: shop.programs.model.program is not None and shop.programs.model.program.run.proof == "PROVED"
