@@ -5230,6 +5230,16 @@
     </message>
     <message>
       <location filename="app/compose/screen_desk.py" />
+      <source>THE WATCHDOG OVER THE CONTROL</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="app/compose/screen_desk.py" />
+      <source>THE WEB HOOK</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="app/compose/screen_desk.py" />
       <source>WHAT KEEPS OFFSETS AND COUNTS</source>
       <translation>LO QUE GUARDA CORRECTORES Y CUENTAS</translation>
     </message>
@@ -5245,6 +5255,11 @@
     </message>
     <message>
       <location filename="app/compose/screen_desk.py" />
+      <source>WHAT TALKS TO THE MQTT BROKER</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="app/compose/screen_desk.py" />
       <source>WHAT WATCHES THE PROGRAM'S FILE</source>
       <translation>LO QUE VIGILA EL ARCHIVO DEL PROGRAMA</translation>
     </message>
@@ -5252,6 +5267,41 @@
       <location filename="app/compose/screen_desk.py" />
       <source>machine file: %1</source>
       <translation>archivo de máquina: %1</translation>
+    </message>
+    <message>
+      <location filename="app/compose/screen_desk.py" />
+      <source>shop floor %1</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="app/compose/screen_desk.py" />
+      <source>the executor</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="app/compose/screen_desk.py" />
+      <source>the log</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="app/compose/screen_desk.py" />
+      <source>the record of the scope</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="app/compose/screen_desk.py" />
+      <source>the store</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="app/compose/screen_desk.py" />
+      <source>the watch over the program's file</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="app/compose/screen_desk.py" />
+      <source>the watchdog</source>
+      <translation type="unfinished" />
     </message>
     <message>
       <location filename="app/compose/screen_desk.py" />
@@ -5607,6 +5657,11 @@
       <location filename="app/desk/desk.py" />
       <source>key or finger at the screen</source>
       <translation>tecla o dedo en la pantalla</translation>
+    </message>
+    <message>
+      <location filename="app/desk/desk.py" />
+      <source>the drivers</source>
+      <translation type="unfinished" />
     </message>
     <message>
       <location filename="app/desk/desk.py" />
