@@ -108,18 +108,18 @@ def build_desk(machine_file: str | None = None, offsets: Callable[[], Offsets] =
 
     watchdog = Watchdog(thread, executor.halt, SUPERVISED, partial(_thread_ended, desk, journal))
     desk.stops += [
-        ClosingStep("the watchdog", watchdog.end),  # what ends from now on ends in good order
-        ClosingStep("the executor", thread.close, EXECUTOR_CLOSES),
+        ClosingStep("watchdog", watchdog.end),  # what ends from now on ends in good order
+        ClosingStep("executor", thread.close, EXECUTOR_CLOSES),
     ]
     desk.workers += [
-        ClosingStep("the watchdog", watchdog.close),
-        ClosingStep("the watch over the program's file", file.close),
-        ClosingStep("the record of the scope", recorder.close),
-        *(ClosingStep(f"shop floor {number}", close) for number, close in enumerate(floor, 1)),
+        ClosingStep("watchdog", watchdog.close),
+        ClosingStep("program-file", file.close),
+        ClosingStep("recorder", recorder.close),
+        *(ClosingStep(f"shop-floor-{number}", close) for number, close in enumerate(floor, 1)),
     ]
     desk.ends += [
-        ClosingStep("the store", partial(_close_store, journal), STORE_CLOSES),
-        ClosingStep("the log", log.close),
+        ClosingStep("store", partial(_close_store, journal), STORE_CLOSES),
+        ClosingStep("log", log.close),
     ]
     executor.stirs = lambda: desk.stirs()  # noqa: PLW0108  the window gives it later
     desk.differs = lambda: file.differs

@@ -252,7 +252,7 @@ class Desk:
 
         No step waits without a limit, and none depends on another: see ``core/closing.py``.
         """
-        drivers = ClosingStep("the drivers", self.shut, DRIVERS_CLOSE)
+        drivers = ClosingStep("drivers", self.shut, DRIVERS_CLOSE)
         close_in_order([*self.stops, drivers], self.wait)
         close_together([*self._workers(), *self.workers], self.wait)
         close_in_order(self.ends, self.wait)

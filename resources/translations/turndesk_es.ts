@@ -5231,12 +5231,12 @@
     <message>
       <location filename="app/compose/screen_desk.py" />
       <source>THE WATCHDOG OVER THE CONTROL</source>
-      <translation type="unfinished" />
+      <translation>LA VIGILANCIA DEL CONTROL</translation>
     </message>
     <message>
       <location filename="app/compose/screen_desk.py" />
       <source>THE WEB HOOK</source>
-      <translation type="unfinished" />
+      <translation>EL WEBHOOK</translation>
     </message>
     <message>
       <location filename="app/compose/screen_desk.py" />
@@ -5256,7 +5256,7 @@
     <message>
       <location filename="app/compose/screen_desk.py" />
       <source>WHAT TALKS TO THE MQTT BROKER</source>
-      <translation type="unfinished" />
+      <translation>LA CONEXIÓN CON EL BROKER MQTT</translation>
     </message>
     <message>
       <location filename="app/compose/screen_desk.py" />
@@ -5267,41 +5267,6 @@
       <location filename="app/compose/screen_desk.py" />
       <source>machine file: %1</source>
       <translation>archivo de máquina: %1</translation>
-    </message>
-    <message>
-      <location filename="app/compose/screen_desk.py" />
-      <source>shop floor %1</source>
-      <translation type="unfinished" />
-    </message>
-    <message>
-      <location filename="app/compose/screen_desk.py" />
-      <source>the executor</source>
-      <translation type="unfinished" />
-    </message>
-    <message>
-      <location filename="app/compose/screen_desk.py" />
-      <source>the log</source>
-      <translation type="unfinished" />
-    </message>
-    <message>
-      <location filename="app/compose/screen_desk.py" />
-      <source>the record of the scope</source>
-      <translation type="unfinished" />
-    </message>
-    <message>
-      <location filename="app/compose/screen_desk.py" />
-      <source>the store</source>
-      <translation type="unfinished" />
-    </message>
-    <message>
-      <location filename="app/compose/screen_desk.py" />
-      <source>the watch over the program's file</source>
-      <translation type="unfinished" />
-    </message>
-    <message>
-      <location filename="app/compose/screen_desk.py" />
-      <source>the watchdog</source>
-      <translation type="unfinished" />
     </message>
     <message>
       <location filename="app/compose/screen_desk.py" />
@@ -5657,11 +5622,6 @@
       <location filename="app/desk/desk.py" />
       <source>key or finger at the screen</source>
       <translation>tecla o dedo en la pantalla</translation>
-    </message>
-    <message>
-      <location filename="app/desk/desk.py" />
-      <source>the drivers</source>
-      <translation type="unfinished" />
     </message>
     <message>
       <location filename="app/desk/desk.py" />

@@ -17,7 +17,7 @@ from core.executor.snapshot import State
 from tests.screen.desks import desk_on
 from tests.screen.fake import FakeMachine
 
-MACHINE = ("executor", "the drivers")
+MACHINE = ("executor", "drivers")
 STEPS = (*MACHINE, "loading", "levels", "Part", "broker", "backup", "store", "log")
 LONG = 60.0  # s that a test waits for what has to come
 
@@ -65,7 +65,7 @@ def desk_of(machine: FakeMachine, closings: Closings) -> Desk:
     step = partial(partial, closings.run)
     desk.wait = closings.wait
     desk.stops = [ClosingStep("executor", step("executor"))]
-    desk.shut = step("the drivers")
+    desk.shut = step("drivers")
     desk.session = Part(step("loading"))  # type: ignore[assignment]
     desk.access = Part(step("levels"))  # type: ignore[assignment]
     desk.attach(Part(step("Part")))
