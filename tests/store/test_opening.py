@@ -314,7 +314,7 @@ def test_who_asks_for_the_owner_keeps_no_writer_from_its_lock(
             took[0] = True
         close(file)
 
-    monkeypatch.setattr(database.os, "close", closing_)
+    monkeypatch.setattr(os, "close", closing_)
     assert not in_use(tmp_path)
     assert took == [True]
 
