@@ -34,6 +34,7 @@ from app.offsets.offset_book import NONE_KEPT, OffsetBook
 from app.programs.run_history import RunHistory
 from app.special.part_count import PartCounter
 from core.access.access_table import Act
+from core.closing import ClosingStep, Wait, close_in_order, close_together, wait_for
 from core.executor.commands import (
     Command,
     ConfirmStart,
@@ -51,6 +52,7 @@ if TYPE_CHECKING:
     from core.executor.recorder import Recorder
     from core.machine.machine_model import Machine
 
+DRIVERS_CLOSE = 10.0  # s: an inverter is stopped, a driver process ends
 SWITCHES = frozenset({"single_block", "optional_stop", "cycle_repeat", "no_count"})
 SILENT = "CONTROL SILENT"
 LAST_PROGRAM = "last_program"  # setting: the path of the program that was loaded last
@@ -104,7 +106,11 @@ class Desk:
     lathe: Machine | None = None  # what the machine file says, for moves by hand
     one_hand: bool = False  # nothing real moves: palms may be pressed one after the other
     set_input: Callable[[str, bool], None] | None = None  # of a simulated machine
-    shut: Callable[[], None] = field(default=lambda: None)  # what drives the machine
+    stops: list[ClosingStep] = field(default_factory=list)  # close the machine: before everything else
+    shut: Callable[[], None] = field(default=lambda: None)  # closes the drivers
+    workers: list[ClosingStep] = field(default_factory=list)  # closed together, with what is attached
+    ends: list[ClosingStep] = field(default_factory=list)  # close what the workers write to, in this order
+    wait: Wait = wait_for  # of closing, for a step
     waiting: Callable[[], str] = str  # what of it waits in memory, in words
     differs: Callable[[], str] = str  # how the file on the disk is not the program on the desk
     saved_here: Callable[[], None] = lambda: None  # called when the editor has written a program file
@@ -244,12 +250,18 @@ class Desk:
         self.choose_setting("readout", self.readout.following.value)
 
     def close(self) -> None:
-        """End the loading and whatever drives the machine."""
-        self.session.close()
-        self.access.close()
-        for part in self._attached.values():
-            part.close()
-        self.shut()
+        """Stop the machine and close its drivers; then end the workers, all at once; then ``ends``.
+
+        No step waits without a limit, and none depends on another: see ``core/closing.py``.
+        """
+        drivers = ClosingStep("drivers", self.shut, DRIVERS_CLOSE)
+        close_in_order([*self.stops, drivers], self.wait)
+        close_together([*self._workers(), *self.workers], self.wait)
+        close_in_order(self.ends, self.wait)
+
+    def _workers(self) -> list[ClosingStep]:
+        own = [ClosingStep("loading", self.session.close), ClosingStep("levels", self.access.close)]
+        return own + [ClosingStep(kind.__name__, part.close) for kind, part in self._attached.items()]
 
     def attach(self, part: Attached) -> None:
         """Have the model of a page with the desk: it is found by its class, and ends with the desk."""

@@ -87,9 +87,12 @@ class Store:
         return cls(open_to_read(folder) if read_only else open_to_write(folder))
 
     def close(self) -> None:
-        """Writes what is queued, then gives the store free. Calling it again does nothing."""
-        if self._writer:
-            self._writer.close()
+        """Write what is queued, then give the store free. Calling it again does nothing.
+
+        While the disk hangs the store stays open: its lock and connections end with the process.
+        """
+        if self._writer and not self._writer.close():
+            return
         with self._reading:
             self._opened.close()
 

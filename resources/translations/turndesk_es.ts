@@ -5230,6 +5230,16 @@
     </message>
     <message>
       <location filename="app/compose/screen_desk.py" />
+      <source>THE WATCHDOG OVER THE CONTROL</source>
+      <translation>LA VIGILANCIA DEL CONTROL</translation>
+    </message>
+    <message>
+      <location filename="app/compose/screen_desk.py" />
+      <source>THE WEB HOOK</source>
+      <translation>EL WEBHOOK</translation>
+    </message>
+    <message>
+      <location filename="app/compose/screen_desk.py" />
       <source>WHAT KEEPS OFFSETS AND COUNTS</source>
       <translation>LO QUE GUARDA CORRECTORES Y CUENTAS</translation>
     </message>
@@ -5242,6 +5252,11 @@
       <location filename="app/compose/screen_desk.py" />
       <source>WHAT TALKS TO THE INVERTER</source>
       <translation>LO QUE HABLA CON EL VARIADOR</translation>
+    </message>
+    <message>
+      <location filename="app/compose/screen_desk.py" />
+      <source>WHAT TALKS TO THE MQTT BROKER</source>
+      <translation>LA CONEXIÓN CON EL BROKER MQTT</translation>
     </message>
     <message>
       <location filename="app/compose/screen_desk.py" />
@@ -32237,6 +32252,11 @@
       <location filename="core/store/store_errors.py" />
       <source>Could not decode to UTF-8</source>
       <translation>no se pudo leer como UTF-8</translation>
+    </message>
+    <message>
+      <location filename="core/store/store_errors.py" />
+      <source>the disk does not respond: changes wait to be written to {path}; check the disk and its cable</source>
+      <translation type="unfinished" />
     </message>
     <message>
       <location filename="core/store/store_errors.py" />
