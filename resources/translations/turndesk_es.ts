@@ -32256,7 +32256,7 @@
     <message>
       <location filename="core/store/store_errors.py" />
       <source>the disk does not respond: changes wait to be written to {path}; check the disk and its cable</source>
-      <translation type="unfinished" />
+      <translation>el disco no responde: hay cambios pendientes de escribir en {path}; compruebe el disco y su cable</translation>
     </message>
     <message>
       <location filename="core/store/store_errors.py" />
