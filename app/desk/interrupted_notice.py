@@ -75,7 +75,7 @@ def may_go_on(loaded: Loaded) -> bool:
 def instead(found: InterruptedJob, name: str) -> str:
     """The question before another program takes the place of an interrupted one."""
     words = tr(
-        "T{tool} MAY STAND IN THE PART OF {program} LINE {line}: Y GIVES THAT JOB UP FOR {name}, ESC KEEPS IT"
+        "T{tool} MAY STAND IN THE PART OF {program} LINE {line}: Y GIVES THAT JOB UP FOR {name}, N KEEPS IT"
     )
     return words.format(tool=found.tool, program=found.program, line=found.line, name=name)
 

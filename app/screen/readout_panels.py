@@ -269,7 +269,11 @@ class HeadLine(Panel):
         u = self.look.u
         feed, spindle = view.feed, view.spindle
         cells = (
-            (f"FEED {percent(feed.override)}", f"{feed.prefix} {feed.actual} {tr(feed.actual_unit)}".strip(), 0.36),
+            (
+                f"FEED {percent(feed.override)}",
+                f"{feed.prefix} {feed.actual} {tr(feed.actual_unit)}".strip(),
+                0.36,
+            ),
             (
                 f"SPINDLE {percent(spindle.override)}",
                 f"{tr(spindle.direction)} {spindle.rpm}/{spindle.actual}",
