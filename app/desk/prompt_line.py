@@ -195,8 +195,8 @@ SHOWN = 4.0  # s that an answer remains where no key is pressed
 class PromptAnswers:
     """One answer and one question, each in its own place next to the state.
 
-    An answer remains for ``SHOWN`` seconds, or until the next key after it can have been read. No change of the
-    machine's state removes it. A question belongs to the state in which it was asked: Y does what it asks,
+    An answer remains for ``SHOWN`` seconds or until the next key. No change of the machine's state
+    removes it. A question belongs to the state in which it was asked: Y does what it asks,
     N and Esc never do anything. What is lost for good is done by a key of its own, and never by the key that
     asked. ``clock`` is monotonic.
     """

@@ -180,7 +180,6 @@ class MainWindow(QWidget):
             "U": desk.twist_out,
             ANSWER: desk.answer,
             NO: desk.no,
-            "N": desk.no,
             "A": desk.turn_spindle_switch,
             ",": partial(desk.hands.turn_spindle_pot, -1),
             ".": partial(desk.hands.turn_spindle_pot, 1),

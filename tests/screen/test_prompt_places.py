@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from app.desk.prompt_line import CHOOSE_FILE, GIVE_UP, Sort
-from app.screen.page_table import IN_MENU
+from app.screen.page_table import menu_of
 from core.executor.commands import Reset
 from core.executor.snapshot import State
 from tests.screen.hands import Hands, Key
+from tests.screen.lathe import Operator
 
 
 def test_three_places_one_subject_each(hands: Hands) -> None:
-    hands.load("rough.nc")
+    hands.load("pin")
     hands.sees_state(State.IDLE)
     hands.desk.ask(GIVE_UP, lambda: None)
     hands.desk.say("AN ANSWER")
@@ -44,12 +45,13 @@ def test_the_question_for_a_file_offers_no_start(hands: Hands) -> None:
     assert hands.frame.prompt.state == CHOOSE_FILE
 
 
-def test_a_start_is_offered_where_the_page_starts_cycles_alone(hands: Hands) -> None:
-    hands.load("rough.nc")
-    hands.sees_state(State.IDLE)
-    for entry in IN_MENU:
-        if not hands.frame.go(entry.name):
-            continue
-        hands.window.refresh()
-        offered = hands.desk.start_words in hands.frame.prompt.state
-        assert not (offered and hands.desk.barred()), entry.name
+def test_no_page_offers_a_start_that_is_refused(operator: Operator) -> None:
+    desk, frame = operator.stage.desk, operator.window.frame
+    assert frame is not None
+    operator.stage.make_ready()
+    operator.window.refresh()
+    assert desk.start_words in frame.prompt.state
+    for entry in menu_of(desk.language):
+        if frame.go(entry.name):
+            operator.window.refresh()
+            assert desk.start_words not in frame.prompt.state or not desk.barred(), entry.name
