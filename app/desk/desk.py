@@ -163,8 +163,12 @@ class Desk:
         return self.hands.clock()
 
     def say(self, text: str) -> None:
-        """Put an answer on the prompt line; it stays until the next key or the next state."""
+        """Show an answer; it remains for 4 s or until the next key."""
         self.answers.say(text)
+
+    def warn(self, text: str) -> None:
+        """Show an answer that no key removes before its 4 s are over: input was dropped, for example."""
+        self.answers.say(text, lasting=True)
 
     def done(self, text: str) -> None:
         """Say that it was done: a success looks different from a refusal."""
@@ -175,7 +179,7 @@ class Desk:
         self.say(f"REFUSED: {why}")
 
     def ask(self, question: str, yes: Callable[[], None], key: str = YES) -> None:
-        """Ask before something is lost or moves: ``PRESS Y TO …, ESC TO …``.
+        """Ask before something is lost or moves: ``PRESS Y TO …, N TO …``. Esc is N.
 
         ``key`` means yes, and is never the one that asked; a finger has a target on the prompt line.
         """
@@ -192,12 +196,8 @@ class Desk:
 
     @property
     def notice(self) -> str:
-        """The answer to the last key, empty without one."""
+        """The answer to the last key, or without one the question; empty without either."""
         return self.answers.notice
-
-    @notice.setter
-    def notice(self, text: str) -> None:
-        self.answers.notice, self.answers.asked, self.answers.done = text, None, False
 
     @property
     def start_words(self) -> str:
@@ -335,22 +335,19 @@ class Desk:
         return snapshot, view, loaded
 
     def prompt(self, snapshot: Snapshot, loaded: Loaded, page: str = "") -> str:
-        """The prompt line: the answer to the last key, or else what can be done now.
+        """The state's place: what can be done now. Question and answer have places of their own.
 
         ``page`` is what the page in front would say there; an alarm and an E-stop go before it.
         """
+        self.answers.expire(snapshot)
         if self._silence.is_silent:
             return prompt_line.CONTROL_SILENT
-        if self.answers.outlived(snapshot):
-            self.clear()
         if self.keyboard_away and snapshot.state in prompt_line.MOVING:
             return prompt_line.KEYBOARD_AWAY
         announced = prompt_line.announced(snapshot, starts_here=self.starts_here)
         return announced + self._prompt(snapshot, loaded, page)
 
     def _prompt(self, snapshot: Snapshot, loaded: Loaded, page: str) -> str:
-        if self.notice:
-            return self.notice
         if page:
             return prompt_line.alarm_of(snapshot, self.release_words) or page
         standing = prompt_line.prompt(snapshot, loaded, self.start_words, self.release_words)
@@ -450,7 +447,7 @@ class Desk:
         """Whether the control may be left; where something would be lost by it Y does ``close``."""
         waiting = self.waiting()
         if waiting:
-            words = tr("NOT KEPT, AND LOST BY CLOSING: {what}; MAKE ROOM, OR PRESS Y TO CLOSE, ESC TO STAY")
+            words = tr("NOT KEPT, AND LOST BY CLOSING: {what}; MAKE ROOM, OR PRESS Y TO CLOSE, N TO STAY")
             self.ask(words.format(what=waiting), close)
         return not waiting
 
@@ -489,6 +486,12 @@ class Desk:
             self.clear()
             self.post(ConfirmStart(found.at))
 
+    def no(self) -> None:
+        """N: no to the question that is asked, or to the start at line 1 that was confirmed; never more."""
+        self.clear()
+        if self.snapshot().confirmed:
+            self.post(ConfirmStart(""))
+
     def enable(self) -> None:
         """Switch the drives on, after E-stop or power-up."""
         state = self.snapshot().state
@@ -522,8 +525,7 @@ class Desk:
 
     def answer(self) -> None:
         """Yes to what is asked, as long as the machine is in the state in which it was asked."""
-        if self.answers.outlived(self.snapshot()):
-            self.clear()
+        self.answers.expire(self.snapshot())
         self.answers.yes(self.hands.at())
 
     @property

@@ -251,7 +251,7 @@ class JobsModel:
         if job is None:
             self.desk.say(NONE_YET)
             return
-        words = tr("PRESS Y TO TAKE {program} OUT OF THE QUEUE, {made} OF {wanted} MADE; ESC KEEPS IT")
+        words = tr("PRESS Y TO TAKE {program} OUT OF THE QUEUE, {made} OF {wanted} MADE; N KEEPS IT")
         words = words.format(program=job.program, made=job.made, wanted=job.wanted)
         self.desk.ask(
             words,
@@ -266,7 +266,7 @@ class JobsModel:
         if not done:
             self.desk.done("NO JOB IS DONE YET: THERE IS NOTHING TO CLEAR")
             return
-        words = tr("PRESS Y TO TAKE {count} JOBS THAT ARE DONE OUT OF THE QUEUE, ESC TO KEEP THEM")
+        words = tr("PRESS Y TO TAKE {count} JOBS THAT ARE DONE OUT OF THE QUEUE, N TO KEEP THEM")
         self.desk.ask(words.format(count=done), partial(self._write, _clear_done))
 
     def _write(

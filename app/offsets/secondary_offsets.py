@@ -43,7 +43,7 @@ class SecondaryOffsets(OffsetTable):
 
     kind = Kind.SECONDARY
     own_key = "C"
-    clears = "PRESS Y TO CLEAR ALL 32 SECONDARY OFFSETS, ESC TO KEEP THEM"
+    clears = "PRESS Y TO CLEAR ALL 32 SECONDARY OFFSETS, N TO KEEP THEM"
     why_cleared = "C: all offsets cleared"
 
     def __init__(self, desk: Desk) -> None:

@@ -169,7 +169,7 @@ class CopyRenameDelete:
             return
         if self.desk.refused(Act.PROGRAMS):
             return
-        asked = tr("PRESS Y TO DELETE {name} (ITS VERSIONS ARE KEPT), ESC TO LEAVE IT")
+        asked = tr("PRESS Y TO DELETE {name} (ITS VERSIONS ARE KEPT), N TO LEAVE IT")
         self.desk.ask(asked.format(name=here.name), lambda: self._delete(here))
 
     def _delete(self, program: Program) -> None:

@@ -25,7 +25,7 @@ from app.desk.prompt_line import MOVING, UNDER_WAY
 from app.desk.translation import spoken, tr
 from app.screen.event_times import EventTimes
 from app.screen.keyboard import Keyboard, key_of, letter_of
-from app.screen.keys import ANSWER, PALMS, REPEATING, STOPPING, TYPED_AGAIN, name_of, typed_of
+from app.screen.keys import ANSWER, NO, PALMS, REPEATING, STOPPING, TYPED_AGAIN, name_of, typed_of
 from app.screen.language import speak_in
 from app.screen.look import Look, dress
 from app.screen.page_table import AUTOMATIC
@@ -158,6 +158,8 @@ class MainWindow(QWidget):
         if action is not None:
             if frame is not None:
                 frame.page.pressed()
+                if key != "Esc":  # which removes the answer, and does nothing else then
+                    frame.desk.answers.next_key()
             action()
             self.refresh()
         elif frame is not None and key.startswith("F") and key[1:].isdecimal():
@@ -177,6 +179,7 @@ class MainWindow(QWidget):
             "E": desk.estop,
             "U": desk.twist_out,
             ANSWER: desk.answer,
+            NO: desk.no,
             "A": desk.turn_spindle_switch,
             ",": partial(desk.hands.turn_spindle_pot, -1),
             ".": partial(desk.hands.turn_spindle_pot, 1),
@@ -276,7 +279,7 @@ class MainWindow(QWidget):
         """What was pressed while the screen stood still does nothing."""
         if self.frame is not None:
             text = tr("THE SCREEN STOOD STILL FOR {seconds} S: WHAT WAS PRESSED MEANWHILE WAS FORGOTTEN")
-            self.frame.desk.say(text.format(seconds=f"{seconds:.1f}"))
+            self.frame.desk.warn(text.format(seconds=f"{seconds:.1f}"))
 
     def stops_at(self, event: QInputEvent) -> bool:
         """Whether a press is on something that stops the machine."""
@@ -321,9 +324,12 @@ class MainWindow(QWidget):
 
     def _answered(self, frame: Frame, event: QKeyEvent) -> bool:
         """Whether the key was the answer to a question: pressed by itself, after all others were let go."""
-        if frame.desk.asked not in {letter_of(event), typed_of(event)} - {""}:
+        typed = {letter_of(event), typed_of(event)} - {""}
+        if not frame.desk.asked or not typed & {frame.desk.asked, "N"}:
             return False
-        if not event.isAutoRepeat() and self.keyboard.alone(event):
+        if "N" in typed and frame.desk.asked != "N":
+            self.press(NO)
+        elif not event.isAutoRepeat() and self.keyboard.alone(event):
             self.press(ANSWER)
         return True
 

@@ -126,7 +126,7 @@ class Frame(QWidget):
 
     def _front(self) -> None:
         page = self.page
-        self.desk.starts_here, self.desk.field_open = page.STARTS, page.has_field
+        self.desk.starts_here, self.desk.field_open = page.STARTS, self.has_field
         self.keys.labels = page.labels()
         self._lay_out()
         self.log.hide()
@@ -307,10 +307,10 @@ class Frame(QWidget):
         self.title.page = self.page.NAME
         self.title.access = desk.access.words
         self.title.show_state(name, view.state, view.tone, desk.machine, desk.time_of_day())
-        text = self.page.asks() or desk.prompt(snapshot, loaded, self.page.prompt())
-        reason = prompt_line.reason(view) or prompt_line.remedy(loaded, text)
-        sort = desk.answers.sort if desk.notice else None
-        self.prompt.show_text(text, sort=sort, asked=desk.asked, reason=reason)
+        state = desk.prompt(snapshot, loaded, self.page.prompt())
+        self.prompt.show_state(state, prompt_line.reason(view) or prompt_line.remedy(loaded, state))
+        self.prompt.show_question(desk.answers.question or self.page.asks(), desk.asked)
+        self.prompt.show_answer(desk.answers.answer, sort=desk.answers.sort)
 
     def _show_readouts(self, snapshot: Snapshot, view: MachineStatus, loaded: Loaded) -> None:
         """The figures of this instant, large."""

@@ -14,7 +14,7 @@ from app.special.special_functions import FigureFunction
 from core.access.access_table import Act
 from core.executor.snapshot import Snapshot
 
-RESET = "PRESS Y TO PUT THE COUNT TO NOUGHT, ESC TO KEEP IT"
+RESET = "PRESS Y TO PUT THE COUNT TO NOUGHT, N TO KEEP IT"
 NO_PROGRAM = "CHOOSE A PROGRAM FIRST: EVERY PROGRAM HAS ITS OWN COUNT"
 
 

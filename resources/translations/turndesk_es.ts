@@ -5530,8 +5530,8 @@
     </message>
     <message>
       <location filename="app/desk/desk.py" />
-      <source>NOT KEPT, AND LOST BY CLOSING: {what}; MAKE ROOM, OR PRESS Y TO CLOSE, ESC TO STAY</source>
-      <translation>SIN GUARDAR, Y SE PIERDE AL CERRAR: {what}; HAGA ESPACIO, U PULSE Y PARA CERRAR, ESC PARA SEGUIR</translation>
+      <source>NOT KEPT, AND LOST BY CLOSING: {what}; MAKE ROOM, OR PRESS Y TO CLOSE, N TO STAY</source>
+      <translation>SIN GUARDAR, Y SE PIERDE AL CERRAR: {what}; HAGA ESPACIO, U PULSE Y PARA CERRAR, N PARA SEGUIR</translation>
     </message>
     <message>
       <location filename="app/desk/desk.py" />
@@ -5765,8 +5765,8 @@
     </message>
     <message>
       <location filename="app/desk/interrupted_notice.py" />
-      <source>T{tool} MAY STAND IN THE PART OF {program} LINE {line}: Y GIVES THAT JOB UP FOR {name}, ESC KEEPS IT</source>
-      <translation>T{tool} PUEDE ESTAR EN LA PIEZA DE {program} LÍNEA {line}: LA TECLA Y ABANDONA ESE TRABAJO POR {name}, ESC LO CONSERVA</translation>
+      <source>T{tool} MAY STAND IN THE PART OF {program} LINE {line}: Y GIVES THAT JOB UP FOR {name}, N KEEPS IT</source>
+      <translation>T{tool} PUEDE ESTAR EN LA PIEZA DE {program} LÍNEA {line}: LA TECLA Y ABANDONA ESE TRABAJO POR {name}, N LO CONSERVA</translation>
     </message>
     <message>
       <location filename="app/desk/machine_file_changes.py" />
@@ -6225,13 +6225,13 @@
     </message>
     <message>
       <location filename="app/desk/prompt_line.py" />
-      <source>PRESS Y TO GIVE THE PROGRAM UP, ESC TO KEEP IT</source>
-      <translation>PULSE Y PARA ABANDONAR EL PROGRAMA, ESC PARA CONSERVARLO</translation>
+      <source>PRESS Y TO GIVE THE PROGRAM UP, N TO KEEP IT</source>
+      <translation>PULSE Y PARA ABANDONAR EL PROGRAMA, N PARA CONSERVARLO</translation>
     </message>
     <message>
       <location filename="app/desk/prompt_line.py" />
-      <source>PRESS Y TO TWIST THE E-STOP OUT, ESC TO LEAVE IT IN</source>
-      <translation>PULSE Y PARA SOLTAR EL PARO DE EMERGENCIA, ESC PARA DEJARLO PULSADO</translation>
+      <source>PRESS Y TO TWIST THE E-STOP OUT, N TO LEAVE IT IN</source>
+      <translation>PULSE Y PARA SOLTAR EL PARO DE EMERGENCIA, N PARA DEJARLO PULSADO</translation>
     </message>
     <message>
       <location filename="app/desk/prompt_line.py" />
@@ -6272,6 +6272,11 @@
       <location filename="app/desk/prompt_line.py" />
       <source>TO START %1</source>
       <translation>PARA ARRANCAR %1</translation>
+    </message>
+    <message>
+      <location filename="app/desk/prompt_line.py" />
+      <source>TYPE A NAME OR MARK A PROGRAM WITH THE ARROWS, THEN PRESS RETURN; ESC CLOSES THE LIST</source>
+      <translation>ESCRIBA UN NOMBRE O MARQUE UN PROGRAMA CON LAS FLECHAS Y PULSE INTRO; ESC CIERRA LA LISTA</translation>
     </message>
     <message>
       <location filename="app/desk/prompt_line.py" />
@@ -6342,6 +6347,16 @@
       <location filename="app/desk/readouts.py" />
       <source>COLLET OPEN</source>
       <translation>PINZA ABIERTA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/readouts.py" />
+      <source>CONTROL IN G72 Ø</source>
+      <translation>CONTROL EN G72 Ø</translation>
+    </message>
+    <message>
+      <location filename="app/desk/readouts.py" />
+      <source>CONTROL IN G73 R</source>
+      <translation>CONTROL EN G73 R</translation>
     </message>
     <message>
       <location filename="app/desk/readouts.py" />
@@ -7360,13 +7375,13 @@
     </message>
     <message>
       <location filename="app/jobs/jobs_model.py" />
-      <source>PRESS Y TO TAKE {count} JOBS THAT ARE DONE OUT OF THE QUEUE, ESC TO KEEP THEM</source>
-      <translation>PULSE Y PARA QUITAR {count} TRABAJOS HECHOS DE LA COLA, ESC PARA DEJARLOS</translation>
+      <source>PRESS Y TO TAKE {count} JOBS THAT ARE DONE OUT OF THE QUEUE, N TO KEEP THEM</source>
+      <translation>PULSE Y PARA QUITAR {count} TRABAJOS HECHOS DE LA COLA, N PARA DEJARLOS</translation>
     </message>
     <message>
       <location filename="app/jobs/jobs_model.py" />
-      <source>PRESS Y TO TAKE {program} OUT OF THE QUEUE, {made} OF {wanted} MADE; ESC KEEPS IT</source>
-      <translation>PULSE Y PARA QUITAR {program} DE LA COLA, {made} DE {wanted} HECHAS; ESC LO DEJA</translation>
+      <source>PRESS Y TO TAKE {program} OUT OF THE QUEUE, {made} OF {wanted} MADE; N KEEPS IT</source>
+      <translation>PULSE Y PARA QUITAR {program} DE LA COLA, {made} DE {wanted} HECHAS; N LO DEJA</translation>
     </message>
     <message>
       <location filename="app/jobs/jobs_model.py" />
@@ -8480,13 +8495,23 @@
     </message>
     <message>
       <location filename="app/jog/tool_setting_view.py" />
-      <source>ITS TIP IS NOW AT</source>
-      <translation>SU PUNTA ESTÁ AHORA EN</translation>
+      <source>THIS ONE</source>
+      <translation>ÉSTA</translation>
     </message>
     <message>
       <location filename="app/jog/tool_setting_view.py" />
-      <source>THIS ONE</source>
-      <translation>ÉSTA</translation>
+      <source>TIP FROM PART ZERO</source>
+      <translation>PUNTA DESDE EL CERO PIEZA</translation>
+    </message>
+    <message>
+      <location filename="app/jog/tool_setting_view.py" />
+      <source>TIP FROM PART ZERO, INCH</source>
+      <translation>PUNTA DESDE EL CERO PIEZA, PULGADAS</translation>
+    </message>
+    <message>
+      <location filename="app/jog/tool_setting_view.py" />
+      <source>TIP FROM PART ZERO, MM</source>
+      <translation>PUNTA DESDE EL CERO PIEZA, MM</translation>
     </message>
     <message>
       <location filename="app/jog/tool_setting_view.py" />
@@ -9240,8 +9265,8 @@
     </message>
     <message>
       <location filename="app/offsets/secondary_offsets.py" />
-      <source>PRESS Y TO CLEAR ALL 32 SECONDARY OFFSETS, ESC TO KEEP THEM</source>
-      <translation>PULSE Y PARA BORRAR LOS 32 CORRECTORES SECUNDARIOS, ESC PARA CONSERVARLOS</translation>
+      <source>PRESS Y TO CLEAR ALL 32 SECONDARY OFFSETS, N TO KEEP THEM</source>
+      <translation>PULSE Y PARA BORRAR LOS 32 CORRECTORES SECUNDARIOS, N PARA CONSERVARLOS</translation>
     </message>
     <message>
       <location filename="app/offsets/secondary_offsets.py" />
@@ -9410,8 +9435,8 @@
     </message>
     <message>
       <location filename="app/offsets/tool_shapes.py" />
-      <source>PRESS Y TO FORGET THE SHAPE OF T{number}, ESC TO KEEP IT</source>
-      <translation>PULSE Y PARA OLVIDAR LA FORMA DE T{number}, ESC PARA CONSERVARLA</translation>
+      <source>PRESS Y TO FORGET THE SHAPE OF T{number}, N TO KEEP IT</source>
+      <translation>PULSE Y PARA OLVIDAR LA FORMA DE T{number}, N PARA CONSERVARLA</translation>
     </message>
     <message>
       <location filename="app/offsets/tool_shapes.py" />
@@ -9485,8 +9510,8 @@
     </message>
     <message>
       <location filename="app/offsets/zero_offsets.py" />
-      <source>PRESS Y TO CLEAR G54 TO G59, ESC TO KEEP THEM</source>
-      <translation>PULSE Y PARA BORRAR G54 A G59, ESC PARA CONSERVARLOS</translation>
+      <source>PRESS Y TO CLEAR G54 TO G59, N TO KEEP THEM</source>
+      <translation>PULSE Y PARA BORRAR G54 A G59, N PARA CONSERVARLOS</translation>
     </message>
     <message>
       <location filename="app/offsets/zero_offsets.py" />
@@ -9970,8 +9995,8 @@
     </message>
     <message>
       <location filename="app/programs/copy_rename_delete.py" />
-      <source>PRESS Y TO DELETE {name} (ITS VERSIONS ARE KEPT), ESC TO LEAVE IT</source>
-      <translation>PULSE Y PARA BORRAR {name} (SUS VERSIONES SE GUARDAN), ESC PARA DEJARLO</translation>
+      <source>PRESS Y TO DELETE {name} (ITS VERSIONS ARE KEPT), N TO LEAVE IT</source>
+      <translation>PULSE Y PARA BORRAR {name} (SUS VERSIONES SE GUARDAN), N PARA DEJARLO</translation>
     </message>
     <message>
       <location filename="app/programs/copy_rename_delete.py" />
@@ -10155,8 +10180,8 @@
     </message>
     <message>
       <location filename="app/programs/import_export.py" />
-      <source>{names}: THERE ALREADY WITH ANOTHER TEXT. PRESS Y TO REPLACE, ESC TO KEEP</source>
-      <translation>{names}: YA EXISTE CON OTRO TEXTO. PULSE Y PARA REEMPLAZAR, ESC PARA CONSERVAR</translation>
+      <source>{names}: THERE ALREADY WITH ANOTHER TEXT. PRESS Y TO REPLACE, N TO KEEP</source>
+      <translation>{names}: YA EXISTE CON OTRO TEXTO. PULSE Y PARA REEMPLAZAR, N PARA CONSERVAR</translation>
     </message>
     <message>
       <location filename="app/programs/preview.py" />
@@ -10615,8 +10640,8 @@
     </message>
     <message>
       <location filename="app/quality/features_section.py" />
-      <source>PRESS Y TO MEASURE {name} NO MORE (ITS READINGS STAY IN THE STORE), ESC TO KEEP IT</source>
-      <translation>PULSE Y PARA NO MEDIR MÁS {name} (SUS LECTURAS SE CONSERVAN), ESC PARA DEJARLA</translation>
+      <source>PRESS Y TO MEASURE {name} NO MORE (ITS READINGS STAY IN THE STORE), N TO KEEP IT</source>
+      <translation>PULSE Y PARA NO MEDIR MÁS {name} (SUS LECTURAS SE CONSERVAN), N PARA DEJARLA</translation>
     </message>
     <message>
       <location filename="app/quality/features_section.py" />
@@ -10850,8 +10875,8 @@
     </message>
     <message>
       <location filename="app/quality/readings_section.py" />
-      <source>PRESS Y TO TAKE {size} OF PART {part} OUT, ESC TO KEEP IT</source>
-      <translation>PULSE Y PARA QUITAR {size} DE LA PIEZA {part}, ESC PARA DEJARLA</translation>
+      <source>PRESS Y TO TAKE {size} OF PART {part} OUT, N TO KEEP IT</source>
+      <translation>PULSE Y PARA QUITAR {size} DE LA PIEZA {part}, N PARA DEJARLA</translation>
     </message>
     <message>
       <location filename="app/quality/readings_section.py" />
@@ -10915,13 +10940,13 @@
     </message>
     <message>
       <location filename="app/quality/readings_section.py" />
-      <source>{name} {size} IS FAR OFF: PRESS Y TO KEEP IT ALL THE SAME, ESC TO MEASURE AGAIN</source>
-      <translation>{name} {size} ESTÁ MUY LEJOS: PULSE Y PARA GUARDARLA AUN ASÍ, ESC PARA MEDIR DE NUEVO</translation>
+      <source>{name} {size} IS FAR OFF: PRESS Y TO KEEP IT ALL THE SAME, N TO MEASURE AGAIN</source>
+      <translation>{name} {size} ESTÁ MUY LEJOS: PULSE Y PARA GUARDARLA AUN ASÍ, N PARA MEDIR DE NUEVO</translation>
     </message>
     <message>
       <location filename="app/quality/readings_section.py" />
-      <source>{words}: PRESS Y TO TAKE IT OVER, ESC TO LEAVE IT</source>
-      <translation>{words}: PULSE Y PARA TOMARLA, ESC PARA DEJARLA</translation>
+      <source>{words}: PRESS Y TO TAKE IT OVER, N TO LEAVE IT</source>
+      <translation>{words}: PULSE Y PARA TOMARLA, N PARA DEJARLA</translation>
     </message>
     <message>
       <location filename="app/quality/readings_section.py" />
@@ -11255,8 +11280,8 @@
     </message>
     <message>
       <location filename="app/quality/tool_life_section.py" />
-      <source>PRESS Y WHEN T{number} HAS A FRESH INSERT ({words} ARE ON THE OLD ONE), ESC IF NOT</source>
-      <translation>PULSE Y CUANDO T{number} TENGA INSERTO NUEVO (EL VIEJO LLEVA {words}), ESC SI NO</translation>
+      <source>PRESS Y WHEN T{number} HAS A FRESH INSERT ({words} ARE ON THE OLD ONE), N IF NOT</source>
+      <translation>PULSE Y CUANDO T{number} TENGA INSERTO NUEVO (EL VIEJO LLEVA {words}), N SI NO</translation>
     </message>
     <message>
       <location filename="app/quality/tool_life_section.py" />
@@ -11985,8 +12010,8 @@
     </message>
     <message>
       <location filename="app/scope/scope_model.py" />
-      <source>PRESS Y TO DELETE {path}, ESC TO KEEP IT</source>
-      <translation>PULSE Y PARA BORRAR {path}, ESC PARA CONSERVARLO</translation>
+      <source>PRESS Y TO DELETE {path}, N TO KEEP IT</source>
+      <translation>PULSE Y PARA BORRAR {path}, N PARA CONSERVARLO</translation>
     </message>
     <message>
       <location filename="app/scope/scope_model.py" />
@@ -13620,13 +13645,13 @@
     </message>
     <message>
       <location filename="app/sharing/sharing_model.py" />
-      <source>PRESS Y TO KEEP {name} AS IT IS HERE (THE OTHERS STAY VERSIONS), ESC TO LEAVE IT</source>
-      <translation>PULSE Y PARA CONSERVAR {name} COMO ESTÁ AQUÍ (LAS OTRAS QUEDAN COMO VERSIONES), ESC PARA DEJARLO</translation>
+      <source>PRESS Y TO KEEP {name} AS IT IS HERE (THE OTHERS STAY VERSIONS), N TO LEAVE IT</source>
+      <translation>PULSE Y PARA CONSERVAR {name} COMO ESTÁ AQUÍ (LAS OTRAS QUEDAN COMO VERSIONES), N PARA DEJARLO</translation>
     </message>
     <message>
       <location filename="app/sharing/sharing_model.py" />
-      <source>PRESS Y TO TAKE {name} AS {desk} HAS IT (WHAT IS HERE STAYS A VERSION), ESC TO LEAVE IT</source>
-      <translation>PULSE Y PARA TOMAR {name} COMO LO TIENE {desk} (LO DE AQUÍ QUEDA COMO VERSIÓN), ESC PARA DEJARLO</translation>
+      <source>PRESS Y TO TAKE {name} AS {desk} HAS IT (WHAT IS HERE STAYS A VERSION), N TO LEAVE IT</source>
+      <translation>PULSE Y PARA TOMAR {name} COMO LO TIENE {desk} (LO DE AQUÍ QUEDA COMO VERSIÓN), N PARA DEJARLO</translation>
     </message>
     <message>
       <location filename="app/sharing/sharing_model.py" />
@@ -13840,13 +13865,13 @@
     </message>
     <message>
       <location filename="app/special/access_levels.py" />
-      <source>PRESS Y TO TAKE ALL PINS AWAY IN 10 MINUTES; IT IS LOGGED; ESC TO KEEP THEM</source>
-      <translation>PULSE Y PARA BORRAR TODOS LOS PIN EN 10 MINUTOS; QUEDA ANOTADO; ESC LOS DEJA</translation>
+      <source>PRESS Y TO TAKE ALL PINS AWAY IN 10 MINUTES; IT IS LOGGED; N TO KEEP THEM</source>
+      <translation>PULSE Y PARA BORRAR TODOS LOS PIN EN 10 MINUTOS; QUEDA ANOTADO; N LOS DEJA</translation>
     </message>
     <message>
       <location filename="app/special/access_levels.py" />
-      <source>PRESS Y TO TAKE {name} AWAY, ESC TO KEEP THE PIN</source>
-      <translation>PULSE Y PARA QUITAR A {name}, ESC PARA DEJAR EL PIN</translation>
+      <source>PRESS Y TO TAKE {name} AWAY, N TO KEEP THE PIN</source>
+      <translation>PULSE Y PARA QUITAR A {name}, N PARA DEJAR EL PIN</translation>
     </message>
     <message>
       <location filename="app/special/access_levels.py" />
@@ -13975,8 +14000,8 @@
     </message>
     <message>
       <location filename="app/special/backup_and_restore.py" />
-      <source>PRESS Y TO RESTORE {name} OVER EVERYTHING KEPT NOW ({what}), ESC TO LEAVE IT</source>
-      <translation>PULSE Y PARA RESTAURAR {name} SOBRE TODO LO GUARDADO ({what}), ESC PARA DEJARLO</translation>
+      <source>PRESS Y TO RESTORE {name} OVER EVERYTHING KEPT NOW ({what}), N TO LEAVE IT</source>
+      <translation>PULSE Y PARA RESTAURAR {name} SOBRE TODO LO GUARDADO ({what}), N PARA DEJARLO</translation>
     </message>
     <message>
       <location filename="app/special/backup_and_restore.py" />
@@ -14155,13 +14180,13 @@
     </message>
     <message>
       <location filename="app/special/inputs_outputs.py" />
-      <source>PRESS Y TO SWITCH {name} OFF, ESC TO LEAVE IT ON</source>
-      <translation>PULSE Y PARA APAGAR {name}, ESC PARA DEJARLA ENCENDIDA</translation>
+      <source>PRESS Y TO SWITCH {name} OFF, N TO LEAVE IT ON</source>
+      <translation>PULSE Y PARA APAGAR {name}, N PARA DEJARLA ENCENDIDA</translation>
     </message>
     <message>
       <location filename="app/special/inputs_outputs.py" />
-      <source>PRESS Y TO SWITCH {name} ON, ESC TO LEAVE IT OFF</source>
-      <translation>PULSE Y PARA ENCENDER {name}, ESC PARA DEJARLA APAGADA</translation>
+      <source>PRESS Y TO SWITCH {name} ON, N TO LEAVE IT OFF</source>
+      <translation>PULSE Y PARA ENCENDER {name}, N PARA DEJARLA APAGADA</translation>
     </message>
     <message>
       <location filename="app/special/inputs_outputs.py" />
@@ -14410,8 +14435,8 @@
     </message>
     <message>
       <location filename="app/special/machine_file_acceptance.py" />
-      <source>PRESS Y TO ACCEPT THE MACHINE FILE AS IT IS NOW, ESC TO LEAVE IT</source>
-      <translation>PULSE Y PARA ACEPTAR EL ARCHIVO DE MÁQUINA COMO ESTÁ, ESC PARA DEJARLO</translation>
+      <source>PRESS Y TO ACCEPT THE MACHINE FILE AS IT IS NOW, N TO LEAVE IT</source>
+      <translation>PULSE Y PARA ACEPTAR EL ARCHIVO DE MÁQUINA COMO ESTÁ, N PARA DEJARLO</translation>
     </message>
     <message>
       <location filename="app/special/machine_file_acceptance.py" />
@@ -14520,8 +14545,8 @@
     </message>
     <message>
       <location filename="app/special/parts_counter.py" />
-      <source>PRESS Y TO PUT THE COUNT TO NOUGHT, ESC TO KEEP IT</source>
-      <translation>PULSE Y PARA PONER LA CUENTA EN CERO, ESC PARA CONSERVARLA</translation>
+      <source>PRESS Y TO PUT THE COUNT TO NOUGHT, N TO KEEP IT</source>
+      <translation>PULSE Y PARA PONER LA CUENTA EN CERO, N PARA CONSERVARLA</translation>
     </message>
     <message>
       <location filename="app/special/parts_counter.py" />
@@ -14820,8 +14845,8 @@
     </message>
     <message>
       <location filename="app/special/setup_sheet_function.py" />
-      <source>PRESS Y TO THROW THIS NOTE AWAY, ESC TO KEEP IT</source>
-      <translation>PULSE Y PARA BORRAR ESTA NOTA, ESC PARA CONSERVARLA</translation>
+      <source>PRESS Y TO THROW THIS NOTE AWAY, N TO KEEP IT</source>
+      <translation>PULSE Y PARA BORRAR ESTA NOTA, N PARA CONSERVARLA</translation>
     </message>
     <message>
       <location filename="app/special/setup_sheet_function.py" />
@@ -15015,8 +15040,8 @@
     </message>
     <message>
       <location filename="app/special/spindle_limit.py" />
-      <source>PRESS Y TO LIFT THE LIMIT, ESC TO KEEP IT</source>
-      <translation>PULSE Y PARA QUITAR EL TOPE, ESC PARA CONSERVARLO</translation>
+      <source>PRESS Y TO LIFT THE LIMIT, N TO KEEP IT</source>
+      <translation>PULSE Y PARA QUITAR EL TOPE, N PARA CONSERVARLO</translation>
     </message>
     <message>
       <location filename="app/special/spindle_limit.py" />
@@ -15225,8 +15250,8 @@
     </message>
     <message>
       <location filename="app/transfer/serial_transfer.py" />
-      <source>PRESS Y TO THROW THE RECEIVED PROGRAM AWAY, ESC TO KEEP IT</source>
-      <translation>PULSE Y PARA DESECHAR EL PROGRAMA RECIBIDO, ESC PARA CONSERVARLO</translation>
+      <source>PRESS Y TO THROW THE RECEIVED PROGRAM AWAY, N TO KEEP IT</source>
+      <translation>PULSE Y PARA DESECHAR EL PROGRAMA RECIBIDO, N PARA CONSERVARLO</translation>
     </message>
     <message>
       <location filename="app/transfer/serial_transfer.py" />
@@ -16145,8 +16170,8 @@
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
-      <source>PRESS E-STOP: what is shown is not of now; save the log, end TurnDesk and start it again</source>
-      <translation>PULSE EL PARO DE EMERGENCIA: lo que se ve no es de ahora; guarde la bitácora, cierre TurnDesk y ábralo otra vez</translation>
+      <source>PRESS E-STOP: the display is out of date; close other programs and stop backups and updates, save the log, end TurnDesk and start it again</source>
+      <translation>PULSE LA PARADA DE EMERGENCIA: la pantalla no está actualizada; cierre otros programas y detenga copias de seguridad y actualizaciones, guarde el registro, cierre TurnDesk y ábralo de nuevo</translation>
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
@@ -16155,13 +16180,18 @@
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
-      <source>a driver does not come back: its wire, its adapter, the computer's disk or network</source>
-      <translation>un controlador de equipo no regresa: su cable, su adaptador, el disco o la red de la computadora</translation>
+      <source>a driver does not do what a stop asks of it: a wire is off, or it has failed</source>
+      <translation>un controlador de equipo no hace lo que pide un paro: un cable suelto, o se averió</translation>
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
-      <source>a driver does not do what a stop asks of it: a wire is off, or it has failed</source>
-      <translation>un controlador de equipo no hace lo que pide un paro: un cable suelto, o se averió</translation>
+      <source>a driver does not respond: its cable, its adapter, the computer's disk or network</source>
+      <translation>un controlador no responde: su cable, su adaptador, el disco o la red del ordenador</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
+      <source>a fault in TurnDesk; see the log</source>
+      <translation>un fallo de TurnDesk; vea el registro</translation>
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
@@ -16245,6 +16275,11 @@
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
+      <source>the computer is overloaded: another program, a backup or an update uses the processor</source>
+      <translation>el ordenador está sobrecargado: otro programa, una copia de seguridad o una actualización ocupa el procesador</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
       <source>the computer is too slow or too hot, or its disk hangs</source>
       <translation>la computadora es muy lenta o está muy caliente, o su disco se traba</translation>
     </message>
@@ -16255,13 +16290,13 @@
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
-      <source>the control has failed</source>
-      <translation>el control falló</translation>
+      <source>the control does not respond</source>
+      <translation>el control no responde</translation>
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
-      <source>the control's thread is stuck or dead</source>
-      <translation>el hilo del control está atorado o muerto</translation>
+      <source>the control has failed</source>
+      <translation>el control falló</translation>
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />

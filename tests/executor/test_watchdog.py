@@ -379,21 +379,3 @@ def test_a_watchdog_whose_driver_breaks_still_says_so() -> None:
         dog.look()
     assert control.shot.alarms[0].code == "control-silent"
     rig.close()
-
-
-def test_a_thread_that_starts_after_the_watchdog_is_watched_too() -> None:
-    name = "starts-late-in-this-test"
-    rig, ending, told = Simulated(), threading.Event(), list[str]()
-    dog = Watchdog(Ticked(rig.executor), None, (name,), told.append)  # type: ignore[arg-type]
-    dog.start()
-    dog.close()
-    other = threading.Thread(target=ending.wait, name=name, daemon=True)
-    other.start()
-    for _ in range(OTHERS):
-        dog.look()
-    assert told == []
-    ending.set()
-    other.join()
-    for _ in range(2 * OTHERS):
-        dog.look()
-    assert told == [name]
