@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Protocol, TypeVar
 from app.desk import interrupted_notice, prompt_line
 from app.desk.access import Access
 from app.desk.alarm_log import AlarmLog
+from app.desk.dropped_input import DroppedInput
 from app.desk.first_job import FirstJob
 from app.desk.interrupted_notice import NoticeRow
 from app.desk.machine_file_changes import FileChanges
@@ -126,6 +127,7 @@ class Desk:
     hands: StationHands = field(init=False)
     log: AlarmLog = field(init=False)
     answers: PromptAnswers = field(init=False)
+    dropped_input: DroppedInput = field(init=False)
     rebuilding: ProgramRenewal = field(init=False)
     first_job: FirstJob = field(default_factory=FirstJob)
     own_starts: list[OwnStart] = field(default_factory=list)
@@ -142,6 +144,7 @@ class Desk:
     def __post_init__(self) -> None:
         self.log = AlarmLog(self.time_of_day)
         self.answers = PromptAnswers(self.snapshot, self._not_kept, self._now)
+        self.dropped_input = DroppedInput(self._now)
         self.rebuilding = ProgramRenewal(self.session, self.say)
         starting = self.answers.starting
         self.hands = StationHands(self.station, self.clock, self.say, self.clear, starting, self.barred)
@@ -330,7 +333,8 @@ class Desk:
         if self.keyboard_away and snapshot.state in prompt_line.MOVING:
             return prompt_line.KEYBOARD_AWAY
         announced = prompt_line.announced(snapshot, starts_here=self.starts_here)
-        return announced + self._prompt(snapshot, loaded, page)
+        dropped = "" if self.asked else self.dropped_input.words
+        return announced + (dropped or self._prompt(snapshot, loaded, page))
 
     def _prompt(self, snapshot: Snapshot, loaded: Loaded, page: str) -> str:
         if self.notice:
@@ -364,7 +368,7 @@ class Desk:
         part, told = loaded.part, self._part_told
         self._part_told = part
         if part is not None and part is not told and part.warned and snapshot.state in UNDER_WAY:
-            self.say(tr("LOOK: {what}; H HOLDS THE FEED").format(what=part.warned[0]))
+            self.say(tr("LOOK: {what}; PAUSE HOLDS THE FEED").format(what=part.warned[0]))
 
     # --- program -------------------------------------------------------------------------------------
 
@@ -447,7 +451,7 @@ class Desk:
         """Acknowledge an alarm; give up an interrupted program, after asking once."""
         state = self.snapshot().state
         if state in prompt_line.MOVING:
-            self.say("THE MACHINE IS MOVING: PRESS H FOR FEED HOLD FIRST")
+            self.say("THE MACHINE IS MOVING: PRESS PAUSE FOR FEED HOLD FIRST")
         elif state in prompt_line.INTERRUPTED:
             self.ask(prompt_line.GIVE_UP, self._give_up)
         else:
