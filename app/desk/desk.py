@@ -376,7 +376,7 @@ class Desk:
         part, told = loaded.part, self._part_told
         self._part_told = part
         if part is not None and part is not told and part.warned and snapshot.state in UNDER_WAY:
-            self.say(tr("LOOK: {what}; H HOLDS THE FEED").format(what=part.warned[0]))
+            self.say(tr("LOOK: {what}; PAUSE HOLDS THE FEED").format(what=part.warned[0]))
 
     # --- program -------------------------------------------------------------------------------------
 
@@ -460,7 +460,7 @@ class Desk:
         """Acknowledge an alarm; give up an interrupted program, after asking once."""
         state = self.snapshot().state
         if state in prompt_line.MOVING:
-            self.say("THE MACHINE IS MOVING: PRESS H FOR FEED HOLD FIRST")
+            self.say("THE MACHINE IS MOVING: PRESS PAUSE FOR FEED HOLD FIRST")
         elif state in prompt_line.INTERRUPTED:
             self.ask(prompt_line.GIVE_UP, self._give_up)
         else:

@@ -85,7 +85,7 @@ class FirstJob:
         """The card of now."""
         keys = ((CLOSE, tr("CLOSE")),)
         if self.at >= len(STEPS):
-            return NoticeRow(tr("FIRST JOB: DONE"), tr("F10, 7 SHOWS THIS CARD AGAIN"), keys, "run")
+            return NoticeRow(tr("FIRST JOB: DONE"), tr("F10, 7, RETURN SHOWS THIS CARD AGAIN"), keys, "run")
         step = STEPS[self.at]
         head = tr("FIRST JOB, STEP {number} OF {count}").format(number=self.at + 1, count=len(STEPS))
         own = tuple((name, tr(label)) for name, label in step.keys)

@@ -146,9 +146,13 @@ class EditorPage(Page):
             found |= {"Measure": self.back, "View": path.next_view}
         return found
 
+    def esc_holds(self) -> bool:
+        """Return whether Esc holds the feed while something moves; beside a question it is no."""
+        return not self.editor.notice and self.editor.stage is not Stage.OFFERED
+
     def escape(self) -> bool:
         """A question is taken back, else the answer of the last key; what has nothing to save is left."""
-        if self._moving:
+        if self._moving and self.esc_holds():
             self.desk.feed_hold()  # what a hand hits first must do the safe thing on every page
         elif self.editor.stage is Stage.OFFERED:
             self.editor.abort()
@@ -417,6 +421,7 @@ class EditorPage(Page):
             self.editor.take_name(entry)
         elif (number := line_of(entry)) is None or number > self.field.blockCount():
             self.ask.answer = f"A NUMBER FROM 1 TO {self.field.blockCount()}"
+            self.ask.first.selectAll()  # the next digit replaces it
         else:
             self.enter(Mode.TEXT)
             self.go_to(number)

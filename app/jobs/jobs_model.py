@@ -13,7 +13,7 @@ from app.desk.desk import Desk
 from app.desk.formats import NOTHING, duration
 from app.desk.machine_status import Tone
 from app.desk.prompt_line import UNDER_WAY
-from app.desk.sheet import STEPS, Entry, Key, Row, Sheet
+from app.desk.sheet import STEPS, Entry, Key, Row, Sheet, refused
 from app.desk.translation import tr
 from app.jobs.job_setup import ProvedJob, Station, findings, missing, stations, tool_name
 from app.jobs.jobs_watch import JobsWatch
@@ -308,6 +308,7 @@ class JobsModel:
         try:
             wanted = whole_number(text)
         except EntryError as error:
+            self.entry.text = refused(self.entry.text)
             self.desk.refuse(str(error))
             return
         program, last = self.program, len(self.jobs)

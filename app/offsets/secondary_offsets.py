@@ -11,6 +11,7 @@ from enum import IntEnum
 from app.desk.arithmetic import CHARACTERS, EntryError, value_of
 from app.desk.desk import Desk
 from app.desk.formats import length
+from app.desk.sheet import refused
 from app.desk.translation import tr
 from app.offsets.offset_history import counts_from
 from app.offsets.offset_table import OffsetTable, Proposed
@@ -177,6 +178,7 @@ class SecondaryOffsets(OffsetTable):
         try:
             self._take_number() if self.step is Step.NUMBER else self._take_value()
         except EntryError as error:
+            self.text = refused(self.text)
             self.desk.say(tr("REFUSED: {why}").format(why=error))
 
     def _take_number(self) -> None:

@@ -5525,8 +5525,8 @@
     </message>
     <message>
       <location filename="app/desk/desk.py" />
-      <source>LOOK: {what}; H HOLDS THE FEED</source>
-      <translation>MIRE: {what}; H RETIENE EL AVANCE</translation>
+      <source>LOOK: {what}; PAUSE HOLDS THE FEED</source>
+      <translation type="unfinished" />
     </message>
     <message>
       <location filename="app/desk/desk.py" />
@@ -5610,8 +5610,8 @@
     </message>
     <message>
       <location filename="app/desk/desk.py" />
-      <source>THE MACHINE IS MOVING: PRESS H FOR FEED HOLD FIRST</source>
-      <translation>LA MÁQUINA SE MUEVE: PULSE PRIMERO H, RETENCIÓN DE AVANCE</translation>
+      <source>THE MACHINE IS MOVING: PRESS PAUSE FOR FEED HOLD FIRST</source>
+      <translation type="unfinished" />
     </message>
     <message>
       <location filename="app/desk/desk.py" />
@@ -5645,8 +5645,8 @@
     </message>
     <message>
       <location filename="app/desk/first_job.py" />
-      <source>F10, 7 SHOWS THIS CARD AGAIN</source>
-      <translation>F10, 7 MUESTRA ESTA TARJETA OTRA VEZ</translation>
+      <source>F10, 7, RETURN SHOWS THIS CARD AGAIN</source>
+      <translation type="unfinished" />
     </message>
     <message>
       <location filename="app/desk/first_job.py" />
@@ -6215,8 +6215,8 @@
     </message>
     <message>
       <location filename="app/desk/prompt_line.py" />
-      <source>PRESS BOTH PALMS WITHIN HALF A SECOND; FOR ONE HAND: F10 7, PALM BUTTONS ON THE SCREEN</source>
-      <translation>PRESIONE LOS DOS PULSADORES EN MEDIO SEGUNDO; CON UNA MANO: F10 7, PULSADORES EN PANTALLA</translation>
+      <source>PRESS BOTH PALMS WITHIN HALF A SECOND; FOR ONE HAND: F10, 7, RETURN, PALM BUTTONS ON THE SCREEN</source>
+      <translation type="unfinished" />
     </message>
     <message>
       <location filename="app/desk/prompt_line.py" />
@@ -6600,8 +6600,8 @@
     </message>
     <message>
       <location filename="app/desk/waiting.py" />
-      <source>F10, 3, F4 SWITCHES THE SIMULATED INPUTS</source>
-      <translation>F10, 3, F4 CONMUTA LAS ENTRADAS SIMULADAS</translation>
+      <source>F10, 3, RETURN, F4 SWITCHES THE SIMULATED INPUTS</source>
+      <translation type="unfinished" />
     </message>
     <message>
       <location filename="app/desk/waiting.py" />
@@ -9119,6 +9119,11 @@
       <translation>Todavía no se cambia ningún corrector.</translation>
     </message>
     <message>
+      <location filename="app/offsets/offsets_view.py" />
+      <source>VALUES ARE TYPED INTO THE TABLE: PRESS ESC TO SHOW IT</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
       <location filename="app/offsets/part_effect.py" />
       <source>AFTER</source>
       <translation>DESPUÉS</translation>
@@ -10285,16 +10290,6 @@
     </message>
     <message>
       <location filename="app/programs/program_list.py" />
-      <source>TAB: A NAME TO LOOK FOR OR TO BEGIN; F3 OPENS THE MARKED PROGRAM IN THE EDITOR; H HOLDS</source>
-      <translation>TAB: UN NOMBRE QUE BUSCAR O EMPEZAR; F3 ABRE EL PROGRAMA MARCADO EN EL EDITOR; H RETIENE</translation>
-    </message>
-    <message>
-      <location filename="app/programs/program_list.py" />
-      <source>TAB: FIND OR NEW NAME</source>
-      <translation>TAB: BUSCAR O NOMBRE NUEVO</translation>
-    </message>
-    <message>
-      <location filename="app/programs/program_list.py" />
       <source>TYPE A NAME, OR PRESS BACKSPACE TO EDIT THIS ONE. RETURN: ACCEPT    ESC: CANCEL</source>
       <translation>ESCRIBA UN NOMBRE, O PULSE RETROCESO PARA EDITAR ESTE. INTRO: ACEPTAR    ESC: CANCELAR</translation>
     </message>
@@ -10305,8 +10300,8 @@
     </message>
     <message>
       <location filename="app/programs/program_list.py" />
-      <source>TYPE A PART OF A NAME; F3 OPENS IT IN THE EDITOR; TAB: LETTERS ARE KEYS AGAIN; ESC HOLDS</source>
-      <translation>ESCRIBA PARTE DE UN NOMBRE; F3 LO ABRE EN EL EDITOR; TAB: LAS LETRAS SON TECLAS OTRA VEZ; ESC RETIENE</translation>
+      <source>TYPE A PART OF A NAME; F3 OPENS IT IN THE EDITOR; PAUSE HOLDS THE FEED; ESC FOR AUTOMATIC</source>
+      <translation type="unfinished" />
     </message>
     <message>
       <location filename="app/programs/program_list.py" />
@@ -12565,18 +12560,23 @@
     </message>
     <message>
       <location filename="app/screen/main_window.py" />
+      <source>NOT RESPONDING FOR {seconds} S: KEYS WERE DROPPED. WAIT A SECOND, THEN PRESS AGAIN</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="app/screen/main_window.py" />
       <source>THE DESK WAS STARTED AS A KIOSK: IT ENDS WITH THE COMPUTER OR BY SIGTERM</source>
       <translation>EL PUESTO SE ARRANCÓ COMO QUIOSCO: TERMINA CON LA COMPUTADORA O POR SIGTERM</translation>
     </message>
     <message>
       <location filename="app/screen/main_window.py" />
-      <source>THE SCREEN STOOD STILL FOR {seconds} S: WHAT WAS PRESSED MEANWHILE WAS FORGOTTEN</source>
-      <translation>LA PANTALLA ESTUVO DETENIDA {seconds} S: LO PULSADO MIENTRAS TANTO SE OLVIDÓ</translation>
+      <source>{key} HAS NO FUNCTION ON THIS PAGE</source>
+      <translation>{key} NO TIENE FUNCIÓN EN ESTA PÁGINA</translation>
     </message>
     <message>
       <location filename="app/screen/main_window.py" />
-      <source>{key} HAS NO FUNCTION ON THIS PAGE</source>
-      <translation>{key} NO TIENE FUNCIÓN EN ESTA PÁGINA</translation>
+      <source>{key} IS A KEY OF THE AUTOMATIC PAGE: PRESS F1, THEN F2</source>
+      <translation type="unfinished" />
     </message>
     <message>
       <location filename="app/screen/page_table.py" />
@@ -14980,13 +14980,18 @@
     </message>
     <message>
       <location filename="app/special/special_functions.py" />
-      <source>A FINGER OPENS A FUNCTION; ARROWS OR A FIGURE CHOOSE, RETURN OPENS IT; ESC FOR AUTOMATIC</source>
-      <translation>UN DEDO ABRE UNA FUNCIÓN; FLECHAS O UNA CIFRA ELIGEN, RETURN LA ABRE; ESC A AUTOMÁTICO</translation>
+      <source>A FINGER OPENS A FUNCTION; ARROWS OR ITS NUMBER CHOOSE, RETURN OPENS IT; ESC FOR AUTOMATIC</source>
+      <translation type="unfinished" />
     </message>
     <message>
       <location filename="app/special/special_functions.py" />
       <source>ESC GOES BACK TO THE LIST</source>
       <translation>ESC REGRESA A LA LISTA</translation>
+    </message>
+    <message>
+      <location filename="app/special/special_functions.py" />
+      <source>FUNCTION {number} DOES NOT EXIST: TYPE 1 TO {last}</source>
+      <translation type="unfinished" />
     </message>
     <message>
       <location filename="app/special/spindle_limit.py" />
@@ -15127,11 +15132,6 @@
       <location filename="app/transfer/serial_transfer.py" />
       <source>7 BITS, EVEN PARITY, FOUND OUT</source>
       <translation>7 BITS, PARIDAD PAR, DETECTADO</translation>
-    </message>
-    <message>
-      <location filename="app/transfer/serial_transfer.py" />
-      <source>A PROGRAM IS UNDER WAY: RETURN STORES IT AS IT IS NAMED; ANOTHER NAME CAN BE TYPED AT REST</source>
-      <translation>HAY UN PROGRAMA EN CURSO: RETURN LO GUARDA CON ESE NOMBRE; OTRO SE ESCRIBE EN REPOSO</translation>
     </message>
     <message>
       <location filename="app/transfer/serial_transfer.py" />

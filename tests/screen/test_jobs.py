@@ -235,8 +235,7 @@ def test_the_counter_leaves_the_number_to_the_job(day: Day) -> None:
     added(day, "peg.nc", "3")
     loaded(day, "peg.nc")
     day.key(Key.Key_F10)
-    day.type("2")
-    day.enter("7")
+    day.enter("2", "7")
     assert day.prompt == wording("screen.job-has-own-count")
     assert day.desk.counter.aim == 3
 
