@@ -5526,7 +5526,7 @@
     <message>
       <location filename="app/desk/desk.py" />
       <source>LOOK: {what}; PAUSE HOLDS THE FEED</source>
-      <translation type="unfinished" />
+      <translation>MIRE: {what}; PAUSA RETIENE EL AVANCE</translation>
     </message>
     <message>
       <location filename="app/desk/desk.py" />
@@ -5611,7 +5611,7 @@
     <message>
       <location filename="app/desk/desk.py" />
       <source>THE MACHINE IS MOVING: PRESS PAUSE FOR FEED HOLD FIRST</source>
-      <translation type="unfinished" />
+      <translation>LA MÁQUINA SE MUEVE: PULSE PRIMERO PAUSA, RETENCIÓN DE AVANCE</translation>
     </message>
     <message>
       <location filename="app/desk/desk.py" />
@@ -5646,7 +5646,7 @@
     <message>
       <location filename="app/desk/first_job.py" />
       <source>F10, 7, RETURN SHOWS THIS CARD AGAIN</source>
-      <translation type="unfinished" />
+      <translation>F10, 7, RETURN MUESTRA ESTA TARJETA OTRA VEZ</translation>
     </message>
     <message>
       <location filename="app/desk/first_job.py" />
@@ -6216,7 +6216,7 @@
     <message>
       <location filename="app/desk/prompt_line.py" />
       <source>PRESS BOTH PALMS WITHIN HALF A SECOND; FOR ONE HAND: F10, 7, RETURN, PALM BUTTONS ON THE SCREEN</source>
-      <translation type="unfinished" />
+      <translation>PRESIONE LOS DOS PULSADORES EN MEDIO SEGUNDO; CON UNA MANO: F10, 7, RETURN, PULSADORES EN PANTALLA</translation>
     </message>
     <message>
       <location filename="app/desk/prompt_line.py" />
@@ -6601,7 +6601,7 @@
     <message>
       <location filename="app/desk/waiting.py" />
       <source>F10, 3, RETURN, F4 SWITCHES THE SIMULATED INPUTS</source>
-      <translation type="unfinished" />
+      <translation>F10, 3, RETURN, F4 CONMUTA LAS ENTRADAS SIMULADAS</translation>
     </message>
     <message>
       <location filename="app/desk/waiting.py" />
@@ -9121,7 +9121,7 @@
     <message>
       <location filename="app/offsets/offsets_view.py" />
       <source>VALUES ARE TYPED INTO THE TABLE: PRESS ESC TO SHOW IT</source>
-      <translation type="unfinished" />
+      <translation>LOS VALORES SE ESCRIBEN EN LA TABLA: PRESIONE ESC PARA MOSTRARLA</translation>
     </message>
     <message>
       <location filename="app/offsets/part_effect.py" />
@@ -10301,7 +10301,7 @@
     <message>
       <location filename="app/programs/program_list.py" />
       <source>TYPE A PART OF A NAME; F3 OPENS IT IN THE EDITOR; PAUSE HOLDS THE FEED; ESC FOR AUTOMATIC</source>
-      <translation type="unfinished" />
+      <translation>ESCRIBA PARTE DE UN NOMBRE; F3 LO ABRE EN EL EDITOR; PAUSA RETIENE EL AVANCE; ESC: AUTOMÁTICO</translation>
     </message>
     <message>
       <location filename="app/programs/program_list.py" />
@@ -12561,7 +12561,7 @@
     <message>
       <location filename="app/screen/main_window.py" />
       <source>NOT RESPONDING FOR {seconds} S: KEYS WERE DROPPED. WAIT A SECOND, THEN PRESS AGAIN</source>
-      <translation type="unfinished" />
+      <translation>SIN RESPUESTA {seconds} S: SE DESCARTARON TECLAS. ESPERE UN SEGUNDO Y PRESIONE DE NUEVO</translation>
     </message>
     <message>
       <location filename="app/screen/main_window.py" />
@@ -12576,7 +12576,7 @@
     <message>
       <location filename="app/screen/main_window.py" />
       <source>{key} IS A KEY OF THE AUTOMATIC PAGE: PRESS F1, THEN F2</source>
-      <translation type="unfinished" />
+      <translation>{key} ES UNA TECLA DE LA PÁGINA AUTOMÁTICO: PRESIONE F1, LUEGO F2</translation>
     </message>
     <message>
       <location filename="app/screen/page_table.py" />
@@ -14981,7 +14981,7 @@
     <message>
       <location filename="app/special/special_functions.py" />
       <source>A FINGER OPENS A FUNCTION; ARROWS OR ITS NUMBER CHOOSE, RETURN OPENS IT; ESC FOR AUTOMATIC</source>
-      <translation type="unfinished" />
+      <translation>UN TOQUE ABRE UNA FUNCIÓN; LAS FLECHAS O SU NÚMERO LA ELIGEN, RETURN LA ABRE; ESC: AUTOMÁTICO</translation>
     </message>
     <message>
       <location filename="app/special/special_functions.py" />
@@ -14991,7 +14991,7 @@
     <message>
       <location filename="app/special/special_functions.py" />
       <source>FUNCTION {number} DOES NOT EXIST: TYPE 1 TO {last}</source>
-      <translation type="unfinished" />
+      <translation>LA FUNCIÓN {number} NO EXISTE: ESCRIBA DE 1 A {last}</translation>
     </message>
     <message>
       <location filename="app/special/spindle_limit.py" />

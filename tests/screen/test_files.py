@@ -127,7 +127,7 @@ def test_the_name_of_a_copy_is_typed_in_a_cycle(shop: Shop) -> None:
     shop.machine.now = replace(shop.machine.now, state=State.RUN)
     shop.key(Key.Key_F4)
     shop.type("c")
-    assert shop.programs.model.entry.text == "alphac"
+    assert shop.programs.model.entry.text == "c"  # it takes the place of the name that is offered
     assert not shop.machine.now.cycle_repeat
 
 
@@ -161,7 +161,8 @@ def test_a_copy_gets_a_name_and_the_ending(shop: Shop) -> None:
 def test_what_is_typed_goes_before_the_ending(shop: Shop) -> None:
     shop.open_list()
     shop.key(Key.Key_F4)
-    shop.type("2")
+    shop.key(Key.Key_Backspace)
+    shop.type("a2")
     shop.key(Key.Key_Return)
     shop.sees(lambda: "alpha2.nc" in shop.rows())
 
