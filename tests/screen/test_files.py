@@ -133,13 +133,15 @@ def test_the_name_of_a_copy_is_typed_in_a_cycle(shop: Shop) -> None:
 
 def test_it_is_sorted_by_name_date_run_parts_and_size(shop: Shop) -> None:
     assert shop.journal is not None
-    shop.journal.run_started("pin.nc")
+    text = (SAMPLES / "knob.nc").read_text(encoding="utf-8")
+    shop.journal.program_proved("knob.nc", "PROVED", None, text)
+    shop.journal.run_started("knob.nc")
     shop.sees(lambda: shop.journal is not None and bool(shop.journal.runs()))
     shop.open_list()
     assert shop.rows() == sorted(shop.rows())
     shop.key(Key.Key_F2)
     shop.key(Key.Key_F2)
-    shop.sees(lambda: shop.rows()[0] == "pin.nc")
+    shop.sees(lambda: shop.rows()[0] == "knob.nc")
     assert shop.programs.table.sheet.title.endswith("BY LAST RUN")
     shop.key(Key.Key_F2)
     shop.key(Key.Key_F2)
