@@ -22,6 +22,7 @@ from app.screen import page_table
 from app.screen.window_layout import FINGER
 from core.executor.commands import FeedHold, LoadJob
 from core.executor.snapshot import State
+from core.language.source import load_source
 from tests.attached import attached
 from tests.screen.desks import SAMPLES, desk_on
 from tests.screen.fake import FakeMachine
@@ -133,8 +134,7 @@ def test_the_name_of_a_copy_is_typed_in_a_cycle(shop: Shop) -> None:
 
 def test_it_is_sorted_by_name_date_run_parts_and_size(shop: Shop) -> None:
     assert shop.journal is not None
-    text = (SAMPLES / "knob.nc").read_text(encoding="utf-8")
-    shop.journal.program_proved("knob.nc", "PROVED", None, text)
+    shop.journal.keep(load_source(SAMPLES / "knob.nc"))
     shop.journal.run_started("knob.nc")
     shop.sees(lambda: shop.journal is not None and bool(shop.journal.runs()))
     shop.open_list()
