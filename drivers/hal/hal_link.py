@@ -54,7 +54,11 @@ class HalLink:
             )
         self.close()
         self.lost, self.rows, self._reports = "", [], 0
-        self._link = self._open()
+        try:
+            self._link = self._open()
+        except DriverError as error:
+            self.lost = error.fault  # the next Reset tries again
+            raise
         self._looked, self._silent = self._clock.now(), 0.0
         if not self.wait(lambda: self._reports > 0, 3.0):
             raise DriverError(

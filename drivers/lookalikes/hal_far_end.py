@@ -158,8 +158,9 @@ class HalFarEnd:
 
     def open(self) -> HalFarEnd:
         """Anew after its bridge was lost."""
-        if not self.cable_out:
-            self.errors = 0
+        if self.cable_out:
+            raise DriverError("HAL does not load: hm2_eth: the board does not respond", "hal-setup")
+        self.errors = 0
         if self.killed or self.bridge.gone:
             self.killed = False
             self.thread = HalThread(border_of(self.config))
