@@ -42,7 +42,7 @@ def _link(file: HalFile, card: str, further: tuple[str, ...]) -> None:
 
 
 def _drive_faults(file: HalFile) -> list[str]:
-    """Wire hal.axes.X.fault where it is a signal: the drive's own fault, or the lost card. Return its gates."""
+    """Wire hal.axes.X.fault where it is a signal: a drive fault or the lost card. Return its gates."""
     gates = []
     for axis in file.lathe.axes:
         path = f"hal.axes.{axis.name}.fault"

@@ -156,6 +156,7 @@ def lathe_without_board(board: str, folder: Path, on: list[str]) -> Path:
     name = f"gt75-{board}"
     machine = resources.machine_file(f"{name}.toml")
     machine = re.sub(r"absolute = false\nhome = .*", "absolute = true", machine)
+    machine = machine.replace("two_hand_start = true", "two_hand_start = false")  # tests post the start
     (folder / f"{name}.toml").write_text(changed(machine, PATIENT), encoding="utf-8")
     moved = set(MOVED[board].values())
     pins = [pin for pin in PINS.get(board, tuple)() if pin.name not in moved]

@@ -28,17 +28,17 @@ def test_the_chain_opens_at_rest_though_the_frozen_estop_says_released() -> None
         assert bench.pin("chain-ok") == 0.0
         assert bench.pin("powered") == 0.0
         assert bench.bridge[1] == "hal-board"
-        assert code_of(bench.axes.fault, "driver") == "hal-board"
+        assert code_of(bench.driver.axes.fault, "driver") == "hal-board"
 
 
 def test_with_the_drives_off_it_is_a_fault_as_well() -> None:
     with powered() as bench:
         bench.axes.enable(False)
         bench.run(0.3)
-        assert not bench.axes.fault
+        assert not bench.driver.axes.fault
         bench.far.cable_out = True
         bench.run(ERRORS)
-        assert code_of(bench.axes.fault, "driver") == "hal-board"
+        assert code_of(bench.driver.axes.fault, "driver") == "hal-board"
 
 
 def test_frozen_inputs_have_no_age_that_anything_accepts() -> None:
@@ -74,15 +74,15 @@ def test_reset_with_the_cable_out_clears_nothing_and_with_the_cable_in_loads_hal
             with raises_code(DriverError, "hal-setup"):
                 bench.axes.clear_fault()
             bench.run(0.1)
-            assert code_of(bench.axes.fault, "driver") == "hal-board"
+            assert code_of(bench.driver.axes.fault, "driver") == "hal-board"
             assert bench.driver.unknown() == ALL_UNKNOWN
         thread = bench.far.thread
         bench.far.cable_out = False
         bench.run(0.5)
-        assert bench.axes.fault  # hm2_eth does not read again before HAL is loaded again
+        assert bench.driver.axes.fault  # hm2_eth does not read again before HAL is loaded again
         bench.axes.clear_fault()
         bench.run(0.1)
-        assert not bench.axes.fault
+        assert not bench.driver.axes.fault
         assert bench.far.thread is not thread
         assert not bench.driver.unknown()
         assert not bench.axes.sample().enabled
