@@ -860,6 +860,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>CONNECTION TO THE I/O BOARD LOST</source>
+      <translation>CONEXIÓN CON LA PLACA DE E/S PERDIDA</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>COOLANT: OFF</source>
       <translation>NO</translation>
     </message>
@@ -15850,6 +15855,11 @@
     </message>
     <message>
       <location filename="core/alarms/bus_alarms.py" />
+      <source>PRESS E-STOP, the spindle may turn. Check cable and board power, then press Reset. Home where asked</source>
+      <translation>PULSE E-STOP, el husillo puede girar. Revise el cable y la alimentación de la placa y pulse Reset. Haga la referencia donde se pida</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
       <source>PRESS E-STOP, the spindle may turn; check cable and power, Reset connects again. Home where asked</source>
       <translation>PULSE PARO DE EMERGENCIA, el husillo puede girar; revise cable y corriente, Reset conecta de nuevo. Referencie donde se pida</translation>
     </message>
@@ -15915,6 +15925,11 @@
     </message>
     <message>
       <location filename="core/alarms/bus_alarms.py" />
+      <source>an EtherCAT slave is not operational, or the bus is still starting</source>
+      <translation>un esclavo EtherCAT no está operativo, o el bus aún está arrancando</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
       <source>an I/O module does not answer</source>
       <translation>un módulo de E/S no responde</translation>
     </message>
@@ -15947,6 +15962,11 @@
       <location filename="core/alarms/bus_alarms.py" />
       <source>check the output in the machine file, Reset</source>
       <translation>revise la salida en el archivo de máquina, Reset</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
+      <source>connection to the I/O board lost</source>
+      <translation>conexión con la placa de E/S perdida</translation>
     </message>
     <message>
       <location filename="core/alarms/bus_alarms.py" />
@@ -16035,6 +16055,11 @@
     </message>
     <message>
       <location filename="core/alarms/bus_alarms.py" />
+      <source>the 7I76E has lost its field I/O</source>
+      <translation>la 7I76E ha perdido sus E/S de campo</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
       <source>the CAN cable is off, or a terminator is missing</source>
       <translation>el cable CAN está suelto, o falta un terminador</translation>
     </message>
@@ -16042,6 +16067,11 @@
       <location filename="core/alarms/bus_alarms.py" />
       <source>the CAN interface was unplugged</source>
       <translation>se desconectó la interfaz CAN</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
+      <source>the board has no power, or its watchdog has switched it off</source>
+      <translation>la placa no tiene alimentación, o su watchdog la ha desconectado</translation>
     </message>
     <message>
       <location filename="core/alarms/bus_alarms.py" />
@@ -16147,6 +16177,11 @@
       <location filename="core/alarms/bus_alarms.py" />
       <source>the machine file does not name it, or the controller does not have it</source>
       <translation>el archivo de máquina no la nombra, o el controlador no la tiene</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
+      <source>the network cable between the computer and the board is out or damaged</source>
+      <translation>el cable de red entre el ordenador y la placa está desconectado o dañado</translation>
     </message>
     <message>
       <location filename="core/alarms/bus_alarms.py" />
