@@ -1,0 +1,83 @@
+"""Typical programming slips and their sound twins, proved as ``prove`` proves them with stock and tools.
+
+``jobs.toml`` holds complete sound jobs. Each further file lists kinds of slips; an entry is an array of the job,
+the number of a line, this line with the slip, the same line of a sound twin, the weight that a machinist gives
+the slip, and further lines (of the program with the slip) where its consequence may be reported. An empty line
+means that the line was forgotten; a line feed in a line stands for an additional line.
+"""
+
+from __future__ import annotations
+
+import tomllib
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from app.compose.known_part import known_part
+from app.compose.machine_files import load_machine
+from app.compose.machine_setup import setup_for
+from app.compose.said_stock import ProgramBefore, said_stock
+from app.offsets.offsets_file import read_tool_shapes
+from core.interpreter.job_setup import SecondaryOffset, ToolOffset
+from core.language.source import Source
+from core.machine.machine_model import ClampingModel
+from core.proving.part_proof import prove_with_part
+
+CATALOGUE = Path(__file__).parent / "slip_catalogue"
+JOBS: dict[str, dict[str, Any]] = tomllib.loads((CATALOGUE / "jobs.toml").read_text())
+INCH = 25.4
+NOSE = 0.0156 * INCH
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One slip with its twin; lines are counted from 1."""
+
+    name: str
+    job: str
+    line: int
+    slip: str
+    twin: str
+    weight: str
+    lines: frozenset[int]
+
+
+def _entries() -> list[Entry]:
+    found = []
+    for path in sorted(CATALOGUE.glob("*.toml")):
+        if path.stem == "jobs":
+            continue
+        for kind, rows in tomllib.loads(path.read_text()).items():
+            for number, (job, line, slip, twin, weight, *others) in enumerate(rows, start=1):
+                lines = frozenset({line, *others})
+                found.append(Entry(f"{kind} {number}", job, line, slip, twin, weight, lines))
+    return found
+
+
+ENTRIES = _entries()
+
+
+def findings(job: str, line: int, text: str, folder: Path) -> list[tuple[int, str, str]]:
+    """Return line, severity and check of each error and warning of a job with one line replaced."""
+    told = JOBS[job]
+    lines = told["program"].strip().splitlines()
+    lines[line - 1] = text
+    shapes_file = folder / "tools.toml"
+    shapes_file.write_text(told["tools"])
+    shapes = read_tool_shapes(shapes_file)
+    machine = replace(load_machine(None), clamping=ClampingModel(diameter=3.0 * INCH), tooling="single")
+    tools = {n: ToolOffset(-12.7, -50.8, shape.nose_radius) for n, shape in shapes.items()}
+    setup = setup_for(machine, tools=tools, secondary={1: SecondaryOffset(-NOSE, -NOSE, NOSE)})
+    setting = known_part(machine, tools, shapes, told["stick_out"] * INCH)
+    before = ProgramBefore(lambda path: Source(path.name, ""), setup, machine, setting)
+    setting = replace(setting, stock=said_stock(told["stock"], before))
+    report, _ = prove_with_part(Source(job, "\n".join(lines) + "\n"), setup, machine, setting)
+    return [(d.line, str(d.severity), d.check or d.code) for d in report.diagnostics if str(d.severity) != "note"]
+
+
+def test_the_catalogue_has_forty_kinds_of_three() -> None:
+    kinds = [entry.name.rpartition(" ")[0] for entry in ENTRIES]
+    assert {kinds.count(kind) for kind in kinds} == {3}
+    assert len(ENTRIES) >= 120
