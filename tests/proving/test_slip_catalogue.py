@@ -1,9 +1,10 @@
 """Typical programming slips and their sound twins, proved as ``prove`` proves them with stock and tools.
 
-``jobs.toml`` holds complete sound jobs. Each further file lists kinds of slips; an entry is an array of the job,
-the number of a line, this line with the slip, the same line of a sound twin, the weight that a machinist gives
-the slip, and further lines (of the program with the slip) where its consequence may be reported. An empty line
-means that the line was forgotten; a line feed in a line stands for an additional line.
+``jobs.toml`` holds complete sound jobs. Each further file lists kinds of slips; an entry is an array of
+the job, the number of a line, this line with the slip, the same line of a sound twin, the weight that a
+machinist gives the slip, and further lines (of the program with the slip) where its consequence may be
+reported. An empty line means that the line was forgotten; a line feed in a line stands for an additional
+line.
 """
 
 from __future__ import annotations
@@ -60,7 +61,7 @@ MISSED = {
     "radius for a diameter 1": "a longer taper: only a drawing shows it",
     "dwell in milliseconds 2": "a dwell has no upper limit",
     "dwell in milliseconds 3": "a dwell has no upper limit",
-    "absolute or incremental not stated 3": "a turn .03 in beyond the axis passes; a later pass in air is reported",
+    "absolute or incremental not stated 3": "a turn .03 in beyond the axis passes; a later pass is reported",
 }
 
 
