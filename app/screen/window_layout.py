@@ -60,7 +60,7 @@ class Places(NamedTuple):
 
 
 LOW = 700
-"""px: a window less high than this has smaller rows above and below its page, so that targets fit a finger."""
+"""px: a lower window has smaller rows above and below its page, so that its targets fit a finger."""
 
 
 def unit(width: int, height: int) -> float:

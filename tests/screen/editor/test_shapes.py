@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
-from PySide6.QtCore import QPoint, QRectF, Qt
-from PySide6.QtGui import QImage
+from PySide6.QtCore import QEvent, QPoint, QRectF, Qt
+from PySide6.QtGui import QImage, QKeyEvent
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QWidget
 from pytestqt.qtbot import QtBot
@@ -20,7 +20,6 @@ from app.screen.theme import DARK
 from app.screen.window_layout import FINGER
 from app.shapes import shapes_view
 from app.shapes.shapes_view import LinesPanel, RowsPanel, _Line
-from core.executor.snapshot import State
 from core.language.diagnostics import Diagnostic, Severity
 from tests.screen.editor.writer import Writer
 from tests.screen.hands import Key
@@ -147,7 +146,10 @@ def test_a_finger_opens_types_and_writes(writer: Writer) -> None:
 
 def test_the_key_that_stops_the_machine_stops_it_here_too(writer: Writer) -> None:
     opened(writer)
-    writer.key(Key.Key_ScrollLock)
+    press = QKeyEvent(QEvent.Type.KeyPress, Key.Key_ScrollLock, Qt.KeyboardModifier.NoModifier)
+    stop = writer.window.keyboard._stop_of(press)
+    assert stop is not None
+    stop()
     assert writer.desk.hands.estop_pressed
     assert writer.editor.shapes.model.form is None
 
