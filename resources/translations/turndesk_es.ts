@@ -14550,7 +14550,7 @@
     </message>
     <message>
       <location filename="app/special/parts_counter.py" />
-      <source>PRESS Y TO PUT THE COUNT TO NOUGHT, N TO KEEP IT</source>
+      <source>PRESS Y TO SET THE COUNT TO ZERO, N TO KEEP IT</source>
       <translation>PULSE Y PARA PONER LA CUENTA EN CERO, N PARA CONSERVARLA</translation>
     </message>
     <message>
@@ -14560,7 +14560,7 @@
     </message>
     <message>
       <location filename="app/special/parts_counter.py" />
-      <source>REFUSED: {made} PARTS ARE MADE ALREADY; F4 PUTS THE COUNT TO NOUGHT</source>
+      <source>REFUSED: {made} PARTS ARE MADE ALREADY; F4 SETS THE COUNT TO ZERO</source>
       <translation>RECHAZADO: YA SE HICIERON {made} PIEZAS; F4 PONE LA CUENTA EN CERO</translation>
     </message>
     <message>
