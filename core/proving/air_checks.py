@@ -40,6 +40,7 @@ class AirChecks:
     _fed: TipMove | None = None  # the first of the feeds since the last rapid, none of which came near metal
     _fed_length: float = 0.0
     _has_cut: bool = False  # one of the feeds since the last rapid came near metal
+    _in_hole: TipMove | None = None  # the first feed of a drill since then, while it has cut nothing
     _fresh: bool = False  # no feed since the last rapid
     _cut_line: int = 0  # of the last feed that came near metal: a cycle's own rapids have it
     _went_in: TipMove | None = None  # a rapid beside the part, where nothing has been cut since
@@ -66,9 +67,13 @@ class AirChecks:
             self._went_in = self._went_in or move
 
     def feed(
-        self, move: TipMove, met: Cut, cutter: Cutter, part: TurnedPart, tool: int, forward: int
-    ) -> Iterator[Found]:
-        """What a feed that meets nothing should have cut; ``forward``: sign of Z the tool cuts towards."""
+        self, move: TipMove, met: Cut, cutter: Cutter, part: TurnedPart, tool: int, forward: int,
+        *, drill: bool = False,
+    ) -> Iterator[Found]:  # fmt: skip
+        """What a feed that meets nothing should have cut; ``forward``: sign of Z the tool cuts towards.
+
+        ``drill``: it is a drill of a known diameter.
+        """
         if tool != self._tool:
             yield from self._end_of_feeds()
             self._tool, self._went_in = tool, None
@@ -76,6 +81,10 @@ class AirChecks:
         if met and forward < 0 and self._out_of_part(move, cutter, fresh=fresh):
             yield Found("unmade-cut", "This move leads out of the part through metal, backwards.")
         close = bool(met) or self._comes_near(move, cutter, part)
+        if drill and fresh and not met and self._is_inside(move):
+            self._in_hole = move
+        elif met:
+            self._in_hole = None
         if close:
             self._has_cut, self._went_in, self._cut_line = True, None, move.line
         else:
@@ -107,7 +116,10 @@ class AirChecks:
 
     def _end_of_feeds(self) -> Iterator[Found]:
         fed, length, has_cut = self._fed, self._fed_length, self._has_cut
+        in_hole, self._in_hole = self._in_hole, None
         self._fed, self._fed_length, self._has_cut = None, 0.0, False
+        if in_hole is not None and has_cut:
+            yield Found("unmade-cut", "A drill is fed into a hole that is there already.", in_hole)
         if fed is not None and not has_cut and length >= _LEAST:
             what = "A thread is cut" if fed.kind is Kind.THREAD else "A tool is fed"
             yield Found("unmade-cut", f"{what} where there is no metal, from one rapid to the next.", fed)
@@ -131,6 +143,9 @@ class AirChecks:
                 yield Found("unmade-cut", text)
             elif near(cutter, part, move.points[0]) and not self._cut_before:  # behind a cut it is a retract
                 self._left_part = move
+
+    def _is_inside(self, move: TipMove) -> bool:
+        return self.stock is not None and move.points[-1][0] < self.stock.front - NEAR
 
     def _out_of_part(self, move: TipMove, cutter: Cutter, *, fresh: bool) -> bool:
         """Whether a tool is fed forwards out of the part, on what it has turned: a lost minus.

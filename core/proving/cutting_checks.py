@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 
+from core.geometry.surface_speed import surface_rpm
 from core.interpreter.actions import AskInput, Collet, Preset, ProgramEnd, SpindleRun, ToolChange, WaitInput
 from core.interpreter.elementary_blocks import Block, Kind, Series
 from core.interpreter.modal_state import Modal
@@ -17,6 +19,7 @@ LIVE = "live"
 """The names of outputs that turn a live tool begin with it in the machine file."""
 
 _QUICK = 100 * 25.4 / 60  # mm/s; what moves by G94 at this or more goes to a place and cuts nothing
+_FASTEST = 1000.0 * 1000.0 / 60.0  # mm/s of surface speed; more is for tools that small lathes do not have
 _MILLING = frozenset({Kind.PLANE_LINE, Kind.PLANE_ARC})
 _METAL = _MILLING | {Kind.ARC, Kind.THREAD}
 _WAYS = _METAL | {Kind.FEED}
@@ -71,7 +74,10 @@ class CuttingChecks:
             if block.action is not None:
                 self._like = None
                 self._act(block)
-            elif (block.modal, block.kind) != self._like:
+                continue
+            if block.css is not None and cuts(block):
+                self._surface_speed(block)
+            if (block.modal, block.kind) != self._like:
                 if not self.placed:
                     self._place(block)
                 self._like = (block.modal, block.kind) if block.modal.collet_closed else None
@@ -125,6 +131,20 @@ class CuttingChecks:
             self._live_tool_off(block)
         elif not modal.spindle and not block.per_rev and (self._has_run or modal.rpm):
             self._spindle_off(block)
+
+    def _surface_speed(self, block: Block) -> None:
+        """G96: what it asks of the spindle at both ends of a cut, against the limits in force."""
+        modal, most = block.modal, self.machine.spindle.rpm_max
+        speed = block.css or 0.0
+        radii = sorted((abs(block.x0), abs(block.x)))
+        slowest, fastest = (surface_rpm(speed, r, 0.0, math.inf) for r in reversed(radii))
+        if speed > _FASTEST and slowest > 2.0 * most:
+            text = f"The surface speed asks for {slowest:.0f} rpm here; the spindle has {most:.0f}."
+            self._report(block, Severity.ERROR, "surface-speed", text, "Correct S, or write G97 for rpm.")
+        if modal.css_max is None and fastest > most:
+            text = f"G96 has no limit: here the spindle goes to its highest speed, {most:.0f} rpm."
+            hint = "Write G77S with the highest speed for this chuck and bar."
+            self._report(block, Severity.WARNING, "no-speed-limit", text, hint)
 
     def _no_tool(self, block: Block) -> None:
         text = "This move cuts with no tool: its numbers count from the machine's home."

@@ -1,4 +1,4 @@
-"""Checks of a cutting edge: its side, its depth, the feed that it stands, and the hand of the spindle."""
+"""Checks of a cutting edge: its side, its place along the part, and the hand of the spindle."""
 
 from __future__ import annotations
 
@@ -15,27 +15,25 @@ from core.part.stock import Stock
 from core.part.swept_edge import Point
 from core.part.tool_shape import Hand, ToolKind, ToolShape
 from core.part.turned_part import NOTHING, Cut, TurnedPart
-from core.proving.assumed_tools import GROOVERS
+from core.proving.cut_sizes import INSERTS, size_faults
 from core.proving.thread_checks import Found
 from core.proving.tip_moves import TipMove
 from core.tool_edges import edge_name
 
-_COARSE = 0.8  # of the nose radius: the usual limit of a turned face
-_OF_WIDTH = 0.25  # of a grooving edge
-_OF_DRILL = 0.1  # of a drill's diameter
 _WRONG_SIDE = 0.5  # mm that the back of an insert may take off
 _BEHIND = 0.05  # mm of metal behind the nose
 _FACED = 2.54  # mm that is usually faced off in one cut towards the axis
 _STEEPER = 2.0  # degrees
 _OVER_AXIS = 1.5  # mm beyond it, which a face or a part-off needs at most
+_TURNED_AWAY = 0.1  # mm beyond it, by a cut along Z that leaves nothing
 _BEHIND_FACE = 0.5  # mm
 _PAST = 12.7  # mm
+_BEYOND_CUT = 0.2  # mm
 _ENTERS = 1.0  # mm; less is a chamfer or a face
 _BREAKS_THROUGH = 2.54  # mm that a tool may go beyond the stock
-_OFF_AXIS = 0.25  # mm; less is the play of a floating holder
+_OFF_AXIS = 0.1  # mm; less is a correction by a work shift
 _NEAR = 1e-6
 _DRILLS = frozenset({ToolKind.DRILL, ToolKind.CENTRE_DRILL, ToolKind.REAMER, ToolKind.TAP})
-_INSERTS = frozenset({ToolKind.TURNING, ToolKind.BORING})
 
 
 @dataclass(slots=True)
@@ -43,7 +41,8 @@ class EdgeChecks:
     """Goes with the moves in their order, each once it has been cut."""
 
     stock: Stock | None = None
-    parted_at: float | None = None  # Z of the deepest part-off
+    stock_given: bool = False  # and not assumed
+    parted_at: float | None = None  # Z to which the deepest part-off cuts, at the side of the chuck
     _turned: dict[int, float] = field(default_factory=dict)  # T → which way its edge has been cut with
     _told: set[int] = field(default_factory=set)
     _solid: float = 0.0  # mm of Z without a bore that the move under way enters
@@ -71,41 +70,19 @@ class EdgeChecks:
         """Yield the faults of a feed that has just cut; ``cuts``: what each piece of it has met."""
         if shape is None or not met:
             return
-        yield from self._feed(move, shape, tool, held=cutter.held)
+        yield from size_faults(move, met, shape, cutter, tool, stock_given=self.stock_given)
         yield from self._spindle(move, shape, cutter, tool)
         yield from _off_axis(move, shape, tool)
         if self._solid > _ENTERS and met.width > _ENTERS:
             words = f"{edge_name(tool)} is fed {move.modal.length_text(self._solid)} into solid material."
             yield Found("no-bore", words)
         yield from self._past_stock(move, shape, tool)
-        yield from self._over_axis(move, cutter, tool)
+        yield from self._over_axis(move, met, cutter, tool)
         yield from self._past_part_off(move, shape, cutter, tool)
+        yield from self._contour_past_part_off(move, shape, tool)
         yield from self._drilled(move, shape, tool)
-        if cutter.held and shape.kind in _INSERTS and move.kind is not Kind.THREAD:  # else it is assumed
-            yield from _too_deep(move, met, shape, cutter, tool)
+        if cutter.held and shape.kind in INSERTS and move.kind is not Kind.THREAD:  # else it is assumed
             yield from _wrong_side(move, cuts, shape, cutter, part, tool)
-
-    @staticmethod
-    def _feed(move: TipMove, shape: ToolShape, tool: int, *, held: bool) -> Iterator[Found]:
-        """Feed of a turn against nose radius, width of a groover, diameter of a drill."""
-        feed = move.per_rev or (move.speed * 60.0 / abs(move.rpm) if move.rpm else 0.0)
-        if not feed or move.kind is Kind.THREAD or shape.kind is ToolKind.TAP:
-            return
-        shown = move.modal.feed_text(feed, per_rev=True)
-        text = move.modal.length_text
-        if shape.kind in _DRILLS and held and feed > _OF_DRILL * shape.diameter > 0.0:
-            yield Found(
-                "chip-load", f"{edge_name(tool)} feeds {shown} with a diameter of {text(shape.diameter)}."
-            )
-        elif shape.kind in GROOVERS and held and feed > _OF_WIDTH * shape.width > 0.0:
-            yield Found(
-                "chip-load", f"{edge_name(tool)} feeds {shown} with an edge {text(shape.width)} wide."
-            )
-        elif shape.kind in _INSERTS and feed > _COARSE * shape.nose_radius > 0.0:
-            yield Found(
-                "chip-load",
-                f"{edge_name(tool)} feeds {shown} with a nose radius of {text(shape.nose_radius)}.",
-            )
 
     def _spindle(self, move: TipMove, shape: ToolShape, cutter: Cutter, tool: int) -> Iterator[Found]:
         """M03 and M04 against the hand of a drill; one edge cuts one way only."""
@@ -139,11 +116,12 @@ class EdgeChecks:
             )
             yield Found("wrong-spindle-direction", words)
 
-    def _over_axis(self, move: TipMove, cutter: Cutter, tool: int) -> Iterator[Found]:
+    def _over_axis(self, move: TipMove, met: Cut, cutter: Cutter, tool: int) -> Iterator[Found]:
         """An outside tool that is fed through the axis, or cuts on its other side."""
         face = (self.stock.front if self.stock is not None else 0.0) - _BEHIND_FACE
         beyond = max((-r * cutter.across for z, r in move.points[1:] if z < face), default=0.0)
-        if cutter.side is Side.OUTSIDE and beyond > _OVER_AXIS:
+        turns = max(r * cutter.across for _, r in move.points) < 0.0 and met.width > _ENTERS
+        if cutter.side is Side.OUTSIDE and beyond > (_TURNED_AWAY if turns else _OVER_AXIS):
             deep = move.modal.length_text(beyond)
             yield Found(
                 "over-axis",
@@ -162,9 +140,19 @@ class EdgeChecks:
                 f"{edge_name(tool)} cuts at Z {text(z)}; the part ends at {text(self.parted_at)}.",
             )
 
+    def _contour_past_part_off(self, move: TipMove, shape: ToolShape, tool: int) -> Iterator[Found]:
+        """An arc that no part has: it lies on the bar's side of the deepest part-off."""
+        if self.parted_at is None or move.kind is not Kind.ARC or shape.kind not in INSERTS:
+            return
+        front = max(z for z, _ in move.points)
+        if front < self.parted_at - _BEYOND_CUT:
+            text = move.modal.length_text
+            words = f"{edge_name(tool)} cuts an arc from Z {text(front)} on; the part ends at"
+            yield Found("contour-past-part-off", f"{words} {text(self.parted_at)}.")
+
     def _past_stock(self, move: TipMove, shape: ToolShape, tool: int) -> Iterator[Found]:
         """A feed beyond the far end of the stock; the point of a drill may come out of it."""
-        if self.stock is None or not self.stock.given:
+        if self.stock is None or not self.stock_given:
             return
         z, allowed = min(z for z, _ in move.points), _BREAKS_THROUGH
         if shape.turns_itself:
@@ -189,7 +177,7 @@ def _turns_backwards(shape: ToolShape, rpm: float) -> bool:
     A tool mounted upside down cuts the other way along Z than its hand says, and is not examined.
     """
     upright = {Hand.RIGHT: -1, Hand.LEFT: 1}.get(shape.hand) == shape.direction[0]
-    return shape.kind in _INSERTS and upright and not shape.behind and rpm < 0.0
+    return shape.kind in INSERTS and upright and not shape.behind and rpm < 0.0
 
 
 def _off_axis(move: TipMove, shape: ToolShape, tool: int) -> Iterator[Found]:
@@ -203,17 +191,6 @@ def _off_axis(move: TipMove, shape: ToolShape, tool: int) -> Iterator[Found]:
 def part_depth(move: TipMove, stock: Stock | None) -> float:
     """How deep a move ends behind the face of the stock, mm."""
     return (stock.front if stock is not None else 0.0) - min(z for z, _ in move.points)
-
-
-def _too_deep(move: TipMove, met: Cut, shape: ToolShape, cutter: Cutter, tool: int) -> Iterator[Found]:
-    """A cut along Z that is deeper than the edge is long; across it the insert goes in as it comes."""
-    (z0, r0), (z1, r1) = move.points[0], move.points[-1]
-    if shape.kind is not ToolKind.TURNING or abs(z1 - z0) <= abs(r1 - r0):
-        return
-    if met.depth > cutter.height:
-        text = move.modal.length_text
-        words = f"{edge_name(tool)} cuts {text(met.depth)} deep; its edge reaches {text(cutter.height)}."
-        yield Found("feed-into-holder", words)
 
 
 def _wrong_side(

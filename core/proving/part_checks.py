@@ -37,7 +37,8 @@ CHECKS: Mapping[str, Check] = {
     "feed-into-holder": Check(
         _ERROR,
         "Metal is fed into holder, shank or boring bar.",
-        "At a feed an outline that cannot cut meets more than .001 in, or a cut is deeper than the edge.",
+        "At a feed an outline that cannot cut meets more than .001 in, or a cut along Z is deeper than .7 of "
+        "the edge of a C or S insert, .5 of T, D and W, .2 of V (Widia's limits for strong geometries).",
         "Use a longer or slimmer tool, or another direction of cut, or less depth.",
     ),
     "holder-into-stock": Check(
@@ -50,6 +51,13 @@ CHECKS: Mapping[str, Check] = {
         _ERROR,
         "A tool, or its holder, runs into chuck, jaws or collet.",
         "An outline comes into the contour that the machine file gives under [clamping].",
+        "Let the part stick out further, or stop earlier.",
+        (TOOL,),
+    ),
+    "near-chuck": Check(
+        _WARNING,
+        "A tool, or its holder, all but touches chuck, jaws or collet.",
+        "Less than .01 in of Z is left between an outline and the contour under [clamping].",
         "Let the part stick out further, or stop earlier.",
         (TOOL,),
     ),
@@ -105,7 +113,7 @@ CHECKS: Mapping[str, Check] = {
         "A cutting move leads away from the part, and nothing is cut where the program seems to mean it.",
         "A feed leads away from the part, or out before its face; feeds between two rapids, or those of a "
         "live tool, come near no metal; a rapid goes in and out beside the part with nothing cut; a tool "
-        "that comes to the part is never fed.",
+        "that comes to the part is never fed; a drill is fed into a hole that is there already.",
         "Look for a lost minus (Z.5 for Z-.5) or a lost decimal point (X4 for X.4).",
     ),
     "part-off-unsupported": Check(
@@ -120,6 +128,18 @@ CHECKS: Mapping[str, Check] = {
         "A rapid right behind a cut takes off metal at a smaller radius than the cut.",
         "Go out along X before Z, or in a bore along Z before X.",
     ),
+    "rubs-surface": Check(
+        _WARNING,
+        "The tool rubs along the finished surface.",
+        "A turning insert returns along Z by a rapid, .1 in and more, on the radius that it has just turned.",
+        "Move X away from the part before Z.",
+    ),
+    "after-part-off": Check(
+        _WARNING,
+        "The blade goes through the place of the part that it has parted off.",
+        "The first rapid leads more than .1 in towards Z+ inside the outside of the piece.",
+        "Retract X before Z.",
+    ),
     "drill-too-deep": Check(
         _ERROR,
         "A drill goes deeper than its flutes are long.",
@@ -129,7 +149,7 @@ CHECKS: Mapping[str, Check] = {
     "drill-off-axis": Check(
         _ERROR,
         "A drill, reamer or tap cuts beside the spindle axis.",
-        "It takes off material more than .01 in off the axis while the spindle turns.",
+        "It takes off material more than .004 in off the axis while the spindle turns.",
         "Move to X0 before drilling, and check the X offset of the tool.",
         (TOOL,),
     ),
@@ -170,7 +190,8 @@ CHECKS: Mapping[str, Check] = {
     "over-axis": Check(
         _ERROR,
         "An outside tool cuts beyond the axis.",
-        "Behind the face it cuts more than .06 in beyond the axis, where it does not stand.",
+        "Behind the face it cuts more than .06 in beyond the axis, where it is not mounted, or .004 in on a "
+        "cut along Z.",
         "Look at the sign of X, and for a lost decimal point (X-03 for X-.03).",
     ),
     "past-part-off": Check(
@@ -179,17 +200,44 @@ CHECKS: Mapping[str, Check] = {
         "A feed along Z ends more than .5 in, and more than the part is long, behind the deepest part-off.",
         "Look for a lost decimal point (Z-3 for Z-.3).",
     ),
+    "contour-past-part-off": Check(
+        _WARNING,
+        "An arc of the contour is not on the part.",
+        "An insert cuts an arc more than .008 in on the bar's side of the deepest part-off.",
+        "Check the Z of the part-off: the part would lack what is behind it.",
+    ),
     "part-off-left": Check(
         _WARNING,
         "A parting tool stops just before the axis.",
         "It comes nearer than .04 in to the axis, not to it, and nothing falls off.",
         "Go on to X0 or a little beyond: look for a lost minus.",
     ),
+    "depth-of-cut": Check(
+        _WARNING,
+        "One pass is deeper than usual for its insert or its boring bar.",
+        "With a stated stock: over .5 of the cutting edge of a C or S insert, .4 of W, .3 of T, D, .2 of V "
+        "(Widia's limits for medium geometries, nose radius left off; CNMG432 where no insert is stated), or "
+        "over half the diameter of a boring bar. The material is not known: soft metal may allow more.",
+        "Take it off in several passes: look for a lost or exchanged digit in X.",
+    ),
+    "blade-turns": Check(
+        _ERROR,
+        "A parting or grooving blade turns along Z.",
+        "It takes off more than .01 in (parting), or more than .8 of its width (grooving: Ingersoll).",
+        "Check the tool number; widen a groove by plunges side by side.",
+    ),
     "chip-load": Check(
         _WARNING,
-        "The feed of a turn is larger than the edge can cut.",
-        "Over .8 of the nose radius; .25 of the width of a groover; .1 of the diameter of a drill.",
+        "The feed per revolution is larger than the edge can cut.",
+        "Over .8 of the nose radius, .12 of the width of a groover, .04 of the diameter of a drill, .1 of a "
+        "reamer.",
         "Lower F, or look for a lost decimal point (F.03 for F.003).",
+    ),
+    "feed-breaks-tool": Check(
+        _ERROR,
+        "The feed per revolution is far over what the edge can cut.",
+        "More than five times the limit of chip-load.",
+        "Lower F: look for a lost decimal point, or for millimeters in a program in inches.",
     ),
     "thread-run-up": Check(
         _WARNING,
@@ -198,11 +246,24 @@ CHECKS: Mapping[str, Check] = {
         "metal and v²/2a is more than a lead.",
         "Start farther away, lower S, end in a groove, or pull out with P.",
     ),
+    "thread-in-air": Check(
+        _WARNING,
+        "The first passes of a thread cut nothing.",
+        "Three passes and more stay outside the metal.",
+        "Begin at the diameter of the first pass: check X where the thread starts.",
+    ),
     "thread-form": Check(
         _WARNING,
         "A thread does not fit its lead.",
-        "It is deeper than a sharp V of the lead; or the lead is no multiple of the pitch of the insert.",
-        "Check K, X of the last pass, the X where it starts, and the pitch of the insert.",
+        "It is deeper than a sharp V of the lead.",
+        "Check K, X of the last pass, and the X where it starts.",
+    ),
+    "thread-pitch": Check(
+        _ERROR,
+        "A thread is not cut by the pitch of its insert.",
+        "The lead is not a multiple of the pitch that the shape of the tool states.",
+        "Check K and the insert. Leave the pitch of a partial-profile insert out of its shape.",
+        (TOOL,),
     ),
     "tap-pitch": Check(
         _ERROR,
@@ -240,6 +301,18 @@ PROGRAM_CHECKS: Mapping[str, Check] = {
         "A live tool stands while it mills.",
         "A move of plane switching with no live tool on; a warning with the spindle held as C.",
         "Switch it on by the M code that the machine file gives.",
+    ),
+    "no-speed-limit": Check(
+        _WARNING,
+        "Constant surface speed without a limit.",
+        "A cut under G96 without G77 asks for more than the spindle's highest speed, as at the axis.",
+        "Write G77S with the highest speed for this chuck and bar after G96.",
+    ),
+    "surface-speed": Check(
+        _ERROR,
+        "An rpm where a surface speed is meant.",
+        "S under G96 is over 1000 m/min (3280 ft/min), and asks for twice the spindle's speed.",
+        "Correct S, or write G97 for rpm.",
     ),
     "spindle-off": Check(
         _WARNING,

@@ -41,6 +41,8 @@ _CHUCK_STEP = 0.05  # mm
 _SLENDER = 5.0
 _STUB = (0.05, 1.0)  # mm of radius that a part-off leaves
 _SQUARE = 0.02  # mm of Z
+_LONG = 2.54  # mm of Z
+_CLEARANCE = 0.25  # mm of Z before the chuck
 _SAFE = 0.5  # of the speed at which a bar begins to whirl
 
 
@@ -65,9 +67,12 @@ class PartFindings:
     _tailstock: TurnedPart | None = None
     _whirls: float = 0.0  # rpm at which the stock begins to whirl; 0: not known
     _before: TipMove | None = None
+    _fallen: float = 0.0  # mm of radius, of the piece that the last move has parted off
 
     def __post_init__(self) -> None:
-        self._edges, self._airs = EdgeChecks(self.stock, self.parted_at), AirChecks(self.stock)
+        given = not self.not_said((STOCK,))
+        self._edges = EdgeChecks(self.stock, stock_given=given, parted_at=self.parted_at)
+        self._airs = AirChecks(self.stock)
         if self.clamping is not None and self.clamping.diameter and self.stock is not None:
             if not self.clamping.quill:  # what is held at both ends whirls much later
                 self._whirls = whirling_rpm(self.stock, self.clamping.stick_out)
@@ -109,12 +114,15 @@ class PartFindings:
             )
         if move.quick:
             self._rapid(move, met, certain=inside)
+            self._rubs(move, met, cutter, part, tool)
+            self._follows_part_off(move)
             self._found_by(move, self._airs.rapid(move, met, tool))
         else:
             shape = self.shape(tool)
             self._part_off(move, met, shape, tool)
             forward = shape.direction[0] if shape is not None else 0
-            self._found_by(move, self._airs.feed(move, met, cutter, part, tool, forward))
+            drill = shape is not None and shape.kind is ToolKind.DRILL and cutter.held
+            self._found_by(move, self._airs.feed(move, met, cutter, part, tool, forward, drill=drill))
             self._found_by(move, self._edges.look(move, cuts, met, self.shape(tool), cutter, part, tool))
         self._found_by(move, self.threads.look(move, met, part, self.shape(tool), tool))
         self._before = move
@@ -142,6 +150,8 @@ class PartFindings:
             text = f"{edge_name(tool)} runs into the chuck, {_depth(met, move)}."
             certain = self._chuck is not None and self._chuck.contains(move.points, RAPID)
             self._add("into-chuck", move, text, certain=certain)
+        elif _reached(self._chuck, _deeper_in_z(move), cutter):
+            self._add("near-chuck", move, f"{edge_name(tool)} all but touches the chuck.")
         if met := _reached(self._tailstock, move, cutter):
             self.into_clamping["into-tailstock", move.line] = met
             self._add(
@@ -170,6 +180,27 @@ class PartFindings:
         else:
             text = f"A rapid goes into metal, {deep}."
         self._add("through-part" if behind_cut else "rapid-into-stock", move, text, certain=certain)
+
+    def _rubs(self, move: TipMove, met: Cut, cutter: Cutter, part: TurnedPart, tool: int) -> None:
+        """An insert that goes back by a rapid along what it has just turned."""
+        (z0, r0), (z1, r1) = move.points[0], move.points[-1]
+        before, shape = self._before, self.shape(tool)
+        if met or before is None or before.quick or shape is None or shape.kind is not ToolKind.TURNING:
+            return
+        if abs(r1 - r0) > _SQUARE or abs(z1 - z0) < _LONG or not move.rpm:
+            return
+        deeper = r0 - math.copysign(RAPID, r0)
+        if cutter.meets(part, (z0, deeper), (z1, deeper)).width > _LONG:
+            self._add("rubs-surface", move, f"{edge_name(tool)} returns by a rapid along what it has turned.")
+
+    def _follows_part_off(self, move: TipMove) -> None:
+        """The first rapid once a piece has come off: out along X, and not through the place of the piece."""
+        radius, self._fallen = self._fallen, 0.0
+        (z0, r0), (z1, r1) = move.points[0], move.points[-1]
+        if z1 - z0 > _LONG and max(abs(r0), abs(r1)) < radius - RAPID:
+            self._add(
+                "after-part-off", move, "A rapid goes through the place of the part that was parted off."
+            )
 
     def pause(self) -> None:
         """The program waits, or switches something."""
@@ -233,11 +264,14 @@ class PartFindings:
             )
         self._left = None
 
-    def parted(self, move: TipMove, piece: Piece) -> None:
+    def parted(self, move: TipMove, piece: Piece, tool: int) -> None:
         """A piece has come off."""
         self._left = None
         if not piece.outside:
             return
+        shape = self.shape(tool)
+        if shape is not None and shape.kind is ToolKind.PARTING:
+            self._fallen = max(r for _, r in piece.outside)
         length = piece.outside[0][0] - piece.outside[-1][0]
         thick = 2.0 * max(r for _, r in piece.outside)
         if thick and length > _SLENDER * thick:
@@ -281,6 +315,11 @@ def _reached(body: TurnedPart | None, move: TipMove, cutter: Cutter) -> Cut:
         for start, end in pairwise(move.points):
             met = met.joined(cutter.reaches(body, start, end))
     return met
+
+
+def _deeper_in_z(move: TipMove) -> TipMove:
+    """The same move nearer to the chuck, by the clearance that it should have."""
+    return move._replace(points=tuple((z - _CLEARANCE, r) for z, r in move.points))
 
 
 def _executed(move: TipMove, cutter: Cutter, part: TurnedPart) -> tuple[list[Cut], Cut]:

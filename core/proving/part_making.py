@@ -182,7 +182,7 @@ class PartMaking:
         if self.milling is not None:
             part.pieces[before:] = [self.milling.less_milled(piece) for piece in part.pieces[before:]]
         for piece in part.pieces[before:]:
-            self.findings.parted(move, piece)
+            self.findings.parted(move, piece, self._tool)
 
     def _stands(self, move: TipMove, cutter: Cutter, part: TurnedPart) -> bool:
         """Whether metal is met while the spindle stands again, or left behind such a cut: that turns nothing.

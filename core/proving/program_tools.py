@@ -128,14 +128,18 @@ class ProgramTools:
 
     @property
     def parted_at(self) -> float | None:
-        """The deepest Z at which a parting tool is fed towards the axis; None: at none."""
-        moves = (m for n, use in self.uses.items() for m in use.moves if self._parts(n) and not m.quick)
-        ways = [(*move.points[0], *move.points[-1]) for move in moves]
-        return min((z1 for _, r0, z1, r1 in ways if abs(r1) < abs(r0) - _PLUNGE), default=None)
-
-    def _parts(self, number: int) -> bool:
-        shape = self.shape(number)
-        return shape is not None and shape.kind is ToolKind.PARTING
+        """The deepest Z to which a parting tool cuts that is fed towards the axis; None: there is none."""
+        deepest: list[float] = []
+        for number, use in self.uses.items():
+            shape = self.shape(number)
+            if shape is None or shape.kind is not ToolKind.PARTING:
+                continue
+            behind = (
+                shape.width * (1 + shape.direction[0]) / 2.0
+            )  # of the edge, beyond the corner that is set
+            ways = [(*m.points[0], *m.points[-1]) for m in use.moves if not m.quick]
+            deepest += [z1 - behind for _, r0, z1, r1 in ways if abs(r1) < abs(r0) - _PLUNGE]
+        return min(deepest, default=None)
 
     def nothing_cut(self, stock: Stock | None) -> Iterator[tuple[int, int, str]]:
         """Line, block and sentence of what should have cut and has not: tools never fed, feeds all away."""

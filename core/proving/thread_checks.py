@@ -26,6 +26,7 @@ _GIVES = 12.7  # mm by which a tap holder gives
 _IN_HOLE = 0.05  # mm
 _NEAR = 1e-6  # mm
 _MOST_STARTS = 24
+_IDLE = 3  # passes
 
 
 class Found(NamedTuple):
@@ -59,6 +60,7 @@ class ThreadChecks:
     _pass: tuple[TipMove, Cut] | None = None  # of a thread, until it is known how it ends
     _fed: TipMove | None = None  # the last feed of a tap into its hole
     _entry: float = 0.0  # Z of the metal that it has met first
+    _idle: int = 0  # passes one after the other that stay outside the metal
 
     def before_cut(self, move: TipMove, part: TurnedPart) -> None:
         """The radii of the metal, before the first pass of a thread is cut into it."""
@@ -103,6 +105,9 @@ class ThreadChecks:
     ) -> Iterator[Found]:
         text = move.modal.length_text
         deep, angle = self._depth(move, part), _POINT
+        self._idle = 0 if met or deep else self._idle + 1
+        if self._idle == _IDLE:
+            yield Found("thread-in-air", f"The first {_IDLE} passes of this thread meet no metal.")
         if shape is not None and shape.kind is ToolKind.THREADING and shape.point:
             angle = shape.point
         sharp = move.per_rev / 2.0 / math.tan(math.radians(angle / 2.0))
@@ -119,7 +124,7 @@ class ThreadChecks:
                     f"{edge_name(tool)} cuts a pitch of {text(shape.pitch)}; "
                     f"the lead is {text(move.per_rev)}."
                 )
-                yield Found("thread-form", words)
+                yield Found("thread-pitch", words)
         before, needed = self._run_up(move, met), self._braking(move)
         if met and before < needed:
             words = (

@@ -46,6 +46,17 @@ CASES: list[tuple[tuple[str, ...], list[tuple[str, str, int]]]] = [
     ((*HEAD, "X.5Z.1", "F100Z.5", "T1", "X.5Z.1", "G95F.004Z-.2", "M30"), []),
     ((*HEAD, "X.5Z.1", "G92X.5Z.1", "G95F.004Z-.2", "M30"), []),
     ((*HEAD, "T1", "X.5Z.1", "T0", "G92X.5Z.1", "G95F.004Z-.2", "M30"), []),
+    # G96: at the axis the spindle goes to its highest speed, 3500 rpm, where no G77 limits it;
+    # 300 ft/min at .2 in of radius are 2865 rpm
+    ((*HEAD, "T1", "G96S300", "X.5Z.1", "G95F.004Z0", "X0", "X.5", "M30"),
+     [("no-speed-limit", "warning", 7)]),
+    ((*HEAD, "T1", "G96S300", "X.5Z.1", "G95F.004Z0", "X.2", "X.5", "M30"), []),
+    ((*HEAD, "T1", "G96S300", "G77S2500", "X.5Z.1", "G95F.004Z0", "X0", "X.5", "M30"), []),
+    ((*HEAD, "T1", "G96S300", "G76S1000", "X.5Z.1", "G95F.004Z0", "X0", "X.5", "M30"),
+     [("no-speed-limit", "warning", 8)]),
+    # 5000 ft/min at .5 in of radius are 19099 rpm, over twice 3500; 3000 ft/min are less than 1000 m/min
+    ((*HEAD, "T1", "G96S5000", "G77S2500", "X.5Z.1", "G95F.004Z-.2", "M30"), [("surface-speed", "error", 7)]),
+    ((*HEAD, "T1", "G96S3000", "G77S2500", "X.5Z.1", "G95F.004Z-.2", "M30"), []),
     # the collet
     ((*HEAD, "T1", "X.5Z.1", "M13", "G95F.004Z-.2", "Z-.3", "M12", "Z-.5", "M30"),
      [("collet-open", "error", 6)]),

@@ -59,13 +59,19 @@ BOTH = ONCE + "X[.35]\nM05\n{m}S900\nG95F[.004]Z[-.3]\nX[.6]"
 HOLE = "M05\n{m}S900\nT{t}\nX[0]Z[.1]\nG95F[{f}]Z[-.3]\nG94F[300]Z[.1]"
 
 REAR = "M05\nM04S900\nT7\nX[-.6]Z[-.4]\nG95F[.004]X[-.4]\nX[{x}]"
-SHAFT = "T1\nX[.6]Z[.05]\nX[.2]\nG95F[.004]Z[{z}]\nX[.6]\nG94F[300]Z[.1]\n"
+SHAFT = "T1\nX[.6]Z[.05]\nX[.4]\nG95F[.004]Z[{z}]\nX[.6]\nG94F[300]Z[.1]\n"
 SHAFT += "T2\nZ[-.9]X[.6]\nG95F[.002]X[{r}]\nG94F[300]X[.6]"
 GROOVE = "T2\nX[.6]Z[{z}]\nG95F[.004]X[.4]\nG94F[300]X[.6]"
 THREAD = "M05\nM03S600\nT8\nX[.3]Z[.2]\nG34Z[{z}]I[.01]K[.05]\nX[.4]"
 FACE_MILL = "T9\nX[-.3]Z[.1]\nM05\nM19S60\nG04F3\nM27\nG94F[20]\nZ[{z}]\n"
 FACE_MILL += "(~PLXC)\n(X[.2]Y0)\n(X[-.2]Y0)\n(END)\nM28\nM05"
 LONG = bar(25.4, 0.0, -80.0)
+PASS = "T1\nX[.6]Z[.05]\nX[{r}]\nG95F[{f}]Z[-.5]\nX[.6]\nG94F[300]Z[1]"
+BLADE_TURNS = "T2\nX[.6]Z[-.3]\nG95F[.002]X[{r}]\nZ[-.5]\nX[.6]"
+FACE = "T1\nX[.6]Z[.1]\nZ[{z}]\nG95F[.004]X[-.02]\nG94F[300]Z[1]"
+BORE = "T4\nX[.38]Z[.1]\nX[{r}]\nG95F[.004]Z[-.4]\nX[.38]\nG94F[300]Z[1]"
+FILLET = "T1\nX[.6]Z[.05]\nX[.4]\nG95F[.004]Z[-.6]\nG03X[.425]Z[-.625]R[.025]\nX[.6]\nG94F[300]Z[1]\n"
+TWICE = "T3\nX[0]Z[.1]\nG95F[.004]Z[-.3]\nG94F[300]Z[.1]\nG95F[.004]\nZ[{z}]\nG94F[300]Z[1]"
 
 CASES = {
     # .1 in deep on .1 of Z is 45°, on .25 it is 22°
@@ -80,17 +86,48 @@ CASES = {
     "wrong-spindle-direction of a left-hand drill": (
         HOLE.format(m="M03", t=6, f=".004"), HOLE.format(m="M04", t=6, f=".004"), ROD, 7,
     ),
-    # 6 mm: .1 of it is .0236 in
+    # 6 mm: .04 of it is .0094 in
     "chip-load of a drill": (
-        HOLE.format(m="M03", t=3, f=".03"), HOLE.format(m="M03", t=3, f=".02"), ROD, 7,
+        HOLE.format(m="M03", t=3, f=".01"), HOLE.format(m="M03", t=3, f=".009"), ROD, 7,
     ),
-    # 2 mm wide: .25 of it is .0197 in
+    # 2 mm wide: .12 of it is .0094 in
     "chip-load of a blade": (
-        "T2\nX[.6]Z[-.5]\nG95F[.021]X[.4]\nX[.6]", "T2\nX[.6]Z[-.5]\nG95F[.018]X[.4]\nX[.6]", ROD, 5,
+        "T2\nX[.6]Z[-.5]\nG95F[.01]X[.4]\nX[.6]", "T2\nX[.6]Z[-.5]\nG95F[.009]X[.4]\nX[.6]", ROD, 5,
     ),
     # 1500 rpm: 20 in/min are .0133 in a turn, .8 of the nose is .0126
     "chip-load by time": (
         "T1\nX[.6]Z[.05]\nX[.4]\nF[20]Z[-.5]\nX[.6]", "T1\nX[.6]Z[.05]\nX[.4]\nF[18]Z[-.5]\nX[.6]", ROD, 6,
+    ),
+    # five times .0126 is .063 in a revolution
+    "feed-breaks-tool": (PASS.format(r=".4", f=".064"), PASS.format(r=".4", f=".012"), ROD, 6),
+    # DCMT11T304: edge 11.6 mm, less the nose .4; .3 of it is 3.37 mm or .1325 in, .5 is .221 in
+    "depth-of-cut": (PASS.format(r=".36", f=".004"), PASS.format(r=".38", f=".004"), ROD, 6),
+    "feed-into-holder by depth": (PASS.format(r=".27", f=".004"), PASS.format(r=".38", f=".004"), ROD, 6),
+    # a face .14 in deep, and one of .09
+    "depth-of-cut of a face": (FACE.format(z="-.14"), FACE.format(z="-.09"), ROD, 6),
+    # DCMT070204: .3 of 7.75 - .4 is 2.2 mm; from r 10 to .49 in are 2.45 mm, to .47 in 1.94 mm
+    "depth-of-cut in a bore": (BORE.format(r=".49"), BORE.format(r=".47"), PIPE, 6),
+    # a parting blade takes .01 in along Z, a chamfer at 45 degrees is none of it
+    "blade-turns": (
+        BLADE_TURNS.format(r=".48"),
+        BLADE_TURNS.format(r=".492"), ROD, 6,
+    ),
+    "rubs-surface": (
+        PASS.format(r=".4", f=".004").replace("X[.6]\nG94F[300]Z[1]", "G94F[300]Z[.1]\nX[.6]"),
+        PASS.format(r=".4", f=".004"), ROD, 7,
+    ),
+    "after-part-off": (
+        SHAFT.format(z="-.92", r="-.01").replace("G94F[300]X[.6]", "G94F[300]Z[.1]\nX[.6]"),
+        SHAFT.format(z="-.92", r="-.01"), LONG, 12,
+    ),
+    # the arc begins .02 in past the part-off, or .2 before it
+    "contour-past-part-off": (
+        FILLET + "T2\nZ[-.58]X[.6]\nG95F[.002]X[-.01]\nG94F[300]X[.6]",
+        FILLET + "T2\nZ[-.8]X[.6]\nG95F[.002]X[-.01]\nG94F[300]X[.6]", LONG, 7,
+    ),
+    "over-axis along Z": (PASS.format(r="-.03", f=".004"), PASS.format(r=".38", f=".004"), ROD, 6),
+    "unmade-cut of a drill": (
+        TWICE.format(z="-.29"), TWICE.format(z="-.4"), ROD, 8,
     ),
     # lost minus behind a turned diameter: X.55 for X-.55
     "over-axis": (REAR.format(x=".55"), REAR.format(x="-.55"), ROD, 8),
@@ -106,7 +143,7 @@ CASES = {
     "unmade-cut, a thread": (THREAD.format(z=".5"), THREAD.format(z="-.5"), bar(12.7, 0.0, -60.0), 7),
     # the face itself is where a tool is set to, and may be gone along
     "unmade-cut of a live tool": (FACE_MILL.format(z=".005"), FACE_MILL.format(z="0"), ROD, 10),
-    "unmade-cut, out of the part": (BACKWARDS.format(z=".4"), BACKWARDS.format(z="-.4"), ROD, 10),
+    "unmade-cut, out of the part": (BACKWARDS.format(z=".4"), BACKWARDS.format(z="-.3"), ROD, 10),
     "unmade-cut, never fed": (
         "T2\nX[.6]Z[.05]\nX[.51]Z[-.2]\nX[.6]", "T2\nX[.6]Z[.05]\nX[.51]Z[-.2]\nG95F[.004]X[.45]\nX[.6]",
         ROD, 5,

@@ -57,7 +57,9 @@ def test_a_drill_beside_the_bar_meets_nothing() -> None:
     )
 
 
-@pytest.mark.parametrize(("x", "expected"), [("0", False), (".005", False), (".02", True), ("-.02", True)])
+@pytest.mark.parametrize(
+    ("x", "expected"), [("0", False), (".003", False), (".005", True), (".02", True), ("-.02", True)]
+)
 def test_a_drill_off_the_axis_is_an_error(x: str, expected: bool) -> None:
     program = text(HOLE.format(t=2, z="-.3").replace("X[0]", f"X[{x}]"))
     assert (("drill-off-axis", "error") in found(program)) is expected
@@ -142,9 +144,8 @@ LOOP = "T1\nX[.6]Z[.1]\nX[.3]\nG95F[.004]Z[-.3]\nG03X[.45]Z[-.45]I[.3]K[-.45]\nX
 
 def test_an_arc_is_examined_piece_by_piece() -> None:
     """The arc begins square to the axis, into .3 in of material; the back of a CNMG clears 5°."""
-    assert codes("G90G94F300G73\nM03S1500\n" + LOOP.replace("[", "").replace("]", "") + "\nM30\n") == {
-        "wrong-side"
-    }
+    program = "G90G94F300G73\nM03S1500\n" + LOOP.replace("[", "").replace("]", "") + "\nM30\n"
+    assert codes(program) == {"depth-of-cut", "wrong-side"}
 
 
 def test_what_rests_on_something_assumed_is_a_warning() -> None:

@@ -44,7 +44,7 @@ def text(lines: str, *, metric: bool = False, diameter: bool = False) -> str:
         scale = unit * (2.0 if diameter and found[1] == "X" else 1.0)
         return f"{found[1]}{float(found[2]) * scale:.5f}"
 
-    body = re.sub(r"([XZFIK])\[(-?[\d.]+)\]", number, lines)
+    body = re.sub(r"([XZFIKR])\[(-?[\d.]+)\]", number, lines)
     head = "G90G94F" + f"{300 * unit:.0f}" + ("G71" if metric else "") + ("G72" if diameter else "G73")
     return f"{head}\nM03S1500\n{body}\nM30\n"
 
@@ -364,16 +364,16 @@ def test_a_thread_in_a_bore_takes_its_grooves_and_no_more() -> None:
 def test_a_cut_is_no_deeper_than_the_edge_is_long() -> None:
     cut = "T1\nX[1.1]Z[.05]\nX[{r}]\nG95F[.004]Z[-.5]\nX[1.1]\nG94F[300]Z[1]"
     thick = bar(50.8, 0.0, -60.0)
-    _, part = proved(text(cut.format(r=0.3)), thick)  # .7 in by an insert that reaches .67
+    _, part = proved(text(cut.format(r=0.3)), thick)  # .7 in; .5 of 11.2 mm is .22 in
     assert ("feed-into-holder", 6) in checks(part)
-    _, part = proved(text(cut.format(r=0.8)), thick)
+    _, part = proved(text(cut.format(r=0.9)), thick)
     assert checks(part) == []
 
 
 def test_an_arc_into_a_shoulder_is_as_deep_as_the_shoulder_is_high() -> None:
-    """60 degrees of a fillet of .15: .3 in of metal above it, of which each chord meets another slice."""
+    """60 degrees of a fillet of .15: .1 in of metal above it, of which each chord meets another slice."""
     cut = "T1\nX[.7]Z[.05]\nX[.3]\nG95F[.004]Z[-.4]\nG03X[.375]Z[-.5299]R.15\nX[.7]\nG94F[300]Z[1]"
-    _, part = proved(text(cut), bar(30.48, 0.0, -60.0))
+    _, part = proved(text(cut), bar(20.32, 0.0, -60.0))
     assert checks(part) == []
 
 

@@ -71,7 +71,9 @@ CASES = {
     ),
     # a sharp V of .05 in is .0433 deep: X.2 for X.222 is .05 below a bar of .25
     "thread-form": (CUT.replace("X[.222]", "X[.2]"), CUT, ROD, 8),
-    "thread-form by the pitch of the insert": (CUT.replace("K[.05]", "K[.075]"), CUT, ROD, 8),
+    # I = .01: passes start at X.3, .2959, .2927, all outside a bar of .25
+    "thread-in-air": (CUT.replace("X[.247]", "X[.3]"), CUT, ROD, 8),
+    "thread-pitch": (CUT.replace("K[.05]", "K[.075]"), CUT, ROD, 8),
 }  # fmt: skip
 
 

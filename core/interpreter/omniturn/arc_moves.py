@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import dist
+from math import degrees, dist, pi
 
 from core.geometry.lines_and_arcs import Point, arc_length, centre_from_radius
 from core.interpreter import units
@@ -15,6 +15,7 @@ from core.interpreter.omniturn.straight_moves import check_tool, go, on_step, wa
 
 _TOLERANCE = 0.0005 * units.MM_PER_INCH * (1 + 1e-9)
 _SAME = 1e-9  # mm
+_ROUNDED = 0.01  # radians: what rounded end points and centers add to half a circle
 
 
 def arc_move(state: State, statement: Statement) -> Block:
@@ -33,12 +34,21 @@ def arc_move(state: State, statement: Statement) -> Block:
         _check_radii(state, statement, dist(start, centre), dist((state.x, state.z), centre))
     length = arc_length(start, (state.x, state.z), centre, clockwise=clockwise)
     check_move(state, statement.line, start[0], state.x, length)
+    _warn_of_long_way(state, statement, length / dist(start, centre))
     warn_of_title_rapid(state, statement.line)
     return state.move(
         Kind.ARC, statement.line, statement.part("move"), (*start, state.c), state.feed,
         per_rev=state.per_rev, rpm=state.rpm_at(state.x), css=state.modal.css_speed,
         centre=centre, clockwise=clockwise,
     )  # fmt: skip
+
+
+def _warn_of_long_way(state: State, statement: Statement, sweep: float) -> None:
+    """More than half a circle by I and K: an insert can hardly cut it; the code is that of the other way."""
+    if pi + _ROUNDED < sweep < 2.0 * pi - _ROUNDED:
+        text = f"The arc goes through {degrees(sweep):.0f} degrees."
+        hint = "Check G02 and G03, and the signs of I and K."
+        state.log.warn(statement.line, statement.code_column, "arc-over-half", text, hint)
 
 
 def _centre_by_radius(state: State, statement: Statement, start: Point, *, clockwise: bool) -> Point:

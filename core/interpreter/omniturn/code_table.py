@@ -64,7 +64,7 @@ _arc = partial(
     apart=(Together(("R", "I"), _ARC_BOTH), Together(("R", "K"), _ARC_BOTH)),
     not_when={When.INCREMENTAL_DIAMETERS: _ARC_MODE},
     least_blocks=1, under_nose=True, before_corner=True, in_contour=True,
-    further=names("arc-coordinate-missing arc-no-chord arc-no-radius arc-radius"),
+    further=names("arc-coordinate-missing arc-no-chord arc-no-radius arc-over-half arc-radius"),
 )
 _PLACE = Together(
     ("X", "Z"), Refusal("word-missing", "G{number} needs X or Z.", "Write the coordinates.")
@@ -263,7 +263,7 @@ CHAPTERS: tuple[tuple[str, tuple[Code, ...]], ...] = (
                 wrong=Refusal(
                     "dwell-range", "G04F{value}: the shortest dwell is 0.1 s.", "Correct F."))},
             least_blocks=1, under_nose=True, before_corner=True, in_contour=True,
-            further=names("dwell-too-short")),
+            further=names("dwell-long dwell-too-short")),
         Code("F", "Fn", "Feed: in/min under G94, in/rev under G95.", "Z0F.002",
             acts=Acts.WORD, handler="feeds.feed_words", words=names("F"), f=FWord.FEED,
             rules={"F": WordRule(
@@ -384,7 +384,7 @@ CHAPTERS: tuple[tuple[str, tuple[Code, ...]], ...] = (
                     "Correct L.")),
                 "C": _LENGTH("the distance before the cut at which the feed begins", numberless=_NEEDS),
             },
-            further=names("cycle-depth cycle-passes cycle-retract")),
+            further=names("cycle-depth cycle-passes cycle-retract peck-depth")),
         Code("G74", "G74XnZnInUnFn", "Rough a box in passes of I at most, leaving U in X.",
             "G74X.3Z-.5I.05U.01F.006", acts=Acts.CYCLE, handler="roughing_cycles.box_moves",
             words=names("X Z I U F S"), f=FWord.FEED, not_when=_NOT_READY, least_blocks=4,

@@ -33,6 +33,12 @@ def peck_moves(state: State, statement: Statement) -> list[Move]:
     x = moves[-1].x if moves else state.x
     start, depth = state.z, _depth(state, statement)
     peck = length(state, statement, "K")
+    if peck > (start - depth) * (1.0 + _WHOLE):
+        deep = state.modal.length_text(start - depth)
+        text = f"{statement.words['K'].text}: a peck is deeper than the hole, {deep}."
+        state.log.warn(
+            statement.line, statement.words["K"].column, "peck-depth", text, "Correct K, or drill with G81."
+        )
     count = ceil((start - depth) / peck - _WHOLE)
     check_count(statement, "K", count, "pecks")
     rate, clear = _rate(state, statement), LIFT

@@ -13,12 +13,18 @@ from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
 
 _SHORTEST = G_CODES[4].rules["F"].least  # s
+_LONG = 60.0  # s with a tool in force: warm-up programs have none
 _DONE = 1e-9  # s, degrees
 
 
 def dwell(state: State, statement: Statement) -> Iterator[Block]:
     """The block of G04. Raises ProgramError where F is missing or out of range."""
     seconds = number(state, statement, "F") or 0.0
+    if seconds > _LONG and state.modal.tool:
+        text = f"The dwell takes {seconds / 60.0:.1f} minutes."
+        state.log.warn(
+            statement.line, statement.words["F"].column, "dwell-long", text, "F of G04 is in seconds."
+        )
     _shorten_arrival(state, seconds)
     yield state.action(statement.line, statement.part("move"), Dwell(seconds))
 

@@ -1,0 +1,128 @@
+"""Checks of the size of a cut: depth and feed against insert, boring bar, blade and drill."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+
+from core.interpreter.elementary_blocks import Kind
+from core.part.cutter import Cutter
+from core.part.insert_codes import Insert, InsertCodeError, decoded, insert_of
+from core.part.tool_shape import ToolKind, ToolShape
+from core.part.turned_part import Cut
+from core.proving.assumed_tools import GROOVERS
+from core.proving.thread_checks import Found
+from core.proving.tip_moves import TipMove
+from core.tool_edges import edge_name
+
+# Largest depth of cut in lengths of the cutting edge (a round insert: diameters), for medium geometries and
+# for the strongest: Widia, "Selection of insert", the columns -LM and ..M of its table of effective lengths.
+MEDIUM: Mapping[str, float] = {"S": 0.5, "C": 0.5, "W": 0.4, "T": 0.3, "D": 0.3, "V": 0.2, "R": 0.3}
+STRONGEST: Mapping[str, float] = {"S": 0.7, "C": 0.7, "W": 0.5, "T": 0.5, "D": 0.5, "V": 0.2, "R": 0.4}
+_OTHER_SHAPE = 0.5
+_OF_BAR = 0.5  # of a boring bar's diameter
+_USUAL = insert_of("C", 12.7, 0.8)  # CNMG432, the largest that a small lathe usually has
+
+_COARSE = 0.8  # of the nose radius: the usual limit of a turned face
+_OF_WIDTH = 0.12  # of a grooving edge; Ingersoll's catalog of 2011 has .075
+_OF_DRILL = 0.04  # of the diameter of a drill: twice the usual .02
+_OF_REAMER = 0.1
+_BREAKS = 5.0  # times one of these
+_TURNS_WIDE = 0.8  # of the width, by a grooving edge along Z: the same catalog
+_BLADE_FINISH = 0.25  # mm along Z that a parting blade may take off
+
+_DRILLS = frozenset({ToolKind.DRILL, ToolKind.CENTRE_DRILL, ToolKind.REAMER})
+INSERTS = frozenset({ToolKind.TURNING, ToolKind.BORING})
+
+
+def size_faults(
+    move: TipMove, met: Cut, shape: ToolShape, cutter: Cutter, tool: int, *, stock_given: bool
+) -> Iterator[Found]:
+    """Yield what is too large in a feed that has just cut ``met``."""
+    yield from _feed(move, shape, tool, held=cutter.held)
+    if move.kind is Kind.THREAD:
+        return
+    if shape.kind in GROOVERS:
+        yield from _blade_turns(move, met, shape, tool)
+    elif shape.kind in INSERTS:
+        yield from _depth(move, met, shape, cutter, tool, stock_given=stock_given)
+
+
+def _feed(move: TipMove, shape: ToolShape, tool: int, *, held: bool) -> Iterator[Found]:
+    """Feed per revolution against nose radius, width of a groover or diameter of a drill."""
+    feed = move.per_rev or (move.speed * 60.0 / abs(move.rpm) if move.rpm else 0.0)
+    if not feed or move.kind is Kind.THREAD or shape.kind is ToolKind.TAP:
+        return
+    text, limit, words = move.modal.length_text, 0.0, ""
+    if shape.kind in _DRILLS and held:
+        limit = (_OF_REAMER if shape.kind is ToolKind.REAMER else _OF_DRILL) * shape.diameter
+        words = f"a diameter of {text(shape.diameter)}"
+    elif shape.kind in GROOVERS and held:
+        limit, words = _OF_WIDTH * shape.width, f"an edge {text(shape.width)} wide"
+    elif shape.kind in INSERTS:
+        limit, words = _COARSE * shape.nose_radius, f"a nose radius of {text(shape.nose_radius)}"
+    if feed > limit > 0.0:
+        shown = move.modal.feed_text(feed, per_rev=True)
+        words = f"{edge_name(tool)} feeds {shown} with {words}."
+        if feed > _BREAKS * limit:
+            yield Found("feed-breaks-tool", words)
+        else:
+            yield Found("chip-load", words)
+
+
+def _is_along(move: TipMove) -> bool:
+    """Return whether a move goes along Z rather than across it."""
+    (z0, r0), (z1, r1) = move.points[0], move.points[-1]
+    return abs(z1 - z0) > abs(r1 - r0)
+
+
+def _blade_turns(move: TipMove, met: Cut, shape: ToolShape, tool: int) -> Iterator[Found]:
+    """A blade fed along Z, deeper than it can bend: a chamfer at 45° is not such a move."""
+    (z0, r0), (z1, r1) = move.points[0], move.points[-1]
+    if abs(z1 - z0) <= 2.0 * abs(r1 - r0):
+        return
+    limit = _BLADE_FINISH if shape.kind is ToolKind.PARTING else _TURNS_WIDE * shape.width
+    if met.depth > limit > 0.0:
+        text = move.modal.length_text
+        words = (
+            f"{edge_name(tool)} turns {text(met.depth)} deep along Z; a blade like it takes {text(limit)}."
+        )
+        yield Found("blade-turns", words)
+
+
+def _depth(
+    move: TipMove, met: Cut, shape: ToolShape, cutter: Cutter, tool: int, *, stock_given: bool
+) -> Iterator[Found]:
+    """Depth of a cut against the length of the edge, and against the bar of a boring tool.
+
+    A profile with a shoulder is as deep as its feed along Z; a cut across is as deep as it is wide.
+    """
+    along = _is_along(move)
+    deep, text = (met.depth if along else met.width), move.modal.length_text
+    most = min(depth_limit(shape, STRONGEST), cutter.height or math.inf)
+    if along and cutter.held and deep > most:
+        words = f"{edge_name(tool)} cuts {text(deep)} deep; its edge can cut {text(most)}."
+        yield Found("feed-into-holder", words)
+        return
+    usual = depth_limit(shape if cutter.held else replace(shape, insert=""), MEDIUM)
+    if shape.kind is ToolKind.BORING and shape.diameter:
+        usual = min(usual, _OF_BAR * shape.diameter)
+    if stock_given and deep > usual:
+        words = f"{edge_name(tool)} cuts {text(deep)} deep in one pass; {text(usual)} is usual at most."
+        yield Found("depth-of-cut", words)
+
+
+def depth_limit(shape: ToolShape, shares: Mapping[str, float]) -> float:
+    """Largest depth of cut, mm: a share of the straight part of the edge, or of a round insert's diameter."""
+    insert = _insert(shape)
+    share = shares.get(insert.shape, _OTHER_SHAPE)
+    edge = insert.edges[0] - insert.nose_radius if insert.edges else insert.inscribed_circle
+    return share * edge
+
+
+def _insert(shape: ToolShape) -> Insert:
+    try:
+        return decoded(shape.insert) if shape.insert.strip() else _USUAL
+    except InsertCodeError:
+        return _USUAL

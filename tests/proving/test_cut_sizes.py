@@ -1,0 +1,111 @@
+"""Sizes of a cut against insert, bar, chuck and piece, each with a near twin; values worked out by hand."""
+
+from __future__ import annotations
+
+import pytest
+
+from core.part.clamping import Clamping
+from core.part.stock import bar, tube
+from core.part.tool_shape import ToolKind, ToolShape
+from core.proving.cut_sizes import MEDIUM, STRONGEST, depth_limit
+from tests.proving.test_edge_checks import part_of
+from tests.proving.test_part_proof import WAYS, text
+from tests.proving.test_sound_programs import part_of as assumed_part_of
+
+CNMG = ToolShape(ToolKind.TURNING, tip=3, insert="CNMG432", nose_radius=0.8)
+BORER = ToolShape(ToolKind.BORING, tip=2, nose_radius=0.2, diameter=6.0, stick_out=40.0)
+BLADE = ToolShape(ToolKind.PARTING, tip=3, width=2.0, stick_out=30.0)
+GROOVER = ToolShape(ToolKind.GROOVING, tip=3, width=2.0, stick_out=30.0)
+PASS = "T1\nX[.6]Z[.05]\nX[{r}]\nG95F[.006]Z[-.5]\nX[.6]\nG94F[300]Z[1]"
+
+
+@pytest.mark.parametrize(
+    ("insert", "medium", "strongest"),
+    [
+        # edge: 12.7 / sin 80° = 12.896 mm, less the nose of .794 mm (1/32 in): 12.102 mm
+        ("CNMG432", 6.051, 8.471),
+        # 16.5 mm (9.525 x √3 = 16.498), less .397: 16.101
+        ("TNMG331", 4.830, 8.050),
+        # 9.525 / sin 35° = 16.606, less .397: 16.209
+        ("VNMG331", 3.242, 3.242),
+        ("", 6.048, 8.467),  # as CNMG 120408, with a nose of .8
+    ],
+)
+def test_the_depth_that_an_edge_can_cut(insert: str, medium: float, strongest: float) -> None:
+    shape = ToolShape(ToolKind.TURNING, insert=insert)
+    assert depth_limit(shape, MEDIUM) == pytest.approx(medium, abs=2e-3)
+    assert depth_limit(shape, STRONGEST) == pytest.approx(strongest, abs=2e-3)
+
+
+@pytest.mark.parametrize(
+    ("r", "expected"),
+    [(".25", [("depth-of-cut", 6)]), (".27", []), (".15", [("feed-into-holder", 6)])],
+    # .25 in = 6.35 mm over 6.05; .23 in = 5.84 mm; .35 in = 8.89 mm over 8.47
+)
+@pytest.mark.parametrize(("metric", "diameter"), WAYS)
+def test_a_pass_of_a_cnmg432(r: str, expected: list[tuple[str, int]], metric: bool, diameter: bool) -> None:
+    program = text(PASS.format(r=r), metric=metric, diameter=diameter)
+    part = part_of(program, bar(25.4, 0.0, -60.0), {1: CNMG})
+    assert [(each.check, each.line) for each in part.findings] == expected
+
+
+def test_an_assumed_tool_is_judged_by_a_cnmg432_and_named() -> None:
+    (found,) = part_of(text(PASS.format(r=".25")), bar(25.4, 0.0, -60.0), {}).findings
+    assert (found.check, found.severity, found.assumed) == ("depth-of-cut", "warning", ("T1",))
+    assert part_of(text(PASS.format(r=".27")), bar(25.4, 0.0, -60.0), {}).findings == ()
+
+
+def test_an_assumed_stock_says_nothing_of_the_depth() -> None:
+    """.4 in of radius in one pass of a casting that nobody has described."""
+    program = "G90G94F300G72\nM03S800\nT1\nX1.2Z.05\nX.2\nG95F.004Z-.5\nG94F300X1.1\nZ1\nM30\n"
+    assert assumed_part_of(program).findings == ()
+
+
+@pytest.mark.parametrize(("r", "expected"), [(".52", [("depth-of-cut", 6)]), (".5", [])])
+def test_a_boring_bar_cuts_half_its_diameter_at_most(r: str, expected: list[tuple[str, int]]) -> None:
+    """A bore of r 10 mm and a bar of 6 mm: .52 in are 3.21 mm deep, .5 in 2.7 mm."""
+    program = text(f"T1\nX[.35]Z[.1]\nX[{r}]\nG95F[.003]Z[-.4]\nX[.35]\nG94F[300]Z[1]")
+    part = part_of(program, tube(38.1, 20.0, 0.0, -60.0), {1: BORER})
+    assert [(each.check, each.line) for each in part.findings] == expected
+
+
+GROOVE = "T1\nX[.6]Z[-.5]\nG95F[.002]X[.4]\nX[.6]\nX[{r}]\nZ[-.45]\nX[.6]\nG94F[300]Z[1]"
+
+
+@pytest.mark.parametrize(
+    ("tool", "r", "expected"),
+    [
+        (BLADE, ".485", [("blade-turns", 8)]), (BLADE, ".492", []),  # .015 in and .008 in; .25 mm are .0098
+        (GROOVER, ".43", [("blade-turns", 8)]), (GROOVER, ".44", []),  # .07 and .06 in; .8 x 2 mm are .063
+    ],
+)  # fmt: skip
+def test_a_blade_along_z(tool: ToolShape, r: str, expected: list[tuple[str, int]]) -> None:
+    part = part_of(text(GROOVE.format(r=r)), bar(25.4, 0.0, -60.0), {1: tool})
+    assert [(each.check, each.line) for each in part.findings] == expected
+
+
+def test_a_blade_may_chamfer() -> None:
+    chamfer = "T1\nX[.6]Z[-.5]\nG95F[.002]X[.4]\nX[.55]\nZ[-.4]\nX[.5]\nX[.46]Z[-.44]\nX[.6]\nG94F[300]Z[1]"
+    part = part_of(text(chamfer), bar(25.4, 0.0, -60.0), {1: BLADE})
+    assert part.findings == ()
+
+
+@pytest.mark.parametrize(
+    ("z", "expected"),
+    [("-1.57", {"near-chuck"}), ("-1.56", set()), ("-1.58", {"into-chuck"})],
+    # the chuck's face is 40 mm or 1.5748 in behind Z0: .005 in and .015 in before it
+)
+def test_a_blade_beside_the_chuck(z: str, expected: set[str]) -> None:
+    program = text(f"T1\nX[1.5]Z[.1]\nZ[{z}]\nX[.6]\nG95F[.002]X[.4]\nX[.6]\nG94F[300]X[1.5]\nZ[1]")
+    held = Clamping(100.0, 40.0, 0.0, 60.0)
+    part = part_of(program, bar(25.4, 0.0, -80.0), {1: BLADE}, held)
+    assert {each.check for each in part.findings} == expected
+
+
+def test_a_cross_hole_through_both_walls_is_right() -> None:
+    """A live drill across a tube, from X.5 to X-.5: nothing is found."""
+    live = ToolShape(ToolKind.DRILL, tip=8, diameter=3.0, point=118.0, length=40.0)
+    program = "G90G94F300G73\nT1\nX.7Z.1\nM19\nG04F1\nM15\nZ-.4\nF3X-.45\nF300X.7\nZ1\nM16\nM05\nM30\n"
+    part = part_of(program, tube(19.05, 12.7, 0.0, -60.0), {1: live})
+    assert [each.check for each in part.findings] == []
+    assert part.removed > 0.0
