@@ -94,6 +94,7 @@ def with_kept(setting: PartSetting, program: str, kept: KeptPart, args: argparse
 def _said(
     text: str, args: argparse.Namespace, around: Circumstances, setting: PartSetting
 ) -> Stock | StockSpec:
+    from app.compose.kept_stock import kept_with
     from app.compose.said_stock import ProgramBefore, said_stock
     from core.part.stock_spec import StockError
 
@@ -101,7 +102,7 @@ def _said(
         return read_source(path, args)
 
     try:
-        return said_stock(text, ProgramBefore(read, around.setup, around.machine, setting))
+        return said_stock(text, ProgramBefore(read, around.setup, around.machine, setting, kept=kept_with))
     except StockError as error:
         raise CommandError(f"--stock {error}", error_code(error)) from error
 

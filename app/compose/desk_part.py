@@ -67,7 +67,7 @@ class PartDesk:
         if not kept.stock:
             return setting, None
         try:
-            around = ProgramBefore(self.read, job.setup, self.machine, setting, watch)
+            around = ProgramBefore(self.read, job.setup, self.machine, setting, watch, self.kept)
             return replace(setting, stock=said_stock(kept.stock, around)), None
         except ValueError as error:  # of the words, or of a program that cannot be read
             return setting, _unusable(str(error))

@@ -7,6 +7,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
+from app.compose.known_part import with_kept_clamping
+from app.desk.kept_part import NOTHING_KEPT, KeptPart
 from core.part.stock_spec import StockError, profile_stock, stock_spec
 
 if TYPE_CHECKING:
@@ -22,7 +24,8 @@ if TYPE_CHECKING:
 class ProgramBefore(NamedTuple):
     """What a program before is proved with: how it is read, and its circumstances.
 
-    ``read`` may raise what its caller takes; ``go_on`` is told how far that proof has come.
+    ``read`` may raise what its caller takes; ``go_on`` is told how far that proof has come. ``kept`` is what
+    the store has for it, by its name: stock and stick-out. ``behind`` are the programs that wait for it.
     """
 
     read: Callable[[Path], Source]
@@ -30,6 +33,8 @@ class ProgramBefore(NamedTuple):
     machine: Machine
     setting: PartSetting
     go_on: Progress | None = None
+    kept: Callable[[str], KeptPart] = lambda _name: NOTHING_KEPT
+    behind: tuple[str, ...] = ()
 
 
 def said_stock(text: str, around: ProgramBefore) -> Stock | StockSpec:
@@ -58,10 +63,22 @@ def _left_by(path: Path, around: ProgramBefore, spec: StockSpec) -> Stock:
     from core.proving.part_proof import prove_with_part
 
     source = around.read(path)
-    report, part = prove_with_part(source, around.setup, around.machine, around.setting, around.go_on)
+    setting = _first_setting(source.name, spec, around)
+    report, part = prove_with_part(source, around.setup, around.machine, setting, around.go_on)
     if report.errors or part is None or part.last is None:
         first = f": {report.errors[0].text}" if report.errors else ""
         raise StockError(f"{spec.given}: {path} leaves no part{first}", "no-part-left")
     outside = tuple((z + spec.allowance, r) for z, r in reversed(part.last.outside))
     bore = tuple((z + spec.allowance, r) for z, r in reversed(part.last.bore or ()))
     return Stock(spec.given, outside, bore)
+
+
+def _first_setting(name: str, spec: StockSpec, around: ProgramBefore) -> PartSetting:
+    """The setting of the program before, with the stock and the stick-out that the store has for it."""
+    kept = around.kept(name)
+    setting = with_kept_clamping(around.setting, around.machine, kept)
+    if not kept.stock:
+        return setting
+    if name in around.behind:
+        raise StockError(f"{spec.given}: {name} would begin with what it leaves itself", "stock-circle")
+    return replace(setting, stock=said_stock(kept.stock, around._replace(behind=(*around.behind, name))))

@@ -21,23 +21,27 @@ _AROUND = 12.0  # mm of metal around a finding, at most
 _BEFORE_PART = 6.0  # mm of path in front of and around the stock that is drawn
 
 
-def section(stock: Stock, after: Piece | None, clamping: Clamping | None) -> str:
-    """The stock and what is left of it, cut open along the axis."""
+Sides = tuple[Piece, Piece]
+
+
+def section(stock: Stock, after: Piece | None, clamping: Clamping | None, sides: Sides | None = None) -> str:
+    """The stock and what is left of it, cut open along the axis; ``sides``: X+ and X- of a milled part."""
     drawing = _framed(stock, clamping)
     _chuck(drawing, clamping)
     _metal(drawing, stock.outside, stock.bore or None, "stock")
-    if after is not None:
-        _metal(drawing, after.outside, after.bore, "part")
+    _part(drawing, after, sides, "part")
     drawing.axis()
     return drawing.svg("Section: stock and finished part")
 
 
-def path(stock: Stock, after: Piece | None, clamping: Clamping | None, moves: Sequence[TipMove]) -> str:
+def path(
+    stock: Stock, after: Piece | None, clamping: Clamping | None, moves: Sequence[TipMove],
+    sides: Sides | None = None,
+) -> str:  # fmt: skip
     """The way of the tools' tips: cuts full, rapids dashed."""
     drawing = _framed(stock, clamping)
     _chuck(drawing, clamping)
-    if after is not None:
-        _metal(drawing, after.outside, after.bore, "faint")
+    _part(drawing, after, sides, "faint")
     drawing.axis()
     for points, look in _ways(moves):
         drawing.polyline(points, look)
@@ -105,15 +109,28 @@ def _chuck(drawing: Drawing, clamping: Clamping | None) -> None:
     drawing.polygon([(z, -r) for z, r in upper], "chuck")
 
 
+def _part(drawing: Drawing, after: Piece | None, sides: Sides | None, look: str) -> None:
+    if sides is not None:
+        for piece, across in zip(sides, (1.0, -1.0), strict=True):
+            _half(drawing, piece.outside, piece.bore, look, across)
+    elif after is not None:
+        _metal(drawing, after.outside, after.bore, look)
+
+
 def _metal(drawing: Drawing, outside: Sequence[Point], bore: Sequence[Point] | None, look: str) -> None:
     """Both halves of a section, with the edges that are seen between them."""
+    for across in (1.0, -1.0):
+        _half(drawing, outside, bore, look, across)
+
+
+def _half(
+    drawing: Drawing, outside: Sequence[Point], bore: Sequence[Point] | None, look: str, across: float
+) -> None:
     if not outside:
         return
     ends = (outside[-1][0], 0.0), (outside[0][0], 0.0)
     inner = [*ends] if bore is None else list(reversed(bore))
-    half = [*outside, *inner]
-    drawing.polygon(half, look)
-    drawing.polygon([(z, -r) for z, r in half], look)
+    drawing.polygon([(z, r * across) for z, r in (*outside, *inner)], look)
 
 
 def _ways(moves: Sequence[TipMove]) -> Iterator[tuple[list[Point], str]]:

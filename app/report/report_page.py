@@ -107,14 +107,16 @@ class ProgramReport:
         clamping = record.setting.clamping
         short = f"; the first {len(record.moves):,} moves" if record.cut_short else ""
         milled = "; what live tools mill is not in it" if part.milled else ""
+        if part.sides is not None:
+            milled = "; milled, with C at 0"
         cut_open = figure(
-            part_drawings.section(part.stock, part.last, clamping),
+            part_drawings.section(part.stock, part.last, clamping, part.sides),
             f"Section: stock light, finished part dark{milled}",
         )
         if not record.moves:
             return cut_open
         return cut_open + figure(
-            part_drawings.path(part.stock, part.last, clamping, record.moves),
+            part_drawings.path(part.stock, part.last, clamping, record.moves, part.sides),
             f"Path of the tools: cuts full, rapids dashed, threads thick{short}",
         )
 

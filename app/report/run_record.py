@@ -12,7 +12,7 @@ from core.part.turned_part import Piece
 from core.proving.part_proof import PartProof
 from core.proving.part_setting import PartSetting
 from core.proving.program_timeline import MotionSpan, RestSpan
-from core.proving.tip_moves import Steps, TipMove
+from core.proving.tip_moves import LiveStep, Steps, TipMove, live_move
 
 MOST_MOVES = 20_000  # that are drawn
 _MOST_STOPS = 500
@@ -107,7 +107,11 @@ class RunRecord:
             if len(self.moves) > MOST_MOVES:
                 self.cut_short = True
                 return
-            self.moves += [step for step in self._steps.of(part) if isinstance(step, TipMove)]
+            for step in self._steps.of(part):
+                if isinstance(step, TipMove):
+                    self.moves.append(step)
+                elif isinstance(step, LiveStep):
+                    self.moves.append(live_move(step))
 
     def metal_at(self, blocks: Collection[int]) -> dict[int, Piece]:
         """What the chuck held before each of these elementary blocks, where a tool moved in X and Z."""

@@ -83,6 +83,15 @@ class Milling:
         there = (field.middles < front) & (field.middles > back)
         return piece._replace(volume=min(float(field.volumes[there].sum()), piece.volume))
 
+    def sides(self) -> tuple[Piece, Piece]:
+        """Both halves of the section with C at 0: X+, then X-."""
+        field = self.field
+        rays = field.low.shape[2]  # X+ of the lathe with C at 0 is at 180° of the part
+        upper, lower = (
+            _side(field.edges, field.low[:, :, ray], field.high[:, :, ray]) for ray in (rays // 2, 0)
+        )
+        return upper, lower
+
     def _follow(self) -> None:
         """Take out of the field what has been turned off since."""
         turned = self._turned
@@ -98,6 +107,19 @@ class Milling:
         everywhere = slice(0, len(field.middles))
         for start, end in _gaps(*in_order(turned.low[:, at], turned.high[:, at])):
             field.take(everywhere, slice(None), start[:, None], end[:, None])
+
+
+def _side(edges: FloatArray, low: FloatArray, high: FloatArray) -> Piece:
+    """One half of a section, as the profiles of a piece without its volume."""
+    there = high > low
+    outer = np.max(np.where(there, high, 0.0), axis=0)
+    inner = np.min(np.where(there, low, np.inf), axis=0)
+    columns = np.flatnonzero(outer > 0.0)[::-1].tolist()
+    outside, bore = (
+        [(float(z), float(r[at])) for at in columns for z in (edges[at + 1], edges[at])]
+        for r in (outer, inner)
+    )
+    return Piece(0.0, outside, bore if any(r > 0.0 for _, r in bore) else None, None)
 
 
 def _sizes(shape: ToolShape) -> tuple[float, float, float]:

@@ -27,7 +27,7 @@ from core.proving.part_proof import MOST_MOVES
 from core.proving.part_setting import PartSetting
 from core.proving.program_timeline import MotionSpan, Part, RestSpan
 from core.proving.program_tools import ProgramTools
-from core.proving.tip_moves import LiveStep, Step, Steps, TipMove, zero_of
+from core.proving.tip_moves import LiveStep, Step, Steps, TipMove, ends_of, slides_at, zero_of
 
 _LOOKED = 20  # blocks between two looks at whether the work is still wanted
 
@@ -121,7 +121,7 @@ class PartHistory:
         """How much of a block is done when the tool is ``behind_end`` (Z, r; mm) off the place of its end."""
         step = self._step(block)
         if isinstance(step, LiveStep):
-            ends = _ends(step)
+            ends = ends_of(step)
             return share_along(ends, (ends[1][0] + behind_end[0], ends[1][1] + behind_end[1]))
         if not isinstance(step, TipMove):
             return 0.0
@@ -198,7 +198,7 @@ class PartHistory:
                 making = making.copy()
                 making.see(cut)
         elif isinstance(under_way, LiveStep):
-            making, place = self._milled(under_way, share), _at(under_way, share)
+            making, place = self._milled(under_way, share), slides_at(under_way, share)
         self._seen, found = making, making.findings.diagnostics
         near, far = _halves(making)
         return PartInstant(
@@ -256,7 +256,7 @@ class PartHistory:
             if isinstance(step, TipMove):
                 return step.points[-1]
             if isinstance(step, LiveStep):
-                return _ends(step)[1]
+                return ends_of(step)[1]
         return None
 
     def _tool(self, number: int, place: Point | None) -> PlacedTool | None:
@@ -323,28 +323,12 @@ def _line(step: Step | None) -> int:
     return step.block.line if isinstance(step, LiveStep) else step.line
 
 
-def _at(step: LiveStep, share: float) -> Point:
-    """Where the slides are on the way of a live tool's block."""
-    plane = step.block.plane
-    if plane is not None:
-        x, z, _ = plane.machine(np.array([share]))[0].tolist()
-        return z + step.place[1] + step.block.modal.secondary_z, x
-    start, end = _ends(step)
-    return start[0] + (end[0] - start[0]) * share, start[1] + (end[1] - start[1]) * share
-
-
 def _c_at(step: LiveStep, share: float) -> float:
     """C on the way of a live tool's block, degrees."""
     block = step.block
     if block.plane is not None:
         return float(block.plane.machine(np.array([share]))[0, 2])
     return block.c0 + (block.c - block.c0) * share
-
-
-def _ends(step: LiveStep) -> tuple[Point, Point]:
-    """Where the slides begin and end a block of a live tool."""
-    (dx, dz), block = step.place, step.block
-    return (block.z0 + dz, block.x0 + dx), (block.z + dz, block.x + dx)
 
 
 def _halves(making: PartMaking) -> tuple[Half | None, Half | None]:

@@ -219,6 +219,7 @@ class PartMaking:
         left = self.part.volume if self.part is not None else 0.0
         if self.milling is not None:
             left = self.milling.left
+        sides = self.milling.sides() if self.milling is not None and not self.parted_off else None
         self._finish()
         self.findings.finish()
         stock = self._stock
@@ -239,7 +240,8 @@ class PartMaking:
             assumed=tuple(assumed),
             findings=self.findings.diagnostics,
             unchecked=(*self._unchecked, *_cut_standing(self._standing)),
-            shapes={n: self._tools.shape(n) for n, use in self._tools.uses.items() if use.moves},
+            shapes={n: self._tools.shape(n) for n, use in self._tools.uses.items() if use.moves or use.live},
+            sides=sides,
         )
 
 

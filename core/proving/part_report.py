@@ -31,3 +31,4 @@ class PartReport:
     findings: tuple[Diagnostic, ...]
     unchecked: tuple[str, ...] = ()
     shapes: Mapping[int, ToolShape | None] = field(default_factory=dict)
+    sides: tuple[Piece, Piece] | None = None

@@ -7,6 +7,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
+import numpy as np
+
 from core.geometry.lines_and_arcs import arc_sweep
 from core.interpreter.actions import Preset, ToolChange
 from core.interpreter.elementary_blocks import Block, Kind, Series
@@ -17,6 +19,7 @@ QUICK = 100 * 25.4 / 60
 """mm/s; what moves by G94 at this or more goes to a place and cuts nothing."""
 
 _CHORD = 0.001  # mm off an arc
+_PIECES = 16  # of a move in a plane, which is curved for the slides
 
 _TURNED = frozenset({Kind.RAPID, Kind.FEED, Kind.ARC, Kind.THREAD})
 
@@ -128,6 +131,29 @@ class Steps:
 def zero_of(block: Block, place: Place) -> Place:
     """Where the slides stand, machine X and Z, when the tip is on part zero."""
     return block.offset_x - place[0], block.offset_z - place[1]
+
+
+def ends_of(step: LiveStep) -> tuple[Point, Point]:
+    """Where the slides begin and end a block of a live tool."""
+    (dx, dz), block = step.place, step.block
+    return (block.z0 + dz, block.x0 + dx), (block.z + dz, block.x + dx)
+
+
+def slides_at(step: LiveStep, share: float) -> Point:
+    """Where the slides are after a share of a live tool's block."""
+    plane = step.block.plane
+    if plane is not None:
+        x, z, _ = plane.machine(np.array([share]))[0].tolist()
+        return z + step.place[1] + step.block.modal.secondary_z, x
+    start, end = ends_of(step)
+    return start[0] + (end[0] - start[0]) * share, start[1] + (end[1] - start[1]) * share
+
+
+def live_move(step: LiveStep) -> TipMove:
+    """The move of the slides in a block of a live tool, as it is drawn with those of X and Z."""
+    pieces = _PIECES if step.block.plane is not None else 1
+    points = tuple(slides_at(step, k / pieces) for k in range(pieces + 1))
+    return _move(step.block, step.block.n, step.block.line, points, step.place)
 
 
 def taps(block: Block) -> bool:

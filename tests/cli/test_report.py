@@ -202,3 +202,22 @@ def test_a_disk_that_is_full_leaves_the_last_report_as_it_was(
     assert "No space left on device" in told.err
     assert report.read_text() == "yesterday's"
     assert sorted(each.name for each in tmp_path.glob(".*.part")) == []
+
+
+# A flat .3 in from the axis, .5 in wide, milled across the end of a bar of 1 in.
+FLAT = "G90G94F300G73\nT9\nX.9Z.1\nM19\nG04F1\nM15\nZ-.25\nF8X.3\nF300X.9\nZ1\nM16\nM05\nM30\n"
+MILLS = 'tool.9 = {kind = "end-mill", diameter = .5, tip = 8, length = 1.0}\n'
+
+
+def test_a_milled_part_is_drawn_as_it_was_milled_with_the_path_of_its_mill(
+    turndesk: Turndesk, tmp_path: Path, offsets: Path
+) -> None:
+    tools = written(tmp_path, MILLS, "tools.toml")
+    words = (written(tmp_path, FLAT), "--offsets", offsets, "--tools", tools, "--stock", "bar:1.0:2")
+    page, text = report_of(turndesk, tmp_path, *words)
+    assert "not known" not in page.words
+    assert "end-mill, Ø 0.5000 in" in page.words
+    polygons = re.findall(r'<polygon class="part" points="([^"]+)"', text)
+    upper, lower = (len(set(each.split())) for each in polygons[:2])
+    assert upper > lower  # the pocket is on the side of X+
+    assert 'class="cut"' in text

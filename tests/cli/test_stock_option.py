@@ -287,3 +287,28 @@ def test_what_the_store_silences_for_a_program_counts_for_that_alone(
     assert turndesk("prove", other, *given).status == 1
     assert turndesk("prove", path.parent, *given).status == 1  # of the folder the other one alone
     assert turndesk("prove", path, *given, "--jobs", "1").status == 0
+
+
+def test_the_first_program_begins_with_the_stock_that_is_kept_with_it(
+    turndesk: Turndesk, tmp_path: Path, offsets: Path, home: Path
+) -> None:
+    """A tube of 1 in with a bore of .5, turned: the second program has a bore of .25 in radius."""
+    first = written(tmp_path, PART, "first.nc")
+    kept = ("prove", first, "--offsets", offsets, "--json", "--keep-stock", "--stock", "tube:1.0:.5:2")
+    assert "bore" in turndesk(*kept).lines[0]["stock"]
+    second = written(tmp_path, "G90G94F300\nM03S900\nT1\nX1.1Z.1\nG94F5Z-.5\nF300Z1\nM30\n", "second.nc")
+    told = turndesk("prove", second, "--offsets", offsets, "--json", "--stock", f"after:{first}")
+    bore = told.lines[0]["stock"]["bore"]
+    assert bore is not None
+    assert bore[0][1] == pytest.approx(0.25, abs=1e-3)
+
+
+def test_a_stock_that_a_program_leaves_itself_is_refused(
+    turndesk: Turndesk, tmp_path: Path, offsets: Path, home: Path
+) -> None:
+    first = written(tmp_path, PART, "first.nc")
+    assert turndesk("prove", first, "--offsets", offsets, "--keep-stock", "--stock", "bar:1:2").status == 0
+    loop = ("--keep-stock", "--stock", f"after:{first}")
+    turndesk("prove", first, "--offsets", offsets, *loop)
+    again = turndesk("prove", first, "--offsets", offsets, "--json")
+    assert (again.status, again.code) == (2, "kept-stock")

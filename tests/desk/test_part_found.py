@@ -13,7 +13,7 @@ from app.compose.desk_part import NO_STOCK, NOT_MADE
 from app.compose.machine_files import load_machine
 from app.compose.stored_offsets import Offsets
 from app.compose.workshop import workshop
-from app.desk.kept_part import KeptPart
+from app.desk.kept_part import NOTHING_KEPT, KeptPart
 from app.desk.latest import Watch
 from app.desk.program_loading import Loaded, PartProved, Phase, ProgramLoader
 from app.desk.program_renewal import RunningRenewal
@@ -48,7 +48,7 @@ class Desk:
             machine or load_machine(None),
             lambda: Offsets(TOOLS, {}, {}),
             shapes=lambda: shapes,
-            kept=lambda _program: kept,
+            kept=lambda program: kept if program == "part.nc" else NOTHING_KEPT,
         )
         self.session = ProgramLoader(steps, self.posted.append)
 
