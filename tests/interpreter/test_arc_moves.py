@@ -78,3 +78,17 @@ def test_a_wrong_metric_arc_says_both_radii_in_millimetres() -> None:
     (error,) = passed(body("G71X10Z0F500", "G02X30Z-15I10K-15")).interpreter.diagnostics
     assert "15.0000 mm" in error.message
     assert "20.0000 mm" in error.message
+
+
+@pytest.mark.parametrize(
+    ("arc", "expected"),
+    [
+        ("G02X.25Z-.15I.1K-.15", []),  # 90 degrees
+        ("G03X.25Z-.15I.1K-.15", [(4, 1, "arc-over-half")]),  # the other way: 270
+        ("G02X.1Z-.3I.1K-.15", []),  # half a circle
+        ("G02X.1Z0I.1K-.15", []),  # a whole one is meant
+    ],
+)
+def test_an_arc_over_half_a_circle_is_questioned(arc: str, expected: list[tuple[int, int, str]]) -> None:
+    result = passed(body("X.1Z0F20", arc))
+    assert [each for each in result.warnings if each[2] == "arc-over-half"] == expected

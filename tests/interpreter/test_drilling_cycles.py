@@ -146,3 +146,11 @@ def test_refused_as_the_first_move_of_a_tool() -> None:
 def test_lines_after_a_refused_cycle_are_judged_from_its_start() -> None:
     result = passed(body("X0Z.1", "G83Z-1F4", "G91G81Z-.1F4"))
     assert result.errors == [(4, 1, "word-missing")]
+
+
+@pytest.mark.parametrize(
+    ("peck", "expected"),
+    [("2", [(4, 8, "peck-depth")]), (".6", []), (".2", [])],  # from Z.1 to Z-.5 are .6
+)
+def test_a_peck_deeper_than_the_hole_is_questioned(peck: str, expected: list[tuple[int, int, str]]) -> None:
+    assert passed(body("X0Z.1", f"G83Z-.5K{peck}F4")).warnings == expected

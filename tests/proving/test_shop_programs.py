@@ -102,8 +102,10 @@ def test_the_clevis_pin(folder: Path) -> None:
 
 
 def test_the_rod_end(folder: Path) -> None:
-    """Two flats at 8 mm of r 10: over y the mill of 16 mm reaches 10 + sqrt(64 - y²) deep; 22 mm at 200 mm/min
-    are 6.6 s each."""
+    """Two flats at 8 mm of r 10: over y the mill of 16 mm reaches 10 + sqrt(64 - y²) deep.
+
+    22 mm at 200 mm/min are 6.6 s each.
+    """
     report, part = proved("rod-end-metric", folder)
     y = np.linspace(-6.0, 6.0, 2001)
     flat = float(np.trapezoid((np.sqrt(100.0 - y**2) - 8.0) * (10.0 + np.sqrt(64.0 - y**2)), y))
