@@ -246,7 +246,7 @@ class ExecutorModel(RuleBasedStateMachine):
 
     @rule(off=st.integers(1, 80))
     def spindle_switch_off_and_auto(self, off: int) -> None:
-        self._count("spindle switch")
+        self._count("spindle switch", harms=True)  # a thread is lost by it
         self.hands.set_spindle_auto(False)
         self.machine.run(off * TICK)
         self.machine.switched = True
@@ -257,7 +257,7 @@ class ExecutorModel(RuleBasedStateMachine):
         which=st.sampled_from(["feed", "spindle"]), fraction=st.sampled_from([0.0, 0.01, 0.3, 0.7, 1.0, 1.0])
     )
     def turns_a_pot(self, which: str, fraction: float) -> None:
-        self._count("pot")
+        self._count("pot", harms=which == "spindle")
         (self.hands.set_feed_pot if which == "feed" else self.hands.set_spindle_pot)(fraction)
         self.machine.tick()
 

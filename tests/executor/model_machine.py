@@ -117,6 +117,7 @@ class Machine(Rig):
         self.true_ports = ports
         self.frozen_since: dict[str, float] = {}  # s of the clock, by port
         self.owed: list[tuple[int, Command]] = []  # releases that come late: in so many ticks
+        self.blind = False  # an encoder may tell what is not so
         self.harmed = False  # something was broken, late or stopped: alarms have a reason
         self._stalled = 0.0  # s for which the process stood still inside this tick
         self._fed_badly_before = False
@@ -129,7 +130,6 @@ class Machine(Rig):
         )
         self.pressed = self.jogged = self.homed = self.switched = False  # since the tick before
         self.unexpected = False  # a driver has raised what no driver may
-        self.blind = False  # an encoder may tell what is not so
         self.jog_asked = 0.0
         self.stood = -1e9  # when the last state in which slides move was left
         self.last_press = -1e9  # when a start was last asked for, by palms or from the screen
