@@ -188,6 +188,7 @@ class ExecutorModel(RuleBasedStateMachine):
     )
     def asks(self, command: Command) -> None:
         self.machine.homed = isinstance(command, Home)
+        self.machine.harmed |= command == ForceOutput("collet", False)  # no spindle starts then
         self._post(command)
 
     @rule(
