@@ -9,6 +9,7 @@ import sys
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
+from app.cli.meant_changes import demand_meant, machine_travel
 from app.cli.store_command import opened_store
 from app.cli.who_changes import who_changes
 from app.desk.arithmetic import EntryError, value_of
@@ -17,6 +18,7 @@ from app.desk.toml_file import unknown
 from app.offsets.offset_acts import act_of
 from app.offsets.offset_values import stated_fields
 from app.offsets.offsets_file import ALIASES, TOOL_KEYS, out_of_range, shown
+from app.offsets.suspicious_changes import Doubt, Suspicion, suspicions
 from core.access.access_table import Act
 from core.store.offset_fields import MM_PER_INCH, Field, Sort
 from core.store.store_rows import (
@@ -28,6 +30,7 @@ from core.store.store_rows import (
     MillRow,
     PresetRow,
     Row,
+    SecondaryRow,
     ShapeRow,
     ToolRow,
     Value,
@@ -138,6 +141,7 @@ def _set(args: argparse.Namespace) -> int:
         gone = shape.get("kind") == NO_SHAPE
         if shape and not gone:
             _check_shape(store, number, shape, offset)
+        _check_meant(store, args, kind, number, offset)
         if offset:
             rows.append(store.set_offset(kind, number, values=offset, **reason).result())
         if gone:
@@ -147,6 +151,32 @@ def _set(args: argparse.Namespace) -> int:
     name = _name(kind, number)
     sys.stdout.write("".join(f"{_line(name, row)}\n" for row in rows) or f"{name} has no shape\n")
     return EXIT_OK
+
+
+def _check_meant(
+    store: Store, args: argparse.Namespace, kind: Kind, number: int, offset: dict[str, Value]
+) -> None:
+    """Raise CommandError for a suspicious change without consent; bad values are left to the store."""
+    table = store.offsets(kind)
+    old, travel = table.get(number), machine_travel(args)
+    fields = FIELDS[kind]
+    if kind is Kind.ZERO or not all(fields[name].takes(value) for name, value in offset.items()):
+        return
+    new = _row_with(kind, old, offset)
+    found = suspicions(number, old, new, travel) if new is not None else ()
+    others = len(table) > (number in table)
+    if offset.get("master") and others and not (isinstance(old, ToolRow) and old.master):
+        found = (*found, Suspicion(Doubt.MASTER, number, "master", False, True))
+    demand_meant(args, {kind: found}, travel)
+
+
+def _row_with(kind: Kind, old: Row | None, values: dict[str, Value]) -> Row | None:
+    """Return the row with these values; None where nothing can be compared."""
+    if kind is Kind.TOOL:
+        return with_fields(old if isinstance(old, ToolRow) else ToolRow(), values)
+    if kind is Kind.SECONDARY:
+        return with_fields(old if isinstance(old, SecondaryRow) else SecondaryRow(), values)
+    return with_fields(old, values) if isinstance(old, MillRow) else None
 
 
 def _check_shape(store: Store, number: int, shape: dict[str, Value], offset: dict[str, Value]) -> None:

@@ -184,6 +184,7 @@ class Sort(StrEnum):
 
 
 YES = "Y"
+NO = "N"  # takes a question back that Y answers
 READ = 0.5  # s: sooner nobody has read a question, and what is pressed is meant for something else
 
 

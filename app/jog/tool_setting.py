@@ -13,6 +13,7 @@ from app.jog.jog_touch_off import TOUCH_X, TOUCH_Z, TOUCHES, TouchOff
 from app.offsets.offset_acts import CORRECTIONS
 from app.offsets.offset_book import OffsetBook
 from app.offsets.offset_history import OffsetHistory, refusal
+from app.offsets.offset_questions import OffsetQuestions
 from app.offsets.offset_values import (
     TOOL_FIELDS,
     Mode,
@@ -23,6 +24,7 @@ from app.offsets.offset_values import (
     value_typed,
     word,
 )
+from app.offsets.suspicious_changes import LARGE_MM
 from app.offsets.tool_fields import ToolFields
 from core.executor.snapshot import Snapshot
 from core.store.offset_fields import REMARK_LONGEST, Sort
@@ -31,7 +33,6 @@ from core.tool_edges import edge_name, edge_number
 
 TOOL = "tool"  # asked: its number
 Pair = tuple[float, float]
-LARGE = 0.5  # mm: a setter that finds a tip so far from where it was is to be wondered at
 _AFTER = {"wear_x": "wear_z"}  # what is asked after an answer
 
 
@@ -91,7 +92,7 @@ class ToolSetting:
     @property
     def large(self) -> bool:
         """Whether what was found is so far from what the tool had that something may be wrong."""
-        return abs(self.moved or 0.0) > LARGE
+        return abs(self.moved or 0.0) > LARGE_MM
 
     def question(self) -> str:
         """What is asked now; empty when nothing is."""
@@ -200,7 +201,7 @@ class ToolSetting:
         """Why this is not asked of the tool now; empty when it may be."""
         why = self.book.locked or refusal(snapshot, correction=what in CORRECTIONS[Kind.TOOL])
         if why or not self.number:
-            return why or tr("WHICH TOOL? PRESS T AND TYPE ITS NUMBER FIRST")
+            return why or _which_tool()
         if what in TOUCHES:
             return jog_touch_off.refusal(what, snapshot)
         if self.row is None:
@@ -272,18 +273,22 @@ class ToolSetting:
         why = "" if keeps else self.fields.save(self.number, name, text)
         if not why:
             self.close()
-            self.asked = _AFTER.get(name, "")
+            self.asked = "" if self.desk.asked else _AFTER.get(name, "")
         return why
 
     def master(self) -> None:
         """The chosen tool becomes the master; being it already, none is."""
         why = self.barred("master", self.desk.snapshot())
+        self.close()
         self.history.answer(why or self.fields.master(self.number))
 
     def undo(self) -> None:
-        """Take the last change of the tools back."""
+        """Ask whether the last change of the chosen tool is taken back."""
         self.close()
-        self.history.undo(self.book.locked or refusal(self.desk.snapshot(), correction=False))
+        why = self.book.locked or refusal(self.desk.snapshot(), correction=False)
+        if not why and not self.number:
+            why = _which_tool()
+        self.history.answer(why or OffsetQuestions(self.history).undo(Kind.TOOL, self.number))
 
     def escape(self) -> bool:
         """Close the question, forget half a tool; False when there was nothing."""
@@ -292,6 +297,10 @@ class ToolSetting:
             self.desk.say(tr("T{number} IS AS IT WAS").format(number=edge_number(self.number)))
         self.forget()
         return was
+
+
+def _which_tool() -> str:
+    return tr("WHICH TOOL? PRESS T AND TYPE ITS NUMBER FIRST")
 
 
 def _wear_that_ends(row: ToolRow | None, name: str, mode: Mode) -> str:

@@ -125,13 +125,21 @@ class OffsetBook:
         """All offsets of this kind at once."""
         return self._post(act_of(kind), lambda store, who: store.clear_offsets(kind, why, who=who))
 
-    def undo(self, kind: Kind) -> str:
-        """Take the last change of this kind back."""
-        return self._post(act_of(kind), lambda store, who: store.undo_offset(kind=kind, who=who))
+    def undoable(self, kind: Kind, number: int | None) -> tuple[Change, ...]:
+        """Return what undo would take back; None: the last step of the table. Raises StoreError."""
+        return () if self.store is None else self.store.undoable(kind, number)
+
+    def undo(self, kind: Kind, number: int | None, step: int) -> str:
+        """Take exactly this step back."""
+        return self._post(act_of(kind), lambda store, who: store.undo_step(kind, number, step, who=who))
+
+    def barred(self) -> str:
+        """Return why no change can be posted now; empty if one can."""
+        return (self.locked or SAVING) if self.store is None or self.busy else ""
 
     def _post(self, act: Act, write: Callable[[Store, str], Future[Any]]) -> str:
         if self.store is None or self.busy:
-            return self.locked or SAVING
+            return self.barred()
         if why := self.access.refusal(act):
             return why
         try:

@@ -131,12 +131,6 @@ class OffsetHistory:
         """The history instead of the table, or the table again."""
         self.listed = None if self.listed is not None else self._read()
 
-    def undo(self, why_not: str) -> None:
-        """Take the last change of this table back, unless there is a reason not to."""
-        if not why_not:
-            self.desk.clear()
-        self.answer(why_not or self.book.undo(self.kind))
-
     def answer(self, why: str) -> None:
         """Say why not, where there is a reason."""
         if why:

@@ -12,7 +12,8 @@ from app.desk.desk import Desk
 from app.desk.machine_status import Tone
 from app.desk.sheet import Key, Row, Sheet
 from app.desk.translation import tr
-from app.offsets.offset_history import refusal
+from app.offsets.offset_history import OffsetHistory, refusal
+from app.offsets.offset_questions import OffsetQuestions
 from app.quality.correction_effect import CorrectionEffect
 from app.quality.gauge_line import Gauge, NoGauge, Reading
 from app.quality.parts_book import feature_of
@@ -57,7 +58,7 @@ class ReadingsSection(QualitySection):
         self.gauge = gauge or NoGauge()
         self._part = 0  # 0: the last that was made
         self.effect = CorrectionEffect(desk)
-        self._last: tuple[Kind, str] | None = None  # the correction that was taken over last, and its reason
+        self._last: tuple[Kind, int, str] | None = None  # the last accepted correction: its row, its reason
 
     @property
     def count(self) -> int:
@@ -285,25 +286,24 @@ class ReadingsSection(QualitySection):
         if why:
             self.desk.say(why)
             return
-        self._last = change.kind, change.why
+        self._last = change.kind, change.number, change.why
         self.desk.done(tr("{words}; IT COUNTS FROM THE NEXT PART").format(words=change.words))
 
     def undo(self) -> None:
-        """F9: the correction that was taken over last is taken back, while no other change came after it."""
+        """F9: ask whether the last accepted correction is taken back, while no other change came after it."""
         why = self._undo_barred()
         if not why and self._last is not None:
-            why = self.desk.book.undo(self._last[0])
+            kind, number, _reason = self._last
+            questions = OffsetQuestions(OffsetHistory(self.desk, kind, self.mode))
+            why = questions.undo(kind, number, tr("THE CORRECTION IS TAKEN BACK"))
         if why:
             self.desk.say(why)
-            return
-        self._last = None
-        self.desk.done(tr("THE CORRECTION IS TAKEN BACK"))
 
     def _undo_barred(self) -> str:
         """Why nothing is taken back here; empty when it is."""
         if self._last is None:
             return tr("NO CORRECTION WAS TAKEN OVER HERE; F8 AND F9 OF THE MAIN MENU HAVE THE HISTORY")
-        kind, reason = self._last
+        kind, _number, reason = self._last
         last = self.desk.book.history(kind, 1)
         if not last or last[0].why != reason:
             return tr("ANOTHER CHANGE CAME AFTER IT; F8 AND F9 OF THE MAIN MENU HAVE THE HISTORY")

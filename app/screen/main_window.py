@@ -21,7 +21,7 @@ from PySide6.QtGui import (
 from PySide6.QtWidgets import QApplication, QWidget
 
 from app.desk.desk import BY_SCREEN, Desk
-from app.desk.prompt_line import MOVING, UNDER_WAY
+from app.desk.prompt_line import MOVING, NO, UNDER_WAY, YES
 from app.desk.translation import spoken, tr
 from app.screen.event_times import EventTimes
 from app.screen.keyboard import Keyboard, key_of, letter_of
@@ -321,7 +321,12 @@ class MainWindow(QWidget):
 
     def _answered(self, frame: Frame, event: QKeyEvent) -> bool:
         """Whether the key was the answer to a question: pressed by itself, after all others were let go."""
-        if frame.desk.asked not in {letter_of(event), typed_of(event)} - {""}:
+        keys = {letter_of(event), typed_of(event)} - {""}
+        if frame.desk.asked == YES and NO in keys:
+            frame.desk.clear()
+            self.refresh()
+            return True
+        if frame.desk.asked not in keys:
             return False
         if not event.isAutoRepeat() and self.keyboard.alone(event):
             self.press(ANSWER)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import json
 from pathlib import Path
 
@@ -68,7 +69,7 @@ def test_set_and_show_in_inches(capsys: Captured, home: Path) -> None:
 
 def test_second_entry_keeps_what_it_does_not_name(capsys: Captured) -> None:
     main(["offsets", "set", "t03", "x=1", "nose_radius=.015"])
-    main(["offsets", "set", "T3", "x=.5-.002"])
+    main(["offsets", "set", "T3", "x=.5-.002", "--yes"])
     assert shown(capsys) == {"tool": {"3": tool(x=0.498, nose_radius=0.015)}, "secondary": {}}
 
 
@@ -80,7 +81,7 @@ def test_text_has_five_places(capsys: Captured) -> None:
 
 
 def test_clear_undo_and_history(capsys: Captured) -> None:
-    main(["offsets", "set", "D1", "z=.1", "--why", "long part"])
+    main(["offsets", "set", "D1", "z=.1", "--yes", "--why", "long part"])
     main(["offsets", "set", "T1", "x=1"])
     assert main(["offsets", "clear", "D"]) == 0
     assert shown(capsys) == {"tool": {"1": tool(x=1.0)}, "secondary": {}}
@@ -101,7 +102,7 @@ def test_clear_undo_and_history(capsys: Captured) -> None:
 
 
 def test_history_as_text_tells_old_and_new(capsys: Captured) -> None:
-    main(["offsets", "set", "D1", "z=.1"])
+    main(["offsets", "set", "D1", "z=.1", "--yes"])
     capsys.readouterr()
     main(["offsets", "history"])
     line = capsys.readouterr().out
@@ -224,3 +225,59 @@ def test_a_tool_is_cleared_and_comes_back(capsys: Captured) -> None:
     assert main(["offsets", "clear", "T"]) == 0
     capsys.readouterr()
     assert shown(capsys)["tool"] == {}
+
+
+def test_a_value_beyond_the_travel_is_refused_even_with_yes(capsys: Captured) -> None:
+    for consent in ((), ("--yes",)):
+        error = refused(capsys, "set", "T1", "x=-15", "z=0", *consent)
+        assert error.code == "beyond-travel"
+        assert "T1 x not set → -15.00000 in" in str(error)
+    assert shown(capsys) == {"tool": {}, "secondary": {}}
+
+
+@pytest.mark.parametrize(
+    ("entry", "value"),
+    [("x=-1.2", "x +1.20000 → -1.20000 in"), ("z=.1", "z +0.00000 → +0.10000 in"), ("wear_x=.02", "wear_x")],
+)
+def test_a_large_change_needs_consent(capsys: Captured, entry: str, value: str) -> None:
+    assert main(["offsets", "set", "T1", "x=1.2", "z=0"]) == 0
+    capsys.readouterr()
+    before = shown(capsys)
+    error = refused(capsys, "set", "T1", entry)
+    assert error.code == "not-confirmed"
+    assert value in str(error)
+    assert shown(capsys) == before
+    assert main(["offsets", "set", "T1", entry, "--yes"]) == 0
+    assert shown(capsys) != before
+
+
+@pytest.mark.parametrize(("typed", "status"), [("y", 0), ("n", 2), ("", 2)])
+def test_at_a_terminal_a_large_change_is_asked(
+    capsys: Captured, monkeypatch: pytest.MonkeyPatch, typed: str, status: int
+) -> None:
+    assert main(["offsets", "set", "T1", "x=1.2", "z=0"]) == 0
+    terminal = io.StringIO(f"{typed}\n")
+    monkeypatch.setattr(terminal, "isatty", lambda: True)
+    monkeypatch.setattr("sys.stdin", terminal)
+    assert main(["offsets", "set", "T1", "x=2"]) == status
+    assert shown(capsys)["tool"] == {"1": tool(x=2.0 if typed == "y" else 1.2)}
+
+
+def test_a_master_that_others_follow_needs_consent(capsys: Captured) -> None:
+    for name in ("T1", "T2"):
+        assert main(["offsets", "set", name, "x=1", "z=0"]) == 0
+    capsys.readouterr()
+    assert refused(capsys, "set", "T2", "master=1").code == "not-confirmed"
+    assert main(["offsets", "set", "T2", "master=1", "--yes"]) == 0
+
+
+def test_an_import_beyond_the_travel_is_refused(capsys: Captured, tmp_path: Path) -> None:
+    folder = tmp_path / "export"
+    folder.mkdir()
+    (folder / "programs").mkdir()
+    (folder / "offsets.toml").write_text("[tool.1]\nx = -15.0\nz = 0.0\n")
+    with pytest.MonkeyPatch.context() as patch:
+        refusals = recorded_refusals(patch)
+        assert main(["store", "import", str(folder)]) == 2
+    assert refusals[-1].code == "beyond-travel"
+    assert shown(capsys) == {"tool": {}, "secondary": {}}

@@ -86,6 +86,8 @@ COVERED = {
     ("offsets show", "--json"): "tests/cli/test_offsets.py",
     ("offsets history", "--json"): "tests/cli/test_offsets.py",
     ("offsets history", "--limit"): "tests/cli/test_offsets.py",
+    ("offsets set", "--yes"): "tests/cli/test_offsets.py",
+    ("store import", "--yes"): "tests/cli/test_offsets.py",
     ("offsets set", "--why"): "tests/cli/test_offsets.py",
     ("offsets clear", "--why"): "tests/cli/test_offsets.py",
     ("offsets undo", "--why"): "tests/cli/test_offsets.py",

@@ -238,7 +238,7 @@ def test_wear_is_the_operators_and_position_is_not(room: Room) -> None:
     assert shows(
         book.change(Kind.TOOL, 3, {"wear_x": 0.01, "x": 2.0}, "both"), "screen.level-needed", level="SETUP"
     )
-    assert shows(book.undo(Kind.TOOL), "screen.level-needed", level="SETUP")
+    assert shows(book.undo(Kind.TOOL, 3, 1), "screen.level-needed", level="SETUP")
     assert shows(book.clear(Kind.ZERO, "all"), "screen.level-needed", level="SETUP")
     assert shows(book.choose_master(3, "master"), "screen.level-needed", level="SETUP")
     assert book.change(Kind.TOOL, 3, {"wear_x": 0.01}, "too large") == ""

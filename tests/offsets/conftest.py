@@ -20,6 +20,7 @@ from core.executor.snapshot import Snapshot, State
 from core.interpreter.job_setup import Setup
 from core.language.source import Source
 from core.store.store import Store
+from tests.screen.yes import read
 
 LIMIT = 60.0
 
@@ -53,7 +54,14 @@ class Room:
             for key in answer:
                 assert page.typed(key)
             assert page.typed("Enter")
+            self.confirm()
         self.settle(page)
+
+    def confirm(self) -> None:
+        """Press Y if a suspicious change, a new master or an undo is questioned."""
+        if self.desk.asked:
+            read(self.desk)
+            self.desk.yes()
 
     def settle(self, page: SecondaryOffsets | ToolOffsets) -> None:
         """Wait for the disk, then look as a frame would."""

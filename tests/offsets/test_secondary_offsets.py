@@ -150,6 +150,7 @@ def test_clear_asks_once_more(room: Room) -> None:
     assert room.store.secondary() == {}
     assert page.old_to_new == "2 offsets changed: F5 shows them"
     page.undo()
+    room.confirm()
     room.settle(page)
     assert sorted(room.store.secondary()) == [1, 9]
 
@@ -170,13 +171,15 @@ def test_undo_takes_back_secondary_offsets_only(room: Room) -> None:
     room.enter(page, "1", ".1", "", "")
     room.store.set_tool(1, "touched off", x=5.0).result(LIMIT)
     page.undo()
+    room.confirm()
     room.settle(page)
     assert room.store.secondary() == {}
     assert room.store.tools()[1].x == 5.0
     assert room.desk.notice == "D1 TAKEN BACK"
     page.undo()
+    room.confirm()
     room.settle(page)
-    assert room.desk.notice == text("offsets.refused", why=text("offsets.nothing-to-undo"))
+    assert room.desk.notice == text("offsets.no-change-to-undo", row=text("offsets.this-table"))
 
 
 def test_the_history_has_time_from_to_and_reason(room: Room) -> None:
@@ -218,6 +221,7 @@ def test_a_correction_while_parts_run_counts_from_the_next_one(
     assert room.desk.notice == f"D1 SAVED{text(f'offsets.{when}')}"
     assert room.store.secondary()[1].x == pytest.approx(0.05 * 25.4)
     page.undo()
+    room.confirm()
     room.settle(page)
     assert room.desk.notice == f"D1 TAKEN BACK{text(f'offsets.{when}')}"
 
@@ -286,6 +290,7 @@ def test_offsets_of_a_file_are_read_only(room: Room) -> None:
     assert room.desk.notice == "READ ONLY"
     page.typed("C")
     page.undo()
+    room.confirm()
     assert room.desk.notice == "READ ONLY"
     assert page.old is None
     assert page.book.secondary.get(1) == (0.0, 0.1, 0.0)
@@ -295,7 +300,7 @@ def test_a_change_before_the_last_is_saved_is_not_taken(room: Room) -> None:
     book = OffsetBook(room.store)
     assert book.change(Kind.SECONDARY, 1, {"x": 0.1}, "one") == ""
     assert book.change(Kind.SECONDARY, 1, {"x": 0.2}, "two").startswith("STILL SAVING")
-    assert book.undo(Kind.SECONDARY).startswith("STILL SAVING")
+    assert book.undo(Kind.SECONDARY, 1, 1).startswith("STILL SAVING")
     room.store.write(lambda _connection: None).result(LIMIT)
     assert book.poll() == ""
     assert book.secondary.get(1) == (0.1, 0.0, 0.0)
@@ -312,7 +317,7 @@ def test_a_page_left_before_the_disk_answers_builds_the_program_all_the_same(roo
     room.desk.session.settled(LIMIT)
     page = room.page()
     page.look(room.now[0])
-    for key in ("1", "Enter", ".", "1", "Enter", "Enter", "Enter"):
+    for key in ("1", "Enter", ".", "0", "1", "Enter", "Enter", "Enter"):
         page.typed(key)
     page.leave()
     room.store.write(lambda _connection: None).result(LIMIT)

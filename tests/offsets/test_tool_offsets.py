@@ -178,6 +178,7 @@ def test_no_geometry_changes_while_a_cycle_is_under_way(room: Room, state: State
     assert "UNDER WAY" in grid.prompt(room.now[0])
     grid.escape()
     grid.undo()
+    room.confirm()
     assert "UNDER WAY" in room.desk.notice
     room.settle(grid)
     assert room.store.tools() == before
@@ -273,6 +274,7 @@ def test_undo_and_history(room: Room) -> None:
     grid = at(room, 1, "wear_x")
     room.enter(grid, "-.001")
     grid.undo()
+    room.confirm()
     room.settle(grid)
     assert room.store.tools()[1].wear_x == 0.0
     assert room.desk.notice == "T1 TAKEN BACK"
@@ -292,6 +294,7 @@ def test_undo_of_half_a_tool_takes_that_back_and_no_older_change(room: Room) -> 
     room.enter(grid, "1")
     assert grid.fields.new.number == 5
     grid.undo()
+    room.confirm()
     room.settle(grid)
     assert (grid.fields.new.number, room.store.tools()) == (0, before)
     assert "TAKEN BACK" not in room.desk.notice

@@ -170,7 +170,7 @@ def test_of_a_round_tip_the_centre_is_set(setter: JogBench) -> None:
     setter.key(Key.Key_P)
     hold(setter, Key.Key_Up)
     setter.key(Key.Key_Return)
-    setter.saved()
+    setter.confirm()
     # The contact is at .15; the centre of the nose is .03 further out.
     assert setter.desk.book.tools[2].x == pytest.approx((0.15 - 0.03) * INCH, abs=0.002)
 
