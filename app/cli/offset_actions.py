@@ -5,11 +5,12 @@ from __future__ import annotations
 import argparse
 import json
 import re
+import sqlite3
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING
 
-from app.cli.meant_changes import demand_meant, machine_travel
+from app.cli.meant_changes import demand_meant
 from app.cli.store_command import opened_store
 from app.cli.who_changes import who_changes
 from app.desk.arithmetic import EntryError, value_of
@@ -18,9 +19,10 @@ from app.desk.toml_file import unknown
 from app.offsets.offset_acts import act_of
 from app.offsets.offset_values import stated_fields
 from app.offsets.offsets_file import ALIASES, TOOL_KEYS, out_of_range, shown
-from app.offsets.suspicious_changes import Doubt, Suspicion, suspicions
 from core.access.access_table import Act
+from core.store import offset_tables
 from core.store.offset_fields import MM_PER_INCH, Field, Sort
+from core.store.offset_tables import Reason
 from core.store.store_rows import (
     FIELDS,
     OFFSETS,
@@ -30,7 +32,6 @@ from core.store.store_rows import (
     MillRow,
     PresetRow,
     Row,
-    SecondaryRow,
     ShapeRow,
     ToolRow,
     Value,
@@ -134,49 +135,32 @@ def _set(args: argparse.Namespace) -> int:
         name: value for name, value in values.items() if kind is Kind.TOOL and name in FIELDS[Kind.SHAPE]
     }
     offset = {name: value for name, value in values.items() if name not in shape}
-    rows, acts = list[Row](), [act_of(kind, offset)] if offset else []
+    acts = [act_of(kind, offset)] if offset else []
     acts += [Act.SHAPES] if shape else []
     with opened_store() as store:
-        reason = {"why": args.why, "who": who_changes(store, args, *acts)}
+        reason = Reason(args.why, who_changes(store, args, *acts))
         gone = shape.get("kind") == NO_SHAPE
         if shape and not gone:
             _check_shape(store, number, shape, offset)
-        _check_meant(store, args, kind, number, offset)
-        if offset:
-            rows.append(store.set_offset(kind, number, values=offset, **reason).result())
-        if gone:
-            store.remove_shape(number, **reason).result()
-        elif shape:
-            rows.append(store.set_offset(Kind.SHAPE, number, values=shape, **reason).result())
+        changes = {each: values for each, values in ((kind, offset), (Kind.SHAPE, shape)) if values}
+        demand_meant(store, args, {each: {number: values} for each, values in changes.items()})
+        rows = store.write(lambda connection: _set_all(connection, number, changes, reason)).result()
     name = _name(kind, number)
     sys.stdout.write("".join(f"{_line(name, row)}\n" for row in rows) or f"{name} has no shape\n")
     return EXIT_OK
 
 
-def _check_meant(
-    store: Store, args: argparse.Namespace, kind: Kind, number: int, offset: dict[str, Value]
-) -> None:
-    """Raise CommandError for a suspicious change without consent; bad values are left to the store."""
-    table = store.offsets(kind)
-    old, travel = table.get(number), machine_travel(args)
-    fields = FIELDS[kind]
-    if kind is Kind.ZERO or not all(fields[name].takes(value) for name, value in offset.items()):
-        return
-    new = _row_with(kind, old, offset)
-    found = suspicions(number, old, new, travel) if new is not None else ()
-    others = len(table) > (number in table)
-    if offset.get("master") and others and not (isinstance(old, ToolRow) and old.master):
-        found = (*found, Suspicion(Doubt.MASTER, number, "master", False, True))
-    demand_meant(args, {kind: found}, travel)
-
-
-def _row_with(kind: Kind, old: Row | None, values: dict[str, Value]) -> Row | None:
-    """Return the row with these values; None where nothing can be compared."""
-    if kind is Kind.TOOL:
-        return with_fields(old if isinstance(old, ToolRow) else ToolRow(), values)
-    if kind is Kind.SECONDARY:
-        return with_fields(old if isinstance(old, SecondaryRow) else SecondaryRow(), values)
-    return with_fields(old, values) if isinstance(old, MillRow) else None
+def _set_all(
+    connection: sqlite3.Connection, number: int, changes: Mapping[Kind, Mapping[str, Value]], reason: Reason
+) -> list[Row]:
+    """Set the offset and the shape of one tool in one transaction: both or neither."""
+    rows = list[Row]()
+    for kind, values in changes.items():
+        if values.get("kind") == NO_SHAPE:
+            offset_tables.remove(connection, kind, number, reason)
+        else:
+            rows.append(offset_tables.change(connection, kind, number, reason, values))
+    return rows
 
 
 def _check_shape(store: Store, number: int, shape: dict[str, Value], offset: dict[str, Value]) -> None:

@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.cli.meant_changes import add_yes_option
+from app.cli.meant_changes import Changes, add_consent_options, demand_meant
 from app.cli.who_changes import COMMAND_LINE, add_as_option, note_change, who_changes, who_may
 from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError
 from app.desk.data_folder import data_folder
@@ -38,7 +38,7 @@ def add_parser(subparsers: SubParsers) -> None:
         if name in {"restore", "import"}:
             add_as_option(action)
         if name == "import":
-            add_yes_option(action)
+            add_consent_options(action)
     actions.add_parser("upgrade", help="bring the store of an older TurnDesk up to date, as the screen does")
     verify = actions.add_parser("verify", help="look at every page, reference and program text")
     verify.add_argument("--json", action="store_true", help="machine-readable output alone on stdout")
@@ -118,7 +118,7 @@ def _import(args: argparse.Namespace) -> int:
         programs = store_export.program_files(folder)
         mill, why = store_export.mill_rows(folder), f"import of {folder.name}"
         named = who_changes(store, args, Act.RESTORE)
-        _check_meant(store, args, tools, secondary)
+        demand_meant(store, args, {**_values_of(tools, secondary), **mill})
         who = "import" if named == COMMAND_LINE else named
         store.import_all(programs, tools, secondary, why, zero, shapes, mill, who=who).result()
     counts = f"{len(programs)}, tool offsets: {len(tools)}, secondary offsets: {len(secondary)}"
@@ -128,23 +128,14 @@ def _import(args: argparse.Namespace) -> int:
     return EXIT_OK
 
 
-def _check_meant(
-    store: Store,
-    args: argparse.Namespace,
-    tools: Mapping[int, ToolRow],
-    secondary: Mapping[int, SecondaryRow],
-) -> None:
-    """Raise CommandError if the imported offsets leave the travel or change by large amounts."""
-    from app.cli.meant_changes import demand_meant, machine_travel
-    from app.offsets.suspicious_changes import of_tables
+def _values_of(tools: Mapping[int, ToolRow], secondary: Mapping[int, SecondaryRow]) -> Changes:
+    """Return the imported rows as changes of all their fields."""
     from core.store.store_rows import Kind
 
-    travel = machine_travel(args)
-    found = {
-        Kind.TOOL: of_tables(store.tools(), tools, travel),
-        Kind.SECONDARY: of_tables(store.secondary(), secondary, {}),
+    return {
+        Kind.TOOL: {number: row._asdict() for number, row in tools.items()},
+        Kind.SECONDARY: {number: row._asdict() for number, row in secondary.items()},
     }
-    demand_meant(args, found, travel)
 
 
 def _upgrade(_args: argparse.Namespace) -> int:

@@ -90,9 +90,8 @@ class TouchOff:
         """
         place, book, ask = self.place(text, history.mode), history.book, OffsetQuestions(history)
         if number in book.tools:
-            x, z = (place, None) if self.name == "x" else (None, place)
             return ask.touch_off(
-                number, Touch(x, z, self.alone), self._reason(text, history.mode), self._tip(place)
+                number, self.touch(place), self._reason(text, history.mode), self._tip(place)
             )
         values = new.add(number, self.name, place)
         new.tip = self._tip(place) if self.name == "x" else new.tip
@@ -103,6 +102,10 @@ class TouchOff:
         if not why:
             new.drop()
         return why
+
+    def touch(self, place: float) -> Touch:
+        """Return the touch of this axis, with part zero at ``place``, machine mm."""
+        return Touch(place, None, self.alone) if self.name == "x" else Touch(None, place, self.alone)
 
     def _tip(self, place: float) -> float | None:
         """Return X of the tip from part zero when it touched, mm; None if a touch did not measure X."""

@@ -145,7 +145,7 @@ class JogPage(HeldKeysPage):
         if self.model.on_mill:
             foot = ""
         text = tool.touching.cause if tool.by_setter else tool.text
-        self.asked.asked = EntryWords("", tool.question(), text, tool.old_to_new(), foot, tool.large)
+        self.asked.asked = EntryWords("", tool.question(), text, tool.old_to_new(), foot)
         self.strip.show_strip(snapshot, tool.history.last_in_words, foot)
 
     def resizeEvent(self, _event: QResizeEvent) -> None:

@@ -13,7 +13,7 @@ from app.jog.jog_touch_off import TOUCH_X, TOUCH_Z, TOUCHES, TouchOff
 from app.offsets.offset_acts import CORRECTIONS
 from app.offsets.offset_book import OffsetBook
 from app.offsets.offset_history import OffsetHistory, refusal
-from app.offsets.offset_questions import OffsetQuestions
+from app.offsets.offset_questions import OffsetQuestions, follower_names
 from app.offsets.offset_values import (
     TOOL_FIELDS,
     Mode,
@@ -24,7 +24,6 @@ from app.offsets.offset_values import (
     value_typed,
     word,
 )
-from app.offsets.suspicious_changes import LARGE_MM
 from app.offsets.tool_fields import ToolFields
 from core.executor.snapshot import Snapshot
 from core.store.offset_fields import REMARK_LONGEST, Sort
@@ -72,9 +71,16 @@ class ToolSetting:
         return self.asked in TOUCHES and self.touching.found is not None
 
     def found(self, what: str, value: float, cause: str) -> None:
-        """The tool setter has found where the tip stands on part zero, machine mm: ask whether to keep it."""
+        """Ask whether to keep what the tool setter has found, machine mm: the tip's place on part zero.
+
+        A suspicious value of a tool that is set is asked once, as every suspicious value.
+        """
         self.asked, self.text = what, ""
         self.touching.set(what, value, cause)
+        if self.row is not None and OffsetQuestions(self.history).doubts(
+            self.number, self.touching.touch(value)
+        ):
+            self._enter()
 
     def measured(self, what: str, at: float) -> None:
         """A cut that was made with the slide there, machine mm, is to be measured: ask for its size."""
@@ -88,11 +94,6 @@ class ToolSetting:
         if not self.by_setter or self.row is None or self.touching.found is None:
             return None
         return self.touching.found - self.row.offset["xz".index(self.touching.name)]
-
-    @property
-    def large(self) -> bool:
-        """Whether what was found is so far from what the tool had that something may be wrong."""
-        return abs(self.moved or 0.0) > LARGE_MM
 
     def question(self) -> str:
         """What is asked now; empty when nothing is."""
@@ -115,8 +116,8 @@ class ToolSetting:
         if self.masters and self.touching.alone:
             return tr("T{number} ALONE: THE OTHERS STAY (L: ALL FOLLOW)").format(number=edge_number(number))
         if self.masters:
-            return tr("T{number} IS THE MASTER: ALL TOOLS FOLLOW (L: IT ALONE)").format(
-                number=edge_number(number)
+            return tr("T{number} IS THE MASTER: {others} FOLLOW (L: IT ALONE)").format(
+                number=edge_number(number), others=follower_names(self.book.tools, number) or tr("no tools")
             )
         if new.number and new.number == number:
             text = tr("T{number} IS SET WHEN {axis} IS TOUCHED TOO")

@@ -170,14 +170,14 @@ class OffsetBook:
         """Take exactly this step back."""
         return self._post(act_of(kind), lambda store, who: store.undo_step(kind, number, step, who=who))
 
-    def barred(self) -> str:
-        """Return why no change can be posted now; empty if one can."""
-        return (self.locked or SAVING) if self.store is None or self.busy else ""
+    def barred(self, act: Act) -> str:
+        """Return why this change cannot be posted now; empty if it can."""
+        if self.store is None or self.busy:
+            return self.locked or SAVING
+        return self.access.refusal(act)
 
     def _post(self, act: Act, write: Callable[[Store, str], Future[Any]]) -> str:
-        if self.store is None or self.busy:
-            return self.barred()
-        if why := self.access.refusal(act):
+        if (why := self.barred(act)) or self.store is None:
             return why
         try:
             self._saving = write(self.store, self.access.who)

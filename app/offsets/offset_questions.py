@@ -11,20 +11,24 @@ from dataclasses import dataclass
 from functools import partial
 
 from app.desk.translation import tr
+from app.offsets.offset_acts import act_of
 from app.offsets.offset_history import LETTERS, OffsetHistory
 from app.offsets.offset_values import cell_text, heading, not_set, shown_value, signed
 from app.offsets.suspicious_changes import (
+    LARGE_MM,
     Doubt,
     Suspicion,
     described,
     followers,
     of_followers,
     suspicions,
+    suspicions_of,
     touched,
     travel_of,
 )
+from core.access.access_table import Act
 from core.store.store_errors import StoreError
-from core.store.store_rows import FIELDS, Kind, MillRow, Row, SecondaryRow, ToolRow, Value, with_fields
+from core.store.store_rows import FIELDS, Kind, ToolRow, Value
 from core.store.touch_off import Touch
 from core.tool_edges import edge_name
 
@@ -42,14 +46,13 @@ class OffsetQuestions:
     def change(self, kind: Kind, number: int, values: Mapping[str, Value], why: str) -> str:
         """Save some fields of an offset; ask first if a value is suspicious."""
         book = self.history.book
-        old = book.of(kind).get(number)
-        new = _changed(kind, old, values)
-        found = suspicions(number, old, new, self._travel()) if new is not None else ()
+        table = book.of(kind)
         return self._if_meant(
             kind,
-            found,
+            suspicions_of(kind, table, {number: values}, self._travel()),
+            act_of(kind, values),
             lambda: book.change(kind, number, values, why),
-            lambda: book.of(kind).get(number) == old,
+            lambda: book.of(kind).get(number) == table.get(number),
         )
 
     def touch_off(self, number: int, touch: Touch, why: str, tip: float | None = None) -> str:
@@ -58,19 +61,32 @@ class OffsetQuestions:
         ``tip`` is X of the tip from part zero by this touch (mm, a radius), None if X was not measured so.
         """
         book = self.history.book
-        tools, old, travel = book.tools, book.tools.get(number), self._travel()
-        new = touched(tools, number, touch)
+        tools = book.tools
+        return self._if_meant(
+            Kind.TOOL,
+            self.doubts(number, touch, tip),
+            Act.TOOLS,
+            lambda: book.touch_off(number, touch, why),
+            lambda: book.tools == tools,
+            self._that_follow(number, touch),
+        )
+
+    def doubts(self, number: int, touch: Touch, tip: float | None = None) -> tuple[Suspicion, ...]:
+        """Return what is questionable about this touch-off."""
+        tools, travel = self.history.book.tools, self._travel()
+        old, new = tools.get(number), touched(tools, number, touch)
         found = suspicions(number, old, new, travel)
         if old is not None and old.master and not touch.alone:
             found += of_followers(tools, number, new, travel)
         if tip is not None and self._other_side(number, tip, new.x):
             found = (Suspicion(Doubt.SIDE, number, "x", old.x if old else None, new.x), *found)
-        return self._if_meant(
-            Kind.TOOL,
-            found,
-            lambda: book.touch_off(number, touch, why),
-            lambda: book.tools == tools,
-        )
+        return found
+
+    def _that_follow(self, number: int, touch: Touch) -> str:
+        """Return the names of the tools that this touch-off moves too; empty if it moves no other tool."""
+        tools = self.history.book.tools
+        moves_all = number in tools and tools[number].master and not touch.alone
+        return follower_names(tools, number) if moves_all else ""
 
     def _other_side(self, number: int, tip: float, new_x: float) -> bool:
         """Return whether the tool would touch on the other side of the part than before."""
@@ -84,16 +100,23 @@ class OffsetQuestions:
         return travel_of(self.history.desk.lathe)
 
     def _if_meant(
-        self, kind: Kind, found: tuple[Suspicion, ...], save: Callable[[], str], unchanged: Callable[[], bool]
+        self,
+        kind: Kind,
+        found: tuple[Suspicion, ...],
+        act: Act,
+        save: Callable[[], str],
+        unchanged: Callable[[], bool],
+        others: str = "",
     ) -> str:
         """Save at once, or after Y if there are suspicions and nothing has changed meanwhile."""
         history = self.history
-        if not found or history.book.busy:
-            return save()
-        if why := history.book.barred():
-            return why
-        changes = described(found, lambda each: self._named(kind, each), _reason)
-        question = tr("{changes}: PRESS Y TO CHANGE IT, N TO KEEP THE OLD VALUE").format(changes=changes)
+        if (why := history.book.barred(act)) or not found:
+            return why or save()
+        changes = described(found, lambda each: self._named(kind, each), lambda each: _reason(each.doubt))
+        text = tr("{changes}: PRESS Y TO CHANGE IT, N TO KEEP THE OLD VALUE")
+        if others:
+            text = tr("{changes}. FOLLOWERS: {others}. PRESS Y TO CHANGE THEM, N TO KEEP THE OLD VALUES")
+        question = text.format(changes=changes, others=others)
         history.desk.ask(question, lambda: history.answer(save() if unchanged() else _changed_meanwhile()))
         return ""
 
@@ -117,24 +140,34 @@ class OffsetQuestions:
         """Ask whether this tool becomes the master, or no tool if it is the master; name the followers."""
         book = self.history.book
         tools, before = book.tools, book.master
-        if why := book.barred():
+        if why := book.barred(Act.TOOLS):
             return why
         chosen = 0 if before == number else number
-        text = tr("MASTER {tool} → NONE, NO TOOL FOLLOWS IT: PRESS Y TO CHANGE, N TO KEEP")
-        if chosen:
-            text = tr("MASTER {before} → {tool}; {others} FOLLOW ITS TOUCH-OFF: PRESS Y TO CHANGE, N TO KEEP")
-        others = tr("no tools") if len(tools) < 2 else ", ".join(_names(followers(tools, number)))
-        words = text.format(
-            tool=edge_name(number), before=edge_name(before) if before else tr("none"), others=others
-        )
         reason = tr("chosen as master") if chosen else tr("no master")
         self.history.desk.ask(
-            words,
+            self._master_question(before, chosen),
             lambda: self.history.answer(
                 book.choose_master(chosen, reason) if book.tools == tools else _changed_meanwhile()
             ),
         )
         return ""
+
+    def _master_question(self, before: int, chosen: int) -> str:
+        if not chosen:
+            text = tr("MASTER {before} → NONE, NO TOOL FOLLOWS IT: PRESS Y TO CHANGE, N TO KEEP")
+            return text.format(before=edge_name(before))
+        text = tr(
+            "MASTER {before} → {tool}. FOLLOWERS: {others}. ITS TOUCH-OFF IS ASKED IF IT MOVES THEM BY MORE THAN "
+            "{limit} {unit}. PRESS Y TO CHANGE, N TO KEEP"
+        )
+        mode = self.history.mode
+        return text.format(
+            before=edge_name(before) if before else tr("none"),
+            tool=edge_name(chosen),
+            others=follower_names(self.history.book.tools, chosen) or tr("no tools"),
+            limit=f"{LARGE_MM / mode.unit:.2g}",
+            unit=mode.name.upper(),
+        )
 
     # --- undo ----------------------------------------------------------------------------------------
 
@@ -144,7 +177,7 @@ class OffsetQuestions:
         ``done`` is reported after Y by a page that does not watch the table.
         """
         book = self.history.book
-        if why := book.barred():
+        if why := book.barred(act_of(kind)):
             return why
         try:
             step = book.undoable(kind, number)
@@ -171,15 +204,6 @@ class OffsetQuestions:
             self.history.desk.done(done)
 
 
-def _changed(kind: Kind, old: Row | None, values: Mapping[str, Value]) -> Row | None:
-    """Return the row with these values; None for a table whose values are not questioned."""
-    if kind is Kind.TOOL:
-        return with_fields(old if isinstance(old, ToolRow) else ToolRow(), values)
-    if kind is Kind.SECONDARY:
-        return with_fields(old if isinstance(old, SecondaryRow) else SecondaryRow(), values)
-    return with_fields(old, values) if isinstance(old, MillRow) else None
-
-
 def _reason(doubt: Doubt) -> str:
     words = {
         Doubt.TRAVEL: tr("BEYOND THE TRAVEL"),
@@ -203,8 +227,9 @@ def _table_or_row(kind: Kind, number: int | None) -> str:
     return tr("THIS TABLE") if number is None else _row_name(kind, number)
 
 
-def _names(numbers: tuple[int, ...]) -> list[str]:
-    return _short([edge_name(number) for number in numbers])
+def follower_names(tools: Mapping[int, ToolRow], master: int) -> str:
+    """Return the names of the tools that follow this master, the first few of many."""
+    return ", ".join(_short([edge_name(number) for number in followers(tools, master)]))
 
 
 def _short(names: list[str]) -> list[str]:

@@ -1,22 +1,22 @@
 """Changes of offsets that are probably typing mistakes: the one rule for the screen and the command line.
 
-The rule compares the new value with the value in use. Haas controls do the same: setting 142, OFFSET CHANGE
-TOLERANCE, asks "Accept (Y/N)?" before an offset changes by more than its limit. FANUC controls limit one
-entry of wear (parameters 5013 and 5014). Datums (G54 to G59, presets) are not questioned, because each
-new setup moves them by any distance; the proof checks the resulting path against the travel.
+The rule compares the new value with the value in use. Its limits are TurnDesk's own. They are larger than
+the usual correction of a size between two parts and smaller than most slips of a digit, a sign or a decimal
+point. Datums (G54 to G59, presets) are not questioned, because each new setup moves them by any distance;
+the proof checks the resulting path against the travel.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from enum import StrEnum
 from typing import NamedTuple
 
 from core.machine.machine_model import Machine
-from core.store.store_rows import MillRow, Row, SecondaryRow, ToolRow, Value, with_fields
+from core.store.store_rows import FIELDS, Kind, MillRow, Row, SecondaryRow, ToolRow, Value, with_fields
 from core.store.touch_off import Touch
 
-LARGE_MM = 0.5  # geometry: .02 in. An indexed insert repeats within 0.1 mm; a slipped digit moves it by more
+LARGE_MM = 0.5  # geometry: about .02 in
 LARGE_CORRECTION_MM = 0.254  # wear: .010 in as it is entered, X on the diameter; a slipped .002 is .020
 _NEAR = 1e-6  # mm: rounding
 
@@ -24,7 +24,7 @@ Travel = Mapping[str, tuple[float, float]]  # of x and z, mm from home
 
 
 class Doubt(StrEnum):
-    """Why a change is questioned."""
+    """Why a change is questioned; the most serious doubt first."""
 
     TRAVEL = "travel"  # the tip could not reach part zero
     SIDE = "side"  # the tool would work on the other side of the part
@@ -43,10 +43,42 @@ class Suspicion(NamedTuple):
 
 
 def travel_of(machine: Machine | None) -> Travel:
-    """Return the travel of the axes that the tool offsets of a lathe refer to; none for a mill."""
+    """Return the travel of the axes that the tool offsets of a lathe refer to; none for a mill.
+
+    The length of a mill's tool is no machine position, so it is not compared with the travel.
+    """
     if machine is None or machine.kind != "lathe":
         return {}
     return {a.name.lower(): a.reach for a in machine.axes if a.name in {"X", "Z"} and a.travel is not None}
+
+
+def suspicions_of(
+    kind: Kind, table: Mapping[int, Row], changes: Mapping[int, Mapping[str, Value]], travel: Travel
+) -> tuple[Suspicion, ...]:
+    """Return what is questionable about setting these fields of rows of a table.
+
+    Rows with a value out of its range are left out: the store refuses them.
+    """
+    new = {n: row for n, values in changes.items() if (row := _changed(kind, table.get(n), values))}
+    found = [
+        each for number, row in new.items() for each in suspicions(number, table.get(number), row, travel)
+    ]
+    found += _new_masters(table, new)
+    return tuple(found)
+
+
+def _changed(kind: Kind, old: Row | None, values: Mapping[str, Value]) -> Row | None:
+    """Return the row with these values; None if it is not questioned or a value is out of its range."""
+    fields = FIELDS[kind]
+    if not all(name in fields and fields[name].takes(value) for name, value in values.items()):
+        return None
+    if kind is Kind.TOOL:
+        return with_fields(old if isinstance(old, ToolRow) else ToolRow(), values)
+    if kind is Kind.SECONDARY:
+        return with_fields(old if isinstance(old, SecondaryRow) else SecondaryRow(), values)
+    if kind is Kind.MILL_TOOL:
+        return with_fields(old if isinstance(old, MillRow) else MillRow(), values)
+    return None
 
 
 def suspicions(number: int, old: Row | None, new: Row, travel: Travel) -> tuple[Suspicion, ...]:
@@ -57,10 +89,8 @@ def suspicions(number: int, old: Row | None, new: Row, travel: Travel) -> tuple[
     elif isinstance(new, SecondaryRow):
         before = old if isinstance(old, SecondaryRow) else SecondaryRow()
         found = list(_of_corrections(number, before, new, ("x", "z"), doubled="x"))
-    elif isinstance(new, MillRow) and isinstance(old, MillRow):
-        measured = tuple(name for name in ("length", "radius") if getattr(old, name))  # 0: not entered yet
-        found = list(_moved(number, old, new, measured, LARGE_MM))
-        found += _of_corrections(number, old, new, ("dl", "dr"), doubled="")
+    elif isinstance(new, MillRow):
+        found = list(_of_mill(number, old if isinstance(old, MillRow) else MillRow(), new))
     order = list(Doubt)
     return tuple(sorted(found, key=lambda each: order.index(each.doubt)))
 
@@ -68,6 +98,7 @@ def suspicions(number: int, old: Row | None, new: Row, travel: Travel) -> tuple[
 def _of_tool(number: int, old: ToolRow | None, new: ToolRow, travel: Travel) -> Iterator[Suspicion]:
     yield from _beyond(number, old, new, travel)
     if old is None:
+        yield from _of_corrections(number, ToolRow(), new, ("wear_x", "wear_z"), doubled="wear_x")
         return
     if old.x * new.x < -_NEAR:
         yield Suspicion(Doubt.SIDE, number, "x", old.x, new.x)
@@ -78,6 +109,12 @@ def _of_tool(number: int, old: ToolRow | None, new: ToolRow, travel: Travel) -> 
             yield Suspicion(Doubt.LARGE, number, name, before, after)
     worn = tuple(f"wear_{name}" for name in "xz" if getattr(old, name) == getattr(new, name))
     yield from _of_corrections(number, old, new, worn, doubled="wear_x")
+
+
+def _of_mill(number: int, old: MillRow, new: MillRow) -> Iterator[Suspicion]:
+    measured = tuple(name for name in ("length", "radius", "corner") if getattr(old, name))  # 0: not entered
+    yield from _moved(number, old, new, measured, LARGE_MM)
+    yield from _of_corrections(number, old, new, ("dl", "dr", "dr2"), doubled="")
 
 
 def _beyond(number: int, old: ToolRow | None, new: ToolRow, travel: Travel) -> Iterator[Suspicion]:
@@ -105,6 +142,15 @@ def _moved(number: int, old: Row, new: Row, names: tuple[str, ...], limit: float
             yield Suspicion(Doubt.LARGE, number, name, before, after)
 
 
+def _new_masters(table: Mapping[int, Row], new: Mapping[int, Row]) -> Iterator[Suspicion]:
+    """Yield the rows that become the master while the table has tools that will follow."""
+    for number, row in new.items():
+        old = table.get(number)
+        was = isinstance(old, ToolRow) and old.master
+        if isinstance(row, ToolRow) and row.master and not was and followers({**table, **new}, number):
+            yield Suspicion(Doubt.MASTER, number, "master", False, True)
+
+
 # --- several tools at once -------------------------------------------------------------------------------
 
 
@@ -115,7 +161,7 @@ def touched(tools: Mapping[int, ToolRow], number: int, touch: Touch) -> ToolRow:
     return with_fields(tools.get(number, ToolRow()), values)
 
 
-def followers(tools: Mapping[int, ToolRow], master: int) -> tuple[int, ...]:
+def followers(tools: Iterable[int], master: int) -> tuple[int, ...]:
     """Return the tools that follow when this tool is the master and is touched off."""
     return tuple(number for number in sorted(tools) if number != master)
 
@@ -133,16 +179,11 @@ def of_followers(
     return tuple(found)
 
 
-def of_tables(old: Mapping[int, Row], new: Mapping[int, Row], travel: Travel) -> tuple[Suspicion, ...]:
-    """Return what is questionable about replacing rows of a table by others."""
-    return tuple(each for n, row in new.items() for each in suspicions(n, old.get(n), row, travel))
-
-
 def described(
-    found: tuple[Suspicion, ...], name: Callable[[Suspicion], str], reason: Callable[[Doubt], str]
+    found: tuple[Suspicion, ...], name: Callable[[Suspicion], str], reason: Callable[[Suspicion], str]
 ) -> str:
     """Return one text for all suspicions: each field once, with the most serious reason of its doubts."""
     fields: dict[tuple[int, str], Suspicion] = {}
     for each in found:
         fields.setdefault((each.number, each.name), each)
-    return ", ".join(f"{name(each)} ({reason(each.doubt)})" for each in fields.values())
+    return ", ".join(f"{name(each)} ({reason(each)})" for each in fields.values())

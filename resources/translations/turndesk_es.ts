@@ -8475,13 +8475,18 @@
     </message>
     <message>
       <location filename="app/jog/tool_setting.py" />
-      <source>T{number} IS THE MASTER: ALL TOOLS FOLLOW (L: IT ALONE)</source>
-      <translation>T{number} ES LA MAESTRA: TODAS LAS HERRAMIENTAS LA SIGUEN (L: SÓLO ELLA)</translation>
+      <source>T{number} IS THE MASTER: {others} FOLLOW (L: IT ALONE)</source>
+      <translation>T{number} ES LA MAESTRA: LA SIGUEN {others} (L: SOLO ELLA)</translation>
     </message>
     <message>
       <location filename="app/jog/tool_setting.py" />
       <source>T{number} WAS NEVER SET: TOUCH X AND Z FIRST</source>
       <translation>T{number} NUNCA SE PUSO: TOQUE PRIMERO X Y Z</translation>
+    </message>
+    <message>
+      <location filename="app/jog/tool_setting.py" />
+      <source>no tools</source>
+      <translation>ninguna herramienta</translation>
     </message>
     <message>
       <location filename="app/jog/tool_setting.py" />
@@ -8900,13 +8905,13 @@
     </message>
     <message>
       <location filename="app/offsets/offset_questions.py" />
-      <source>MASTER {before} → {tool}; {others} FOLLOW ITS TOUCH-OFF: PRESS Y TO CHANGE, N TO KEEP</source>
-      <translation>MAESTRA {before} → {tool}; {others} SIGUEN SU TOMA DE REFERENCIA: PULSE Y PARA CAMBIAR, N PARA CONSERVAR</translation>
+      <source>MASTER {before} → NONE, NO TOOL FOLLOWS IT: PRESS Y TO CHANGE, N TO KEEP</source>
+      <translation type="unfinished" />
     </message>
     <message>
       <location filename="app/offsets/offset_questions.py" />
-      <source>MASTER {tool} → NONE, NO TOOL FOLLOWS IT: PRESS Y TO CHANGE, N TO KEEP</source>
-      <translation>MAESTRA {tool} → NINGUNA, NINGUNA HERRAMIENTA LA SIGUE: PULSE Y PARA CAMBIAR, N PARA CONSERVAR</translation>
+      <source>MASTER {before} → {tool}. FOLLOWERS: {others}. ITS TOUCH-OFF IS ASKED IF IT MOVES THEM BY MORE THAN {limit} {unit}. PRESS Y TO CHANGE, N TO KEEP</source>
+      <translation>MAESTRA {before} → {tool}. LA SIGUEN: {others}. SU TOMA DE REFERENCIA SE PREGUNTA SI LAS MUEVE MÁS DE {limit} {unit}. PULSE Y PARA CAMBIAR, N PARA CONSERVAR</translation>
     </message>
     <message>
       <location filename="app/offsets/offset_questions.py" />
@@ -8950,8 +8955,8 @@
     </message>
     <message>
       <location filename="app/offsets/offset_questions.py" />
-      <source>no tools</source>
-      <translation>ninguna herramienta</translation>
+      <source>{changes}. FOLLOWERS: {others}. PRESS Y TO CHANGE THEM, N TO KEEP THE OLD VALUES</source>
+      <translation>{changes}. LA SIGUEN: {others}. PULSE Y PARA CAMBIARLAS, N PARA CONSERVAR LOS VALORES ANTERIORES</translation>
     </message>
     <message>
       <location filename="app/offsets/offset_questions.py" />

@@ -89,6 +89,7 @@ NO_CHANGE = {
     "compose/demo_store.py": "a store for trying",
     "compose/dialects_page.py": "a page of the manual",
     "compose/headless_run.py": "inputs of a run that is simulated",
+    "compose/machine_in_use.py": "which machine the screen was opened for",
     "compose/played_machine.py": "the other end of a machine that is simulated",
     "compose/run_log.py": "old files of the machine's own log",
     "compose/thumbnails.py": "pictures that can be made again",

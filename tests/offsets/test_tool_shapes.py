@@ -242,7 +242,7 @@ def test_nothing_changes_while_a_program_is_under_way(room: Room) -> None:
     assert page.text == ""
     page.remove()
     page.undo()
-    room.confirm()
+    assert not room.desk.asked
     assert len(room.store.history(Kind.SHAPE)) == 2
 
 

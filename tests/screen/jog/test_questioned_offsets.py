@@ -101,7 +101,9 @@ def test_a_master_is_asked_and_its_followers_are_named(jog: JogBench) -> None:
     jog.desk.book.read()
     jog.type("m")
     jog.saved()
-    assert jog.prompt == text("offsets.master", before="none", tool="T1", others="T2, T7")
+    assert jog.prompt == text(
+        "offsets.master", before="none", tool="T1", others="T2, T7", limit="0.02", unit="IN"
+    )
     assert not jog.store.tools()[1].master
     jog.key(Key.Key_N)
     jog.saved()

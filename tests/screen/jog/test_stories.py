@@ -118,7 +118,7 @@ def test_the_master_takes_all_along_or_is_set_alone(jog: JogBench) -> None:
     jog.confirm()
     jog.type("z")
     jog.run(0.02)
-    assert shows(jog.page.asked.asked.foot, "jog.is-master")
+    assert shows(jog.page.asked.asked.foot, "jog.is-master", number=1, others="T2")
     jog.enter("1")
     jog.confirm()
     # the face was at −50 mm, it is at −25.4 mm now: 24.6 mm for everybody
