@@ -157,8 +157,8 @@ class OffsetQuestions:
             text = tr("MASTER {before} → NONE, NO TOOL FOLLOWS IT: PRESS Y TO CHANGE, N TO KEEP")
             return text.format(before=edge_name(before))
         text = tr(
-            "MASTER {before} → {tool}. FOLLOWERS: {others}. ITS TOUCH-OFF IS ASKED IF IT MOVES THEM BY MORE THAN "
-            "{limit} {unit}. PRESS Y TO CHANGE, N TO KEEP"
+            "MASTER {before} → {tool}. FOLLOWERS: {others}. ITS TOUCH-OFF IS ASKED IF IT MOVES THEM BY "
+            "MORE THAN {limit} {unit}. PRESS Y TO CHANGE, N TO KEEP"
         )
         mode = self.history.mode
         return text.format(

@@ -8906,7 +8906,7 @@
     <message>
       <location filename="app/offsets/offset_questions.py" />
       <source>MASTER {before} → NONE, NO TOOL FOLLOWS IT: PRESS Y TO CHANGE, N TO KEEP</source>
-      <translation type="unfinished" />
+      <translation>MAESTRA {before} → NINGUNA, NADIE LA SIGUE: PULSE Y PARA CAMBIAR, N PARA CONSERVAR</translation>
     </message>
     <message>
       <location filename="app/offsets/offset_questions.py" />
