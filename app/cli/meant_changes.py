@@ -60,8 +60,7 @@ def demand_meant(store: Store, args: argparse.Namespace, changes: Changes) -> No
         )
     if args.yes or not any(found.values()):
         return
-    tools = {**tables.get(Kind.TOOL, {}), **changes.get(Kind.TOOL, {})}
-    doubted = _described(found, tools)
+    doubted = _described(found, tables.get(Kind.TOOL, {}))
     if not sys.stdin.isatty():
         raise CommandError(f"{doubted}; give --yes if you mean it", "not-confirmed")
     sys.stderr.write(f"{doubted}. Press Y and Return to change it: ")
@@ -94,7 +93,7 @@ def _described(found: Mapping[Kind, tuple[Suspicion, ...]], tools: Iterable[int]
 
 def _reason(tools: Iterable[int], each: Suspicion) -> str:
     if each.doubt is Doubt.MASTER:
-        return f"{', '.join(map(edge_name, followers(tools, each.number)))} follow its touch-off"
+        return f"followers: {', '.join(map(edge_name, followers(tools, each.number)))}"
     words = {
         Doubt.TRAVEL: "beyond the travel",
         Doubt.SIDE: "the other side of the part",

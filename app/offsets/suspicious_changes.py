@@ -143,11 +143,11 @@ def _moved(number: int, old: Row, new: Row, names: tuple[str, ...], limit: float
 
 
 def _new_masters(table: Mapping[int, Row], new: Mapping[int, Row]) -> Iterator[Suspicion]:
-    """Yield the rows that become the master while the table has tools that will follow."""
+    """Yield the rows that become the master while the table already has tools that will follow."""
     for number, row in new.items():
         old = table.get(number)
         was = isinstance(old, ToolRow) and old.master
-        if isinstance(row, ToolRow) and row.master and not was and followers({**table, **new}, number):
+        if isinstance(row, ToolRow) and row.master and not was and followers(table, number):
             yield Suspicion(Doubt.MASTER, number, "master", False, True)
 
 
