@@ -234,6 +234,7 @@ def test_the_correction_goes_the_way_of_a_typed_one_and_back(day: Day) -> None:
         "measure.reason-of-correction", name="SPIGOT", mean="0.50120", count=2, change="−0.00060"
     )
     day.key(Key.Key_F9)
+    yes(day.window)
     day.sees(lambda: not day.desk.book.busy)
     assert day.store.tools()[1].wear_x == 0.0
 
@@ -541,5 +542,6 @@ def test_a_secondary_offset_is_corrected_as_a_radius(day: Day) -> None:
     assert day.store.secondary()[4].x == pytest.approx(-0.0003 * 25.4)
     day.sees(lambda: settled(day))
     day.key(Key.Key_F9)
+    yes(day.window)
     day.sees(lambda: not day.desk.book.busy)
     assert 4 not in day.store.secondary()
