@@ -4,14 +4,20 @@ from __future__ import annotations
 
 import io
 import json
+from importlib.resources import files
 from pathlib import Path
 
 import pytest
 
 from app.cli.main import main
+from app.compose.journal import Journal
+from app.compose.machine_in_use import remember_machine
+from app.compose.screen_desk import desk_and_executor
+from app.compose.stored_offsets import stored_offsets
 from core.coded_error import CodedError
 from core.store.store import Store
 from core.store.store_rows import SecondaryRow, ToolRow
+from drivers.clocks import StepClock
 from tests.coded import recorded_refusals
 
 Captured = pytest.CaptureFixture[str]
@@ -267,17 +273,119 @@ def test_a_master_that_others_follow_needs_consent(capsys: Captured) -> None:
     for name in ("T1", "T2"):
         assert main(["offsets", "set", name, "x=1", "z=0"]) == 0
     capsys.readouterr()
-    assert refused(capsys, "set", "T2", "master=1").code == "not-confirmed"
+    error = refused(capsys, "set", "T2", "master=1")
+    assert (error.code, "followers: T1" in str(error)) == ("not-confirmed", True)
     assert main(["offsets", "set", "T2", "master=1", "--yes"]) == 0
 
 
-def test_an_import_beyond_the_travel_is_refused(capsys: Captured, tmp_path: Path) -> None:
-    folder = tmp_path / "export"
-    folder.mkdir()
-    (folder / "programs").mkdir()
-    (folder / "offsets.toml").write_text("[tool.1]\nx = -15.0\nz = 0.0\n")
-    with pytest.MonkeyPatch.context() as patch:
-        refusals = recorded_refusals(patch)
-        assert main(["store", "import", str(folder)]) == 2
-    assert refusals[-1].code == "beyond-travel"
+def exported(folder: Path, offsets: str = "", mill: str = "") -> Path:
+    """Return an exported folder with one program, these tools and these tools of a mill."""
+    (folder / "programs").mkdir(parents=True)
+    (folder / "programs" / "pin.nc").write_bytes(b"M30\n")
+    (folder / "offsets.toml").write_text(offsets)
+    if mill:
+        (folder / "mill_tools.csv").write_text(mill)
+    return folder
+
+
+def imported(monkeypatch: pytest.MonkeyPatch, folder: Path, *options: str) -> str:
+    """Import the folder; return the code of the refusal, empty if the import was done."""
+    refusals = recorded_refusals(monkeypatch)
+    status = main(["store", "import", str(folder), *options])
+    return "" if status == 0 else refusals[-1].code
+
+
+def test_an_import_beyond_the_travel_is_refused_as_a_whole(
+    capsys: Captured, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, home: Path
+) -> None:
+    folder = exported(tmp_path / "out", "[tool.1]\nx = 1.0\nz = 0.0\n[tool.2]\nx = -15.0\nz = 0.0\n")
+    assert imported(monkeypatch, folder, "--yes") == "beyond-travel"
     assert shown(capsys) == {"tool": {}, "secondary": {}}
+    with Store.open(home, read_only=True) as store:
+        assert store.programs() == ()
+
+
+def test_an_import_of_a_large_change_needs_consent(
+    capsys: Captured, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    assert main(["offsets", "set", "T1", "x=1.2", "z=0"]) == 0
+    folder = exported(tmp_path / "out", "[tool.1]\nx = -1.2\nz = 0.0\n")
+    assert imported(monkeypatch, folder) == "not-confirmed"
+    assert shown(capsys)["tool"] == {"1": tool(x=1.2)}
+    assert imported(monkeypatch, folder, "--yes") == ""
+    assert shown(capsys)["tool"] == {"1": tool(x=-1.2)}
+
+
+def test_an_import_of_a_large_change_of_a_mill_needs_consent(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, home: Path
+) -> None:
+    assert main(["offsets", "set", "TOOL1", "L=80"]) == 0
+    folder = exported(tmp_path / "out", mill="number,length\n1,8.0\n")
+    assert imported(monkeypatch, folder) == "not-confirmed"
+    with Store.open(home) as store:
+        assert store.mill_tools()[1].length == 80.0
+    assert imported(monkeypatch, folder, "--yes") == ""
+
+
+@pytest.mark.parametrize("entry", ["L=8", "DL=.3", "R=6"])
+def test_a_large_change_of_a_tool_of_a_mill_needs_consent(capsys: Captured, home: Path, entry: str) -> None:
+    assert main(["offsets", "set", "TOOL1", "L=80", "R=5"]) == 0
+    capsys.readouterr()
+    assert refused(capsys, "set", "TOOL1", entry).code == "not-confirmed"
+    with Store.open(home) as store:
+        assert store.mill_tools()[1][1:5] == (80.0, 5.0, 0.0, 0.0)
+
+
+# --- the machine in use -------------------------------------------------------------------------------------
+
+
+def shorter(folder: Path) -> Path:
+    """Return a machine file of a lathe whose X travels 2 in from home."""
+    text = files("resources").joinpath("machines", "gt75.toml").read_text("utf-8")
+    path = folder / "short.toml"
+    path.write_text(text.replace("travel = [-4.0, 4.0]", "travel = [-2.0, 2.0]"))
+    return path
+
+
+def test_the_travel_is_that_of_the_machine_of_the_screen(
+    capsys: Captured, tmp_path: Path, home: Path
+) -> None:
+    machine = shorter(tmp_path)
+    assert main(["offsets", "set", "T1", "x=3", "z=0"]) == 0  # the shipped lathe travels 4 in
+    journal = Journal(home)
+    desk, _executor = desk_and_executor(str(machine), stored_offsets, StepClock(), journal)
+    desk.close()
+    journal.close()
+    capsys.readouterr()
+    assert refused(capsys, "set", "T1", "x=3.01").code == "beyond-travel"
+    assert refused(capsys, "set", "T2", "x=3", "z=0", "--yes").code == "beyond-travel"
+    assert main(["offsets", "set", "T1", "x=3.01", "--machine", "gt75"]) == 0
+
+
+def test_without_the_file_of_the_machine_nothing_is_set(capsys: Captured, tmp_path: Path, home: Path) -> None:
+    machine = shorter(tmp_path)
+    journal = Journal(home)
+    remember_machine(str(machine), journal)
+    journal.close()
+    machine.unlink()
+    assert "--machine" in str(refused(capsys, "set", "T1", "x=1", "z=0"))
+    assert shown(capsys) == {"tool": {}, "secondary": {}}
+    assert main(["offsets", "set", "T1", "x=1", "z=0", "--machine", "gt75"]) == 0
+
+
+def test_an_import_takes_the_travel_of_the_machine_that_is_given(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    folder, machine = exported(tmp_path / "out", "[tool.1]\nx = 3.0\nz = 0.0\n"), shorter(tmp_path)
+    assert imported(monkeypatch, folder, "--machine", str(machine)) == "beyond-travel"
+    assert imported(monkeypatch, folder, "--machine", "gt75") == ""
+
+
+# --- all or nothing -----------------------------------------------------------------------------------------
+
+
+def test_a_refused_shape_leaves_the_offset_as_it_was(capsys: Captured) -> None:
+    assert main(["offsets", "set", "T3", "x=1", "z=0", "kind=drill", "diameter=.25"]) == 0
+    before = shown(capsys)
+    assert refused(capsys, "set", "T3", "x=1.01", "point=999").code == "out-of-range"
+    assert shown(capsys) == before

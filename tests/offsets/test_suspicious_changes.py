@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from app.offsets.suspicious_changes import Doubt, suspicions
-from core.store.store_rows import MillRow, Row, SecondaryRow, ToolRow
+from app.offsets.suspicious_changes import Doubt, suspicions, suspicions_of
+from core.store.store_rows import Kind, MillRow, PresetRow, Row, SecondaryRow, ToolRow, ZeroRow
 from tests.offsets.conftest import Room
 from tests.texts import text
 
@@ -34,11 +34,38 @@ TOOL = ToolRow(10.0, -50.0, wear_x=0.05)
         (SecondaryRow(0.1, 0.1), SecondaryRow(0.2, 0.2), []),
         (MillRow("A", 80.0), MillRow("A", 80.6), [("length", Doubt.LARGE)]),
         (MillRow("A", 80.0), MillRow("A", 80.0, 6.0), []),
+        (MillRow("A", 80.0, 6.0), MillRow("A", -80.0, 6.0), [("length", Doubt.LARGE)]),
+        (
+            MillRow("A", 80.0, 6.0, 1.0),
+            MillRow("A", 80.0, 5.0, 2.0),
+            [("radius", Doubt.LARGE), ("corner", Doubt.LARGE)],
+        ),
+        (None, MillRow("A", 80.0, 6.0, dr=0.2), []),
+        (None, MillRow("A", 80.0, 6.0, dr2=0.3), [("dr2", Doubt.LARGE)]),
+        (None, ToolRow(10.0, -50.0, wear_x=0.2), [("wear_x", Doubt.LARGE)]),
         (MillRow("A", 80.0), MillRow("A", 80.0, dl=0.3), [("dl", Doubt.LARGE)]),
     ],
 )
 def test_doubts(old: Row | None, new: Row, doubts: list[tuple[str, Doubt]]) -> None:
     assert [(each.name, each.doubt) for each in suspicions(1, old, new, TRAVEL)] == doubts
+
+
+def test_a_new_master_names_itself_only_where_set_tools_follow() -> None:
+    master = {1: {"x": 1.0, "z": 1.0, "master": True}}
+    assert suspicions_of(Kind.TOOL, {}, {**master, 2: {"x": 1.0, "z": 1.0}}, TRAVEL) == ()
+    found = suspicions_of(Kind.TOOL, {2: TOOL}, master, TRAVEL)
+    assert [(each.number, each.doubt) for each in found] == [(1, Doubt.MASTER)]
+    assert suspicions_of(Kind.TOOL, {1: ToolRow(1.0, 1.0, master=True), 2: TOOL}, master, TRAVEL) == ()
+
+
+def test_a_value_that_the_store_refuses_is_not_questioned() -> None:
+    assert suspicions_of(Kind.TOOL, {1: TOOL}, {1: {"x": 5000.0}}, TRAVEL) == ()
+    assert suspicions_of(Kind.TOOL, {1: TOOL}, {1: {"colour": 1.0}}, TRAVEL) == ()
+
+
+def test_datums_are_not_questioned() -> None:
+    assert suspicions_of(Kind.ZERO, {54: ZeroRow(1.0)}, {54: {"x": 900.0}}, TRAVEL) == ()
+    assert suspicions_of(Kind.PRESET, {1: PresetRow(1.0)}, {1: {"x": 900.0}}, TRAVEL) == ()
 
 
 def test_a_typed_x_of_a_tool_is_asked_and_esc_keeps_it(room: Room) -> None:

@@ -6,7 +6,7 @@ import pytest
 
 from core.store.store_rows import ToolRow
 from tests.screen.jog.bench import INCH, JogBench, Key
-from tests.texts import shows, text
+from tests.texts import Pattern, shows, text
 
 
 def given(jog: JogBench) -> None:
@@ -111,6 +111,55 @@ def test_a_master_is_asked_and_its_followers_are_named(jog: JogBench) -> None:
     jog.type("m")
     jog.confirm()
     assert jog.store.tools()[1].master
+
+
+def test_a_large_touch_of_the_master_names_its_followers_and_n_moves_none(jog: JogBench) -> None:
+    given(jog)
+    jog.store.choose_master(1, "master").result(60)
+    jog.desk.book.read()
+    before = jog.store.tools()
+    jog.type("x")
+    jog.enter("1.3")
+    jog.saved()
+    change = f"T1 X R −0.60100 → −0.65000 ({text('offsets.doubt-large')})"
+    assert jog.prompt == text("offsets.suspicious-master", changes=change, others="T2")
+    jog.key(Key.Key_N)
+    jog.saved()
+    assert jog.store.tools() == before
+    jog.type("x")
+    jog.enter("1.3")
+    jog.confirm()
+    assert jog.store.tools()[1].x == pytest.approx(-0.65 * INCH)
+    assert jog.store.tools()[2].x == pytest.approx(3.0 - 0.049 * INCH)
+
+
+def test_a_follower_that_would_leave_the_travel_is_named(jog: JogBench) -> None:
+    given(jog)
+    jog.store.set_tool(2, "set", x=-3.99 * INCH)
+    jog.store.choose_master(1, "master").result(60)
+    jog.desk.book.read()
+    jog.type("x")
+    jog.enter("1.23")
+    jog.saved()
+    change = f"T2 X R −3.99000 → −4.00400 ({text('offsets.doubt-travel')})"
+    assert jog.prompt == text("offsets.suspicious-master", changes=change, others="T2")
+
+
+def test_undo_after_undo_names_the_older_change_of_the_same_tool(jog: JogBench) -> None:
+    given(jog)
+    jog.key(Key.Key_F4)
+    jog.confirm()
+    jog.key(Key.Key_F4)
+    jog.saved()
+    assert begins_with_undo(jog, "T1")
+    jog.key(Key.Key_Escape)
+    assert jog.store.tools()[1].x == pytest.approx(-0.6 * INCH)
+    assert 2 in jog.store.tools()
+
+
+def begins_with_undo(jog: JogBench, tool: str) -> bool:
+    """Return whether the undo of this tool is asked."""
+    return shows(jog.prompt, "offsets.undo", row=tool, change=Pattern(".*"))
 
 
 def test_a_question_about_an_offset_that_has_changed_since_does_nothing(jog: JogBench) -> None:
