@@ -89,7 +89,7 @@ class ReadingsSection(QualitySection):
         way = (
             "What a feature is off is typed into DL and DR of the tool table, F8 of the main menu."
             if self.of_mill
-            else "F8 proposes a correction, F9 takes the last one back."
+            else "F8 proposes a correction, F4 undoes the last one."
         )
         notes = (words or self._gauge_words(), way)
         title = f"READINGS  ·  {self.program}" if self.program else "READINGS"
@@ -113,11 +113,11 @@ class ReadingsSection(QualitySection):
 
     def keys(self) -> Mapping[str, Key]:
         """Part number, gauge, file, correction."""
-        correct = {"F8": Key("CORRECT", self.propose), "F9": Key("UNDO", self.undo)}
+        correct = {"F8": Key("CORRECT", self.propose), "F4": Key("UNDO", self.undo)}
         return {
             "F2": Key(tr("PART −"), partial(self._step, -1)),
             "F3": Key(tr("PART +"), partial(self._step, 1)),
-            "F4": Key("TAKE OUT", self.take_out),
+            "F9": Key("TAKE OUT", self.take_out),
             "F5": Key("NO GAUGE" if self.gauge.open else "GAUGE", self.turn_gauge),
             "F6": Key("CSV", self.write_file),
             **({} if self.of_mill else correct),
@@ -185,7 +185,7 @@ class ReadingsSection(QualitySection):
             self.marked = (self.marked + 1) % max(1, self.count)
 
     def take_out(self) -> None:
-        """F4: the newest reading of the marked feature counts no more, after asking."""
+        """F9: the newest reading of the marked feature counts no more, after asking."""
         feature = self.feature
         taken = self.data.readings_of(feature.id) if feature is not None else ()
         if feature is None or not taken:
@@ -290,7 +290,7 @@ class ReadingsSection(QualitySection):
         self.desk.done(tr("{words}; IT COUNTS FROM THE NEXT PART").format(words=change.words))
 
     def undo(self) -> None:
-        """F9: ask whether the last accepted correction is taken back, while no other change came after it."""
+        """F4: ask whether the last accepted correction is taken back, while no other change came after it."""
         why = self._undo_barred()
         if not why and self._last is not None:
             kind, number, _reason = self._last

@@ -10910,8 +10910,8 @@
     </message>
     <message>
       <location filename="app/quality/readings_section.py" />
-      <source>F8 proposes a correction, F9 takes the last one back.</source>
-      <translation>F8 propone una corrección, F9 deshace la última.</translation>
+      <source>F8 proposes a correction, F4 undoes the last one.</source>
+      <translation>F8 propone una corrección, F4 deshace la última.</translation>
     </message>
     <message>
       <location filename="app/quality/readings_section.py" />
