@@ -115,7 +115,7 @@ class OffsetQuestions:
         changes = described(found, lambda each: self._named(kind, each), lambda each: _reason(each.doubt))
         text = tr("{changes}: PRESS Y TO CHANGE IT, N TO KEEP THE OLD VALUE")
         if others:
-            text = tr("{changes}. FOLLOWERS: {others}. PRESS Y TO CHANGE THEM, N TO KEEP THE OLD VALUES")
+            text = tr("{changes}. FOLLOWERS: {others}. PRESS Y TO CHANGE, N TO KEEP")
         question = text.format(changes=changes, others=others)
         history.desk.ask(question, lambda: history.answer(save() if unchanged() else _changed_meanwhile()))
         return ""
@@ -157,8 +157,8 @@ class OffsetQuestions:
             text = tr("MASTER {before} → NONE, NO TOOL FOLLOWS IT: PRESS Y TO CHANGE, N TO KEEP")
             return text.format(before=edge_name(before))
         text = tr(
-            "MASTER {before} → {tool}. FOLLOWERS: {others}. ITS TOUCH-OFF IS ASKED IF IT MOVES THEM BY "
-            "MORE THAN {limit} {unit}. PRESS Y TO CHANGE, N TO KEEP"
+            "MASTER {before} → {tool}. FOLLOWERS: {others}. A TOUCH-OFF OVER {limit} {unit} IS ASKED. "
+            "PRESS Y TO CHANGE, N TO KEEP"
         )
         mode = self.history.mode
         return text.format(

@@ -8910,8 +8910,8 @@
     </message>
     <message>
       <location filename="app/offsets/offset_questions.py" />
-      <source>MASTER {before} → {tool}. FOLLOWERS: {others}. ITS TOUCH-OFF IS ASKED IF IT MOVES THEM BY MORE THAN {limit} {unit}. PRESS Y TO CHANGE, N TO KEEP</source>
-      <translation>MAESTRA {before} → {tool}. LA SIGUEN: {others}. SU TOMA DE REFERENCIA SE PREGUNTA SI LAS MUEVE MÁS DE {limit} {unit}. PULSE Y PARA CAMBIAR, N PARA CONSERVAR</translation>
+      <source>MASTER {before} → {tool}. FOLLOWERS: {others}. A TOUCH-OFF OVER {limit} {unit} IS ASKED. PRESS Y TO CHANGE, N TO KEEP</source>
+      <translation>MAESTRA {before} → {tool}. LA SIGUEN: {others}. UNA TOMA DE MÁS DE {limit} {unit} SE PREGUNTA. PULSE Y PARA CAMBIAR, N PARA CONSERVAR</translation>
     </message>
     <message>
       <location filename="app/offsets/offset_questions.py" />
@@ -8955,8 +8955,8 @@
     </message>
     <message>
       <location filename="app/offsets/offset_questions.py" />
-      <source>{changes}. FOLLOWERS: {others}. PRESS Y TO CHANGE THEM, N TO KEEP THE OLD VALUES</source>
-      <translation>{changes}. LA SIGUEN: {others}. PULSE Y PARA CAMBIARLAS, N PARA CONSERVAR LOS VALORES ANTERIORES</translation>
+      <source>{changes}. FOLLOWERS: {others}. PRESS Y TO CHANGE, N TO KEEP</source>
+      <translation>{changes}. LA SIGUEN: {others}. PULSE Y PARA CAMBIAR, N PARA CONSERVAR</translation>
     </message>
     <message>
       <location filename="app/offsets/offset_questions.py" />
