@@ -177,7 +177,7 @@ class OffsetPage(ModelPage):
 
     def barred_by(self) -> dict[str, object]:
         """Return what speaks against each key now; empty where nothing does."""
-        nothing = not self.model.text and not self.model.history.undoable
+        nothing = not self.model.text and not self.model.history.undoable(self.model.chosen)
         return {"F4": self.model.undo_barred() or nothing, "F6": self.effect_model.barred()}
 
     def labels(self) -> tuple[str, ...]:

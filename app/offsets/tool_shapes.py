@@ -193,7 +193,9 @@ class ToolShapes(ToolEntry):
             return ""
         self._check(name, value)
         typed = f"{'MM ' if self.mode.metric else ''}{word(name)} {self.text.strip()}"
-        return self.book.change(Kind.TOOL if of_offset else Kind.SHAPE, self.number, {name: value}, typed)
+        return self.questions.change(
+            Kind.TOOL if of_offset else Kind.SHAPE, self.number, {name: value}, typed
+        )
 
     def _check(self, name: str, value: Value) -> None:
         """What is wrong with this very field is refused; what it does to the others is shown."""

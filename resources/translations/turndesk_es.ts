@@ -8280,8 +8280,8 @@
     </message>
     <message>
       <location filename="app/jog/jog_view.py" />
-      <source>T tool · X Z touch · W wear · N nose · Q tip · K remark · M master · F10 undo</source>
-      <translation>T herr · X Z tocar · W desgaste · N radio · Q punta · K nota · M maestra · F10 deshacer</translation>
+      <source>T tool · X Z touch · W wear · N nose · Q tip · K remark · M master · F4 undo</source>
+      <translation>T herr · X Z tocar · W desgaste · N radio · Q punta · K nota · M maestra · F4 deshacer</translation>
     </message>
     <message>
       <location filename="app/jog/mill_jog_view.py" />
@@ -8495,11 +8495,6 @@
     </message>
     <message>
       <location filename="app/jog/tool_setting.py" />
-      <source>NO OFFSET WAS CHANGED YET: NOTHING TO UNDO</source>
-      <translation>AÚN NO SE CAMBIÓ NINGÚN CORRECTOR: NO HAY NADA QUE DESHACER</translation>
-    </message>
-    <message>
-      <location filename="app/jog/tool_setting.py" />
       <source>THE CONTROL HAS CHANGED ITS UNIT OR ITS X: NOTHING WAS CHANGED, ENTER IT AGAIN</source>
       <translation>EL CONTROL CAMBIÓ SU UNIDAD O SU X: NO SE CAMBIÓ NADA, ESCRÍBALO OTRA VEZ</translation>
     </message>
@@ -8535,13 +8530,18 @@
     </message>
     <message>
       <location filename="app/jog/tool_setting.py" />
-      <source>T{number} IS THE MASTER: ALL TOOLS FOLLOW (L: IT ALONE)</source>
-      <translation>T{number} ES LA MAESTRA: TODAS LAS HERRAMIENTAS LA SIGUEN (L: SÓLO ELLA)</translation>
+      <source>T{number} IS THE MASTER: {others} FOLLOW (L: IT ALONE)</source>
+      <translation>T{number} ES LA MAESTRA: LA SIGUEN {others} (L: SOLO ELLA)</translation>
     </message>
     <message>
       <location filename="app/jog/tool_setting.py" />
       <source>T{number} WAS NEVER SET: TOUCH X AND Z FIRST</source>
       <translation>T{number} NUNCA SE PUSO: TOQUE PRIMERO X Y Z</translation>
+    </message>
+    <message>
+      <location filename="app/jog/tool_setting.py" />
+      <source>no tools</source>
+      <translation>ninguna herramienta</translation>
     </message>
     <message>
       <location filename="app/jog/tool_setting.py" />
@@ -8942,6 +8942,86 @@
       <location filename="app/offsets/offset_history.py" />
       <source>{names} TAKEN BACK</source>
       <translation>{names} RETIRADAS</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_questions.py" />
+      <source>A LARGE CHANGE</source>
+      <translation>CAMBIO GRANDE</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_questions.py" />
+      <source>BEYOND THE TRAVEL</source>
+      <translation>FUERA DEL RECORRIDO</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_questions.py" />
+      <source>MASTER {before} → NONE, NO TOOL FOLLOWS IT: PRESS Y TO CHANGE, N TO KEEP</source>
+      <translation>MAESTRA {before} → NINGUNA, NADIE LA SIGUE: PULSE Y PARA CAMBIAR, N PARA CONSERVAR</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_questions.py" />
+      <source>MASTER {before} → {tool}. FOLLOWERS: {others}. A TOUCH-OFF OVER {limit} {unit} IS ASKED. PRESS Y TO CHANGE, N TO KEEP</source>
+      <translation>MAESTRA {before} → {tool}. LA SIGUEN: {others}. UNA TOMA DE MÁS DE {limit} {unit} SE PREGUNTA. PULSE Y PARA CAMBIAR, N PARA CONSERVAR</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_questions.py" />
+      <source>OTHER TOOLS FOLLOW</source>
+      <translation>OTRAS HERRAMIENTAS LA SIGUEN</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_questions.py" />
+      <source>THE OFFSETS HAVE CHANGED SINCE THE QUESTION: ENTER IT AGAIN</source>
+      <translation>LOS CORRECTORES HAN CAMBIADO DESDE LA PREGUNTA: INTRODÚZCALO DE NUEVO</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_questions.py" />
+      <source>THE OTHER SIDE OF THE PART</source>
+      <translation>EL OTRO LADO DE LA PIEZA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_questions.py" />
+      <source>THIS TABLE</source>
+      <translation>ESTA TABLA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_questions.py" />
+      <source>UNDO {row}: {change}, AND WITH IT {others}; PRESS Y TO UNDO, N TO KEEP IT</source>
+      <translation>DESHACER {row}: {change}, Y CON ELLO {others}; PULSE Y PARA DESHACER, N PARA CONSERVAR</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_questions.py" />
+      <source>UNDO {row}: {change}; PRESS Y TO UNDO, N TO KEEP IT</source>
+      <translation>DESHACER {row}: {change}; PULSE Y PARA DESHACER, N PARA CONSERVAR</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_questions.py" />
+      <source>chosen as master</source>
+      <translation>elegida como maestra</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_questions.py" />
+      <source>no master</source>
+      <translation>sin maestra</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_questions.py" />
+      <source>{changes}. FOLLOWERS: {others}. PRESS Y TO CHANGE, N TO KEEP</source>
+      <translation>{changes}. LA SIGUEN: {others}. PULSE Y PARA CAMBIAR, N PARA CONSERVAR</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_questions.py" />
+      <source>{changes}: PRESS Y TO CHANGE IT, N TO KEEP THE OLD VALUE</source>
+      <translation>{changes}: PULSE Y PARA CAMBIARLO, N PARA CONSERVAR EL VALOR ANTERIOR</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_questions.py" />
+      <source>{count} MORE</source>
+      <translation>{count} MÁS</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_questions.py" />
+      <source>{row} HAS NO CHANGE TO UNDO</source>
+      <translation>{row} NO TIENE CAMBIOS QUE DESHACER</translation>
     </message>
     <message>
       <location filename="app/offsets/offset_table.py" />
@@ -9410,18 +9490,8 @@
     </message>
     <message>
       <location filename="app/offsets/tool_fields.py" />
-      <source>chosen as master</source>
-      <translation>elegida como maestra</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/tool_fields.py" />
       <source>entered by hand</source>
       <translation>escrito a mano</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/tool_fields.py" />
-      <source>no master</source>
-      <translation>sin maestra</translation>
     </message>
     <message>
       <location filename="app/offsets/tool_offsets.py" />
@@ -10905,8 +10975,8 @@
     </message>
     <message>
       <location filename="app/quality/readings_section.py" />
-      <source>F8 proposes a correction, F9 takes the last one back.</source>
-      <translation>F8 propone una corrección, F9 deshace la última.</translation>
+      <source>F8 proposes a correction, F4 undoes the last one.</source>
+      <translation>F8 propone una corrección, F4 deshace la última.</translation>
     </message>
     <message>
       <location filename="app/quality/readings_section.py" />
@@ -32347,6 +32417,21 @@
       <location filename="core/store/offset_tables.py" />
       <source>there is no offset change to undo</source>
       <translation>no hay cambio de corrector que deshacer</translation>
+    </message>
+    <message>
+      <location filename="core/store/offset_undo.py" />
+      <source>%1 would both be the master; choose no master first</source>
+      <translation>%1 serían maestras a la vez; quite antes la maestra</translation>
+    </message>
+    <message>
+      <location filename="core/store/offset_undo.py" />
+      <source>%1 would have no tool; clear it first</source>
+      <translation>%1 quedarían sin herramienta; bórrelo antes</translation>
+    </message>
+    <message>
+      <location filename="core/store/offset_undo.py" />
+      <source>offset %1 has changed since; undo that change first</source>
+      <translation>el corrector %1 ha cambiado desde entonces; deshaga antes ese cambio</translation>
     </message>
     <message>
       <location filename="core/store/people.py" />

@@ -106,31 +106,31 @@ def test_a_new_touch_shows_old_and_new_and_undo_takes_it_back(jog: JogBench) -> 
     change = jog.page.asked.asked.change
     assert change == "X R  −0.19685  →  −0.50000   WEAR X  +0.00787  →  +0.00000"  # .1 mm of radius
     jog.key(Key.Key_Return)
-    jog.saved()
+    jog.confirm()
     assert jog.store.tools()[1].x == pytest.approx(-0.5 * INCH, abs=1e-9)
     assert jog.store.tools()[1].wear_x == 0.0
     assert jog.store.tools()[2].x == 3.0
-    jog.key(Key.Key_F10)
-    jog.saved()
+    jog.key(Key.Key_F4)
+    jog.confirm()
     assert jog.store.tools()[1] == ToolRow(-5.0, -50.0, wear_x=0.1)
 
 
 def test_the_master_takes_all_along_or_is_set_alone(jog: JogBench) -> None:
     set_two(jog)
     jog.type("m")
-    jog.saved()
+    jog.confirm()
     jog.type("z")
     jog.run(0.02)
-    assert shows(jog.page.asked.asked.foot, "jog.is-master")
+    assert shows(jog.page.asked.asked.foot, "jog.is-master", number=1, others="T2")
     jog.enter("1")
-    jog.saved()
+    jog.confirm()
     # the face was at −50 mm, it is at −25.4 mm now: 24.6 mm for everybody
     assert jog.store.tools()[1].z == pytest.approx(-25.4, abs=1e-9)
     assert jog.store.tools()[2].z == pytest.approx(-15.4, abs=1e-9)
     jog.type("z")
     jog.type("l")
     jog.enter("0")
-    jog.saved()
+    jog.confirm()
     assert jog.store.tools()[1].z == pytest.approx(0.0, abs=1e-9)
     assert jog.store.tools()[2].z == pytest.approx(-15.4, abs=1e-9)
 
@@ -144,6 +144,7 @@ def test_a_touch_is_active_at_once_for_the_loaded_tool(jog: JogBench) -> None:
     jog.executor._control.status.modal = before._replace(tool=1, tool_x=-5.0, tool_z=-50.0)
     jog.run(0.05)
     touch(jog, "x", "1")
+    jog.confirm()
     jog.run(0.05)
     assert jog.frame.head.view is not None
     assert jog.frame.head.view.position.axes[0].value == "0.50000"
