@@ -54,21 +54,21 @@ def _feed(move: TipMove, shape: ToolShape, tool: int, *, held: bool) -> Iterator
     feed = move.per_rev or (move.speed * 60.0 / abs(move.rpm) if move.rpm else 0.0)
     if not feed or move.kind is Kind.THREAD or shape.kind is ToolKind.TAP:
         return
-    text, limit, words = move.modal.length_text, 0.0, ""
+    name, text = edge_name(tool), move.modal.length_text
+    shown, limit, words = move.modal.feed_text(feed, per_rev=True), 0.0, ""
     if shape.kind in _DRILLS and held:
         limit = (_OF_REAMER if shape.kind is ToolKind.REAMER else _OF_DRILL) * shape.diameter
-        words = f"a diameter of {text(shape.diameter)}"
+        words = f"{name} feeds {shown} with a diameter of {text(shape.diameter)}."
     elif shape.kind in GROOVERS and held:
-        limit, words = _OF_WIDTH * shape.width, f"an edge {text(shape.width)} wide"
+        limit = _OF_WIDTH * shape.width
+        words = f"{name} feeds {shown} with an edge {text(shape.width)} wide."
     elif shape.kind in INSERTS:
-        limit, words = _COARSE * shape.nose_radius, f"a nose radius of {text(shape.nose_radius)}"
-    if feed > limit > 0.0:
-        shown = move.modal.feed_text(feed, per_rev=True)
-        words = f"{edge_name(tool)} feeds {shown} with {words}."
-        if feed > _BREAKS * limit:
-            yield Found("feed-breaks-tool", words)
-        else:
-            yield Found("chip-load", words)
+        limit = _COARSE * shape.nose_radius
+        words = f"{name} feeds {shown} with a nose radius of {text(shape.nose_radius)}."
+    if feed > _BREAKS * limit > 0.0:
+        yield Found("feed-breaks-tool", words)
+    elif feed > limit > 0.0:
+        yield Found("chip-load", words)
 
 
 def _is_along(move: TipMove) -> bool:

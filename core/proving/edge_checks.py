@@ -147,8 +147,10 @@ class EdgeChecks:
         front = max(z for z, _ in move.points)
         if front < self.parted_at - _BEYOND_CUT:
             text = move.modal.length_text
-            words = f"{edge_name(tool)} cuts an arc from Z {text(front)} on; the part ends at"
-            yield Found("contour-past-part-off", f"{words} {text(self.parted_at)}.")
+            words = (
+                f"{edge_name(tool)} cuts an arc at Z {text(front)}; the part ends at {text(self.parted_at)}."
+            )
+            yield Found("contour-past-part-off", words)
 
     def _past_stock(self, move: TipMove, shape: ToolShape, tool: int) -> Iterator[Found]:
         """A feed beyond the far end of the stock; the point of a drill may come out of it."""

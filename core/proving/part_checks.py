@@ -56,7 +56,7 @@ CHECKS: Mapping[str, Check] = {
     ),
     "near-chuck": Check(
         _WARNING,
-        "A tool, or its holder, all but touches chuck, jaws or collet.",
+        "A tool, or its holder, nearly touches chuck, jaws or collet.",
         "Less than .01 in of Z is left between an outline and the contour under [clamping].",
         "Let the part stick out further, or stop earlier.",
         (TOOL,),

@@ -151,7 +151,7 @@ class PartFindings:
             certain = self._chuck is not None and self._chuck.contains(move.points, RAPID)
             self._add("into-chuck", move, text, certain=certain)
         elif _reached(self._chuck, _deeper_in_z(move), cutter):
-            self._add("near-chuck", move, f"{edge_name(tool)} all but touches the chuck.")
+            self._add("near-chuck", move, f"{edge_name(tool)} nearly touches the chuck.")
         if met := _reached(self._tailstock, move, cutter):
             self.into_clamping["into-tailstock", move.line] = met
             self._add(

@@ -20830,6 +20830,11 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/arc_moves.py" />
+      <source>Check G02 and G03, and the signs of I and K.</source>
+      <translation>Compruebe G02 y G03, y los signos de I y K.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/arc_moves.py" />
       <source>Correct I and K.</source>
       <translation>Corrija I y K.</translation>
     </message>
@@ -20852,6 +20857,11 @@
       <location filename="core/interpreter/omniturn/arc_moves.py" />
       <source>The arc by R ends where it starts.</source>
       <translation>El arco por R termina donde empieza.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/arc_moves.py" />
+      <source>The arc goes through %1 degrees.</source>
+      <translation>El arco recorre %1 grados.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/arc_moves.py" />
@@ -21120,6 +21130,16 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/drilling_cycles.py" />
+      <source>%1: a peck is deeper than the hole, %2.</source>
+      <translation>%1: un picoteo es más profundo que el agujero, %2.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/drilling_cycles.py" />
+      <source>Correct K, or drill with G81.</source>
+      <translation>Corrija K, o taladre con G81.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/drilling_cycles.py" />
       <source>Correct Z, or start farther out.</source>
       <translation>Corrija Z, o empiece más afuera.</translation>
     </message>
@@ -21135,8 +21155,18 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/dwell.py" />
+      <source>F of G04 is in seconds.</source>
+      <translation>La F de G04 está en segundos.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/dwell.py" />
       <source>The drive of C does not tell of its arrival, which takes %1 s from here.</source>
       <translation>El servo de C no avisa su llegada, que desde aquí tarda %1 s.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/dwell.py" />
+      <source>The dwell takes %1 minutes.</source>
+      <translation>La espera dura %1 minutos.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/dwell.py" />
@@ -29245,6 +29275,11 @@
     </message>
     <message>
       <location filename="core/proving/air_checks.py" />
+      <source>A drill is fed into a hole that is there already.</source>
+      <translation>Una broca avanza en un agujero que ya está hecho.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/air_checks.py" />
       <source>A thread is cut</source>
       <translation>Se corta una rosca</translation>
     </message>
@@ -29399,6 +29434,36 @@
       <translation>lo que dice el archivo de máquina</translation>
     </message>
     <message>
+      <location filename="core/proving/cut_sizes.py" />
+      <source>%1 cuts %2 deep in one pass; %3 is usual at most.</source>
+      <translation>%1 corta %2 de profundidad en una pasada; lo usual es %3 como máximo.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/cut_sizes.py" />
+      <source>%1 cuts %2 deep; its edge can cut %3.</source>
+      <translation>%1 corta %2 de profundidad; su filo puede cortar %3.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/cut_sizes.py" />
+      <source>%1 feeds %2 with a diameter of %3.</source>
+      <translation>%1 avanza %2 con un diámetro de %3.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/cut_sizes.py" />
+      <source>%1 feeds %2 with a nose radius of %3.</source>
+      <translation>%1 avanza %2 con un radio de punta de %3.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/cut_sizes.py" />
+      <source>%1 feeds %2 with an edge %3 wide.</source>
+      <translation>%1 avanza %2 con un filo de %3 de ancho.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/cut_sizes.py" />
+      <source>%1 turns %2 deep along Z; a blade like it takes %3.</source>
+      <translation>%1 cilindra a lo largo de Z con %2 de profundidad; una cuchilla así admite %3.</translation>
+    </message>
+    <message>
       <location filename="core/proving/cutting_checks.py" />
       <source>Begin with X and Z under G90.</source>
       <translation>Empiece con X y Z en G90.</translation>
@@ -29410,8 +29475,18 @@
     </message>
     <message>
       <location filename="core/proving/cutting_checks.py" />
+      <source>Correct S, or write G97 for rpm.</source>
+      <translation>Corrija S, o escriba G97 para rpm.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/cutting_checks.py" />
       <source>Correct the number, or name the input under [io.in] of the machine file.</source>
       <translation>Corrija el número, o nombre la entrada en [io.in] del archivo de máquina.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/cutting_checks.py" />
+      <source>G96 has no limit: here the spindle goes to its highest speed, %1 rpm.</source>
+      <translation>G96 no tiene límite: aquí el husillo llega a su velocidad máxima, %1 rpm.</translation>
     </message>
     <message>
       <location filename="core/proving/cutting_checks.py" />
@@ -29437,6 +29512,11 @@
       <location filename="core/proving/cutting_checks.py" />
       <source>The program ends with the collet open, and the next cycle cuts on line %1 before any M12.</source>
       <translation>El programa termina con la pinza abierta, y el ciclo siguiente corta en la línea %1 antes de un M12.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/cutting_checks.py" />
+      <source>The surface speed asks for %1 rpm here; the spindle has %2.</source>
+      <translation>La velocidad de corte pide aquí %1 rpm; el husillo alcanza %2.</translation>
     </message>
     <message>
       <location filename="core/proving/cutting_checks.py" />
@@ -29485,6 +29565,11 @@
     </message>
     <message>
       <location filename="core/proving/cutting_checks.py" />
+      <source>Write G77S with the highest speed for this chuck and bar.</source>
+      <translation>Escriba G77S con la velocidad máxima para este plato y esta barra.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/cutting_checks.py" />
       <source>Write M12 at its end or its start.</source>
       <translation>Escriba M12 a su final o a su inicio.</translation>
     </message>
@@ -29510,13 +29595,13 @@
     </message>
     <message>
       <location filename="core/proving/edge_checks.py" />
-      <source>%1 cuts %2 deep; its edge reaches %3.</source>
-      <translation>%1 corta %2 de profundidad; su filo llega a %3.</translation>
+      <source>%1 cuts %2 off the spindle axis.</source>
+      <translation>%1 corta a %2 del eje del husillo.</translation>
     </message>
     <message>
       <location filename="core/proving/edge_checks.py" />
-      <source>%1 cuts %2 off the spindle axis.</source>
-      <translation>%1 corta a %2 del eje del husillo.</translation>
+      <source>%1 cuts an arc at Z %2; the part ends at %3.</source>
+      <translation>%1 corta un arco en Z %2; la pieza termina en %3.</translation>
     </message>
     <message>
       <location filename="core/proving/edge_checks.py" />
@@ -29527,21 +29612,6 @@
       <location filename="core/proving/edge_checks.py" />
       <source>%1 cuts with the spindle turning the other way than where it has cut before.</source>
       <translation>%1 corta con el husillo girando al revés que donde ha cortado antes.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/edge_checks.py" />
-      <source>%1 feeds %2 with a diameter of %3.</source>
-      <translation>%1 avanza %2 con un diámetro de %3.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/edge_checks.py" />
-      <source>%1 feeds %2 with a nose radius of %3.</source>
-      <translation>%1 avanza %2 con un radio de punta de %3.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/edge_checks.py" />
-      <source>%1 feeds %2 with an edge %3 wide.</source>
-      <translation>%1 avanza %2 con un filo de %3 de ancho.</translation>
     </message>
     <message>
       <location filename="core/proving/edge_checks.py" />
@@ -29620,6 +29690,11 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
+      <source>A cut under G96 without G77 asks for more than the spindle's highest speed, as at the axis.</source>
+      <translation>Un corte con G96 y sin G77 pide más que la velocidad máxima del husillo, como en el eje.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
       <source>A cut with no tool in force.</source>
       <translation>Un corte sin herramienta activa.</translation>
     </message>
@@ -29670,8 +29745,8 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>A feed leads away from the part, or out before its face; feeds between two rapids, or those of a live tool, come near no metal; a rapid goes in and out beside the part with nothing cut; a tool that comes to the part is never fed.</source>
-      <translation>Un avance se aleja de la pieza o sale delante de su cara; los avances entre dos rápidos, o los de una herramienta motorizada, no se acercan al metal; un rápido entra y sale junto a la pieza sin cortar nada; una herramienta que llega a la pieza no avanza nunca.</translation>
+      <source>A feed leads away from the part, or out before its face; feeds between two rapids, or those of a live tool, come near no metal; a rapid goes in and out beside the part with nothing cut; a tool that comes to the part is never fed; a drill is fed into a hole that is there already.</source>
+      <translation>Un avance se aleja de la pieza, o sale delante de su cara; los avances entre dos rápidos, o los de una herramienta motorizada, no llegan cerca de metal; un rápido entra y sale junto a la pieza sin que se corte nada; una herramienta que llega a la pieza nunca avanza; una broca avanza en un agujero que ya está hecho.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29687,6 +29762,11 @@
       <location filename="core/proving/part_checks.py" />
       <source>A move that cuts before the first T or after T0; a warning where the program names no tool at all.</source>
       <translation>Un movimiento que corta antes de la primera T o tras T0; un aviso si el programa no nombra ninguna herramienta.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>A parting or grooving blade turns along Z.</source>
+      <translation>Una cuchilla de tronzar o ranurar cilindra a lo largo de Z.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29730,6 +29810,11 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
+      <source>A thread is not cut by the pitch of its insert.</source>
+      <translation>Una rosca no se corta con el paso de su plaquita.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
       <source>A tool is fed beyond the far end of the stock.</source>
       <translation>Una herramienta avanza más allá del extremo del material.</translation>
     </message>
@@ -29740,6 +29825,11 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
+      <source>A tool, or its holder, nearly touches chuck, jaws or collet.</source>
+      <translation>Una herramienta, o su portaherramientas, casi toca el plato, las garras o la pinza.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
       <source>A tool, or its holder, runs into chuck, jaws or collet.</source>
       <translation>Una herramienta, o su portaherramientas, choca con el plato, las garras o la pinza.</translation>
     </message>
@@ -29747,6 +29837,21 @@
       <location filename="core/proving/part_checks.py" />
       <source>A tool, or its holder, runs into the tailstock's centre or quill.</source>
       <translation>Una herramienta, o su portaherramientas, choca con el punto o la caña del contrapunto.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>A turning insert returns along Z by a rapid, .1 in and more, on the radius that it has just turned.</source>
+      <translation>Una plaquita de torneado vuelve en rápido a lo largo de Z, .1 in o más, sobre el radio que acaba de tornear.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>An arc of the contour is not on the part.</source>
+      <translation>Un arco del contorno no está en la pieza.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>An insert cuts an arc more than .008 in on the bar's side of the deepest part-off.</source>
+      <translation>Una plaquita corta un arco a más de .008 in del tronzado más profundo, del lado de la barra.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29775,18 +29880,28 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
+      <source>An rpm where a surface speed is meant.</source>
+      <translation>Unas rpm donde se espera una velocidad de corte.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
       <source>Another tool of the gang plate runs into the stock.</source>
       <translation>Otra herramienta de la placa choca con el material.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>At a feed an outline that cannot cut meets more than .001 in, or a cut is deeper than the edge.</source>
-      <translation>En avance, un perfil que no puede cortar encuentra más de .001 in, o un corte es más profundo que el filo.</translation>
+      <source>At a feed an outline that cannot cut meets more than .001 in, or a cut along Z is deeper than .7 of the edge of a C or S insert, .5 of T, D and W, .2 of V (Widia's limits for strong geometries).</source>
+      <translation>En un avance, un contorno que no puede cortar encuentra más de .001 in, o un corte a lo largo de Z es más profundo que .7 del filo de una plaquita C o S, .5 de T, D y W, .2 de V (límites de Widia para geometrías robustas).</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>Behind the face it cuts more than .06 in beyond the axis, where it does not stand.</source>
-      <translation>Detrás de la cara corta más de .06 in más allá del eje, donde no está.</translation>
+      <source>Begin at the diameter of the first pass: check X where the thread starts.</source>
+      <translation>Empiece en el diámetro de la primera pasada: compruebe la X donde empieza la rosca.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>Behind the face it cuts more than .06 in beyond the axis, where it is not mounted, or .004 in on a cut along Z.</source>
+      <translation>Detrás de la cara corta más de .06 in más allá del eje, donde no está montada, o .004 in en un corte a lo largo de Z.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29800,8 +29915,13 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>Check K, X of the last pass, the X where it starts, and the pitch of the insert.</source>
-      <translation>Revise K, la X de la última pasada, la X donde empieza y el paso del inserto.</translation>
+      <source>Check K and the insert. Leave the pitch of a partial-profile insert out of its shape.</source>
+      <translation>Compruebe K y la plaquita. Deje el paso de una plaquita de perfil parcial fuera de su forma.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>Check K, X of the last pass, and the X where it starts.</source>
+      <translation>Compruebe K, la X de la última pasada y la X donde empieza.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29810,13 +29930,28 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
+      <source>Check the Z of the part-off: the part would lack what is behind it.</source>
+      <translation>Compruebe la Z del tronzado: a la pieza le faltaría lo que queda detrás.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
       <source>Check the stock, and X as a radius or a diameter.</source>
       <translation>Compruebe el material, y X como radio o como diámetro.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
+      <source>Check the tool number; widen a groove by plunges side by side.</source>
+      <translation>Compruebe el número de herramienta; ensanche una ranura con penetraciones contiguas.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
       <source>Close the collet with M12.</source>
       <translation>Cierre la pinza con M12.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>Constant surface speed without a limit.</source>
+      <translation>Velocidad de corte constante sin límite.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29865,8 +30000,8 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>It is deeper than a sharp V of the lead; or the lead is no multiple of the pitch of the insert.</source>
-      <translation>Es más profunda que una V aguda de ese paso; o el paso no es múltiplo del del inserto.</translation>
+      <source>It is deeper than a sharp V of the lead.</source>
+      <translation>Es más profunda que una V aguda del paso.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29880,13 +30015,23 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>It takes off material more than .01 in off the axis while the spindle turns.</source>
-      <translation>Quita material a más de .01 in del eje mientras gira el husillo.</translation>
+      <source>It takes off material more than .004 in off the axis while the spindle turns.</source>
+      <translation>Arranca material a más de .004 in del eje mientras el husillo gira.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>It takes off more than .01 in (parting), or more than .8 of its width (grooving: Ingersoll).</source>
+      <translation>Arranca más de .01 in (tronzado), o más de .8 de su ancho (ranurado: Ingersoll).</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
       <source>It takes off more than its pitch in r.</source>
       <translation>Quita más que su paso en r.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>Less than .01 in of Z is left between an outline and the contour under [clamping].</source>
+      <translation>Quedan menos de .01 in de Z entre un contorno y el perfil de [clamping].</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29930,6 +30075,11 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
+      <source>Lower F: look for a lost decimal point, or for millimeters in a program in inches.</source>
+      <translation>Reduzca F: busque un punto decimal perdido, o milímetros en un programa en pulgadas.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
       <source>Lower S, limit G96 by G77, let the part stick out less, or support it.</source>
       <translation>Baje S, limite G96 con G77, deje que la pieza sobresalga menos o apóyela.</translation>
     </message>
@@ -29960,8 +30110,18 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
+      <source>More than five times the limit of chip-load.</source>
+      <translation>Más de cinco veces el límite de chip-load.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
       <source>More than half of the first critical speed of what sticks out, as a bar of brass held at one end.</source>
       <translation>Más de la mitad de la primera velocidad crítica de lo que sobresale, como barra de latón sujeta por un extremo.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>Move X away from the part before Z.</source>
+      <translation>Aparte X de la pieza antes de mover Z.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29970,13 +30130,18 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
+      <source>One pass is deeper than usual for its insert or its boring bar.</source>
+      <translation>Una pasada es más profunda de lo usual para su plaquita o su barra de mandrinar.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
       <source>One stays more than .08 in from all metal for 5 s and .2 in, or several in a row for 20 s.</source>
       <translation>Uno queda a más de .08 in de todo metal durante 5 s y .2 in, o varios seguidos durante 20 s.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>Over .8 of the nose radius; .25 of the width of a groover; .1 of the diameter of a drill.</source>
-      <translation>Más de .8 del radio de punta; .25 del ancho de una ranuradora; .1 del diámetro de una broca.</translation>
+      <source>Over .8 of the nose radius, .12 of the width of a groover, .04 of the diameter of a drill, .1 of a reamer.</source>
+      <translation>Más de .8 del radio de punta, .12 del ancho de una ranuradora, .04 del diámetro de una broca, .1 de un escariador.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29985,8 +30150,18 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
+      <source>Retract X before Z.</source>
+      <translation>Retire X antes que Z.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
       <source>Reverse the spindle at the bottom and feed out by the pitch.</source>
       <translation>Invierta el husillo en el fondo y salga avanzando según el paso.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>S under G96 is over 1000 m/min (3280 ft/min), and asks for twice the spindle's speed.</source>
+      <translation>S con G96 supera 1000 m/min (3280 ft/min), y pide el doble de la velocidad del husillo.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -30025,8 +30200,18 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
+      <source>Take it off in several passes: look for a lost or exchanged digit in X.</source>
+      <translation>Arránquelo en varias pasadas: busque una cifra perdida o cambiada en X.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
       <source>The bar is cut far behind where the part is parted off.</source>
       <translation>La barra se corta muy por detrás de donde se tronza la pieza.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>The blade goes through the place of the part that it has parted off.</source>
+      <translation>La cuchilla atraviesa el lugar de la pieza que ha tronzado.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -30035,13 +30220,18 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>The feed of a turn is larger than the edge can cut.</source>
-      <translation>El avance por vuelta es mayor de lo que el filo puede cortar.</translation>
+      <source>The feed of a turn is off by more than .08 of the pitch that its shape or its comment gives.</source>
+      <translation>El avance por vuelta se aparta más de .08 del paso que da su forma o su comentario.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>The feed of a turn is off by more than .08 of the pitch that its shape or its comment gives.</source>
-      <translation>El avance por vuelta se aparta más de .08 del paso que da su forma o su comentario.</translation>
+      <source>The feed per revolution is far over what the edge can cut.</source>
+      <translation>El avance por vuelta supera con mucho lo que el filo puede cortar.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>The feed per revolution is larger than the edge can cut.</source>
+      <translation>El avance por vuelta es mayor de lo que el filo puede cortar.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -30050,8 +30240,23 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
+      <source>The first passes of a thread cut nothing.</source>
+      <translation>Las primeras pasadas de una rosca no cortan nada.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>The first rapid leads more than .1 in towards Z+ inside the outside of the piece.</source>
+      <translation>El primer rápido lleva más de .1 in hacia Z+ dentro del contorno exterior de la pieza.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
       <source>The hole is deeper than the cutting length of the drill; without a length the proof says so.</source>
       <translation>El agujero es más profundo que el largo de corte de la broca; sin largo, la comprobación lo dice.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>The lead is not a multiple of the pitch that the shape of the tool states.</source>
+      <translation>El avance de la rosca no es múltiplo del paso que indica la forma de la herramienta.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -30095,6 +30300,16 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
+      <source>The tool rubs along the finished surface.</source>
+      <translation>La herramienta roza la superficie acabada.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>Three passes and more stay outside the metal.</source>
+      <translation>Tres pasadas o más quedan fuera del metal.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
       <source>Two tools have the same offset.</source>
       <translation>Dos herramientas tienen el mismo corrector.</translation>
     </message>
@@ -30130,8 +30345,18 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
+      <source>With a stated stock: over .5 of the cutting edge of a C or S insert, .4 of W, .3 of T, D, .2 of V (Widia's limits for medium geometries, nose radius left off; CNMG432 where no insert is stated), or over half the diameter of a boring bar. The material is not known: soft metal may allow more.</source>
+      <translation>Con un material indicado: más de .5 del filo de una plaquita C o S, .4 de W, .3 de T y D, .2 de V (límites de Widia para geometrías medias, sin el radio de punta; CNMG432 donde no se indica plaquita), o más de la mitad del diámetro de una barra de mandrinar. La clase de metal no se conoce: un metal blando puede admitir más.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
       <source>Write F as the pitch: 1 divided by the threads per inch.</source>
       <translation>Escriba F como el paso: 1 dividido por los hilos por pulgada.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>Write G77S with the highest speed for this chuck and bar after G96.</source>
+      <translation>Escriba después de G96 G77S con la velocidad máxima para este plato y esta barra.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -30170,8 +30395,18 @@
     </message>
     <message>
       <location filename="core/proving/part_findings.py" />
+      <source>%1 nearly touches the chuck.</source>
+      <translation>%1 casi toca el plato.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_findings.py" />
       <source>%1 parts off down to %2, and nothing falls.</source>
       <translation>%1 tronza hasta %2, y no cae nada.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_findings.py" />
+      <source>%1 returns by a rapid along what it has turned.</source>
+      <translation>%1 vuelve en rápido a lo largo de lo que ha torneado.</translation>
     </message>
     <message>
       <location filename="core/proving/part_findings.py" />
@@ -30197,6 +30432,11 @@
       <location filename="core/proving/part_findings.py" />
       <source>A rapid goes into metal, %1.</source>
       <translation>Un rápido entra en el metal, %1.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_findings.py" />
+      <source>A rapid goes through the place of the part that was parted off.</source>
+      <translation>Un rápido atraviesa el lugar de la pieza tronzada.</translation>
     </message>
     <message>
       <location filename="core/proving/part_findings.py" />
@@ -30367,6 +30607,11 @@
       <location filename="core/proving/thread_checks.py" />
       <source>%1: more than a holder gives.</source>
       <translation>%1: más de lo que cede un portamachos.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/thread_checks.py" />
+      <source>The first %1 passes of this thread meet no metal.</source>
+      <translation>Las primeras %1 pasadas de esta rosca no encuentran metal.</translation>
     </message>
     <message>
       <location filename="core/proving/thread_checks.py" />
