@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
@@ -18,8 +17,9 @@ from core.tool_edges import edge_name
 
 # Largest depth of cut in lengths of the cutting edge (a round insert: diameters), for medium geometries and
 # for the strongest: Widia, "Selection of insert", the columns -LM and ..M of its table of effective lengths.
+# There V has .2 in both; profiles with it are deeper for a moment, so that only .5 is an error.
 MEDIUM: Mapping[str, float] = {"S": 0.5, "C": 0.5, "W": 0.4, "T": 0.3, "D": 0.3, "V": 0.2, "R": 0.3}
-STRONGEST: Mapping[str, float] = {"S": 0.7, "C": 0.7, "W": 0.5, "T": 0.5, "D": 0.5, "V": 0.2, "R": 0.4}
+STRONGEST: Mapping[str, float] = {"S": 0.7, "C": 0.7, "W": 0.5, "T": 0.5, "D": 0.5, "V": 0.5, "R": 0.4}
 _OTHER_SHAPE = 0.5
 _OF_BAR = 0.5  # of a boring bar's diameter
 _USUAL = insert_of("C", 12.7, 0.8)  # CNMG432, the largest that a small lathe usually has
@@ -78,12 +78,15 @@ def _is_along(move: TipMove) -> bool:
 
 
 def _blade_turns(move: TipMove, met: Cut, shape: ToolShape, tool: int) -> Iterator[Found]:
-    """A blade fed along Z, deeper than it can bend: a chamfer at 45° is not such a move."""
+    """A blade that turns further along Z than it is wide, and deeper than it can bend.
+
+    A chamfer at 45° is not such a move, nor the last shaving off the wall of a groove.
+    """
     (z0, r0), (z1, r1) = move.points[0], move.points[-1]
     if abs(z1 - z0) <= 2.0 * abs(r1 - r0):
         return
     limit = _BLADE_FINISH if shape.kind is ToolKind.PARTING else _TURNS_WIDE * shape.width
-    if met.depth > limit > 0.0:
+    if met.depth > limit > 0.0 and met.width > shape.width:
         text = move.modal.length_text
         words = (
             f"{edge_name(tool)} turns {text(met.depth)} deep along Z; a blade like it takes {text(limit)}."
@@ -96,11 +99,13 @@ def _depth(
 ) -> Iterator[Found]:
     """Depth of a cut against the length of the edge, and against the bar of a boring tool.
 
-    A profile with a shoulder is as deep as its feed along Z; a cut across is as deep as it is wide.
+    It is the mean depth: a finishing pass that ends in a shoulder shaves all of it for a moment. Across it is
+    the mean of Z. No pass is deeper anywhere than its edge reaches.
     """
-    along = _is_along(move)
-    deep, text = (met.depth if along else met.width), move.modal.length_text
-    most = min(depth_limit(shape, STRONGEST), cutter.height or math.inf)
+    along, text = _is_along(move), move.modal.length_text
+    deep, most = _mean(met, along=along), depth_limit(shape, STRONGEST)
+    if along and cutter.held and met.depth > cutter.height:
+        deep, most = met.depth, cutter.height
     if along and cutter.held and deep > most:
         words = f"{edge_name(tool)} cuts {text(deep)} deep; its edge can cut {text(most)}."
         yield Found("feed-into-holder", words)
@@ -111,6 +116,13 @@ def _depth(
     if stock_given and deep > usual:
         words = f"{edge_name(tool)} cuts {text(deep)} deep in one pass; {text(usual)} is usual at most."
         yield Found("depth-of-cut", words)
+
+
+def _mean(met: Cut, *, along: bool) -> float:
+    """Mean depth along r, or along Z of a cut across; the pieces of an arc follow each other."""
+    if along:
+        return met.area / max(met.width, met.front - met.back)
+    return min(met.width, met.area / met.depth)
 
 
 def depth_limit(shape: ToolShape, shares: Mapping[str, float]) -> float:

@@ -37,8 +37,8 @@ CHECKS: Mapping[str, Check] = {
     "feed-into-holder": Check(
         _ERROR,
         "Metal is fed into holder, shank or boring bar.",
-        "At a feed an outline that cannot cut meets more than .001 in, or a cut along Z is deeper than .7 of "
-        "the edge of a C or S insert, .5 of T, D and W, .2 of V (Widia's limits for strong geometries).",
+        "At a feed an outline that cannot cut meets more than .001 in, or a cut along Z is deeper on "
+        "the average than .7 of the edge of a C or S insert, .5 of others (Widia, for strong geometries).",
         "Use a longer or slimmer tool, or another direction of cut, or less depth.",
     ),
     "holder-into-stock": Check(
@@ -215,15 +215,16 @@ CHECKS: Mapping[str, Check] = {
     "depth-of-cut": Check(
         _WARNING,
         "One pass is deeper than usual for its insert or its boring bar.",
-        "With a stated stock: over .5 of the cutting edge of a C or S insert, .4 of W, .3 of T, D, .2 of V "
-        "(Widia's limits for medium geometries, nose radius left off; CNMG432 where no insert is stated), or "
-        "over half the diameter of a boring bar. The material is not known: soft metal may allow more.",
+        "With a stated stock, the mean depth: over .5 of the cutting edge of a C or S insert, .4 of W, .3 of "
+        "T and D, .2 of V (Widia's limits for medium geometries, nose radius left off; CNMG432 where no "
+        "insert is stated), or over half the diameter of a boring bar. The material is not known: soft metal "
+        "may allow more.",
         "Take it off in several passes: look for a lost or exchanged digit in X.",
     ),
     "blade-turns": Check(
         _ERROR,
         "A parting or grooving blade turns along Z.",
-        "It takes off more than .01 in (parting), or more than .8 of its width (grooving: Ingersoll).",
+        "Further than it is wide, and deeper than .01 in (parting) or .8 of its width (grooving: Ingersoll).",
         "Check the tool number; widen a groove by plunges side by side.",
     ),
     "chip-load": Check(

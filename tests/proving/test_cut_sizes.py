@@ -27,7 +27,7 @@ PASS = "T1\nX[.6]Z[.05]\nX[{r}]\nG95F[.006]Z[-.5]\nX[.6]\nG94F[300]Z[1]"
         # 16.5 mm (9.525 x √3 = 16.498), less .397: 16.101
         ("TNMG331", 4.830, 8.050),
         # 9.525 / sin 35° = 16.606, less .397: 16.209
-        ("VNMG331", 3.242, 3.242),
+        ("VNMG331", 3.242, 8.105),
         ("", 6.048, 8.467),  # as CNMG 120408, with a nose of .8
     ],
 )
@@ -69,7 +69,7 @@ def test_a_boring_bar_cuts_half_its_diameter_at_most(r: str, expected: list[tupl
     assert [(each.check, each.line) for each in part.findings] == expected
 
 
-GROOVE = "T1\nX[.6]Z[-.5]\nG95F[.002]X[.4]\nX[.6]\nX[{r}]\nZ[-.45]\nX[.6]\nG94F[300]Z[1]"
+GROOVE = "T1\nX[.6]Z[-.5]\nG95F[.002]X[.4]\nX[.6]\nX[{r}]\nZ[-.3]\nX[.6]\nG94F[300]Z[1]"
 
 
 @pytest.mark.parametrize(
@@ -82,6 +82,20 @@ GROOVE = "T1\nX[.6]Z[-.5]\nG95F[.002]X[.4]\nX[.6]\nX[{r}]\nZ[-.45]\nX[.6]\nG94F[
 def test_a_blade_along_z(tool: ToolShape, r: str, expected: list[tuple[str, int]]) -> None:
     part = part_of(text(GROOVE.format(r=r)), bar(25.4, 0.0, -60.0), {1: tool})
     assert [(each.check, each.line) for each in part.findings] == expected
+
+
+@pytest.mark.parametrize("tool", [BLADE, GROOVER])
+def test_a_blade_may_shave_the_wall_of_its_groove(tool: ToolShape) -> None:
+    """From a plunge of 2 mm to .05 in: .05 in of a wall .1 in high are left, less than the blade is wide."""
+    wall = "T1\nX[.6]Z[-.5]\nG95F[.002]X[.4]\nZ[-.45]\nX[.6]\nG94F[300]Z[1]"
+    assert part_of(text(wall), bar(25.4, 0.0, -60.0), {1: tool}).findings == ()
+
+
+def test_a_pass_that_ends_in_a_shoulder_is_as_deep_as_most_of_it() -> None:
+    """.02 in deep over .5 in, and .3 in of a shoulder for the last .01 in: .026 in on the average."""
+    steps = "T1\nX[.6]Z[.05]\nX[.35]\nG95F[.006]Z[-.49]\nX[.6]\nG94F[300]Z[.05]\nX[.2]\n"
+    steps += "G95F[.006]Z[-.49]\nX[.6]\nG94F[300]Z[.05]\nX[.18]\nG95F[.004]Z[-.5]\nX[.6]\nG94F[300]Z[1]"
+    assert part_of(text(steps), bar(25.4, 0.0, -60.0), {1: CNMG}).findings == ()
 
 
 def test_a_blade_may_chamfer() -> None:
