@@ -131,7 +131,7 @@ CHECKS: Mapping[str, Check] = {
     "rubs-surface": Check(
         _WARNING,
         "The tool rubs along the finished surface.",
-        "A turning insert returns along Z by a rapid, .1 in and more, on the radius that it has just turned.",
+        "A described turning tool returns along Z by a rapid, .1 in and more, on the radius it has turned.",
         "Move X away from the part before Z.",
     ),
     "after-part-off": Check(

@@ -182,10 +182,12 @@ class PartFindings:
         self._add("through-part" if behind_cut else "rapid-into-stock", move, text, certain=certain)
 
     def _rubs(self, move: TipMove, met: Cut, cutter: Cutter, part: TurnedPart, tool: int) -> None:
-        """An insert that goes back by a rapid along what it has just turned."""
+        """A described insert that goes back by a rapid along what it has just turned."""
         (z0, r0), (z1, r1) = move.points[0], move.points[-1]
         before, shape = self._before, self.shape(tool)
-        if met or before is None or before.quick or shape is None or shape.kind is not ToolKind.TURNING:
+        if shape is None or shape.kind is not ToolKind.TURNING or not cutter.held:
+            return
+        if met or before is None or before.quick:
             return
         if abs(r1 - r0) > _SQUARE or abs(z1 - z0) < _LONG or not move.rpm:
             return

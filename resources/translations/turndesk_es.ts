@@ -29715,6 +29715,11 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
+      <source>A described turning tool returns along Z by a rapid, .1 in and more, on the radius it has turned.</source>
+      <translation>Una herramienta de torneado descrita vuelve en rápido a lo largo de Z, .1 in o más, sobre el radio que ha torneado.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
       <source>A drill goes deeper than its flutes are long.</source>
       <translation>Una broca entra más que la longitud de sus canales.</translation>
     </message>
@@ -29840,11 +29845,6 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>A turning insert returns along Z by a rapid, .1 in and more, on the radius that it has just turned.</source>
-      <translation>Una plaquita de torneado vuelve en rápido a lo largo de Z, .1 in o más, sobre el radio que acaba de tornear.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/part_checks.py" />
       <source>An arc of the contour is not on the part.</source>
       <translation>Un arco del contorno no está en la pieza.</translation>
     </message>
@@ -29890,8 +29890,8 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>At a feed an outline that cannot cut meets more than .001 in, or a cut along Z is deeper than .7 of the edge of a C or S insert, .5 of T, D and W, .2 of V (Widia's limits for strong geometries).</source>
-      <translation>En un avance, un contorno que no puede cortar encuentra más de .001 in, o un corte a lo largo de Z es más profundo que .7 del filo de una plaquita C o S, .5 de T, D y W, .2 de V (límites de Widia para geometrías robustas).</translation>
+      <source>At a feed an outline that cannot cut meets more than .001 in, or a cut along Z is deeper on the average than .7 of the edge of a C or S insert, .5 of others (Widia, for strong geometries).</source>
+      <translation>En un avance, un contorno que no puede cortar encuentra más de .001 in, o un corte a lo largo de Z es en promedio más profundo que .7 del filo de una plaquita C o S, .5 de otras (Widia, para geometrías robustas).</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29975,6 +29975,11 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
+      <source>Further than it is wide, and deeper than .01 in (parting) or .8 of its width (grooving: Ingersoll).</source>
+      <translation>Más lejos que su ancho, y más profundo que .01 in (tronzado) o .8 de su ancho (ranurado: Ingersoll).</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
       <source>G91 before any move to a place: it begins where the slides stand.</source>
       <translation>G91 antes de cualquier movimiento a un lugar: empieza donde están los carros.</translation>
     </message>
@@ -30017,11 +30022,6 @@
       <location filename="core/proving/part_checks.py" />
       <source>It takes off material more than .004 in off the axis while the spindle turns.</source>
       <translation>Arranca material a más de .004 in del eje mientras el husillo gira.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/part_checks.py" />
-      <source>It takes off more than .01 in (parting), or more than .8 of its width (grooving: Ingersoll).</source>
-      <translation>Arranca más de .01 in (tronzado), o más de .8 de su ancho (ranurado: Ingersoll).</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -30345,8 +30345,8 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>With a stated stock: over .5 of the cutting edge of a C or S insert, .4 of W, .3 of T, D, .2 of V (Widia's limits for medium geometries, nose radius left off; CNMG432 where no insert is stated), or over half the diameter of a boring bar. The material is not known: soft metal may allow more.</source>
-      <translation>Con un material indicado: más de .5 del filo de una plaquita C o S, .4 de W, .3 de T y D, .2 de V (límites de Widia para geometrías medias, sin el radio de punta; CNMG432 donde no se indica plaquita), o más de la mitad del diámetro de una barra de mandrinar. La clase de metal no se conoce: un metal blando puede admitir más.</translation>
+      <source>With a stated stock, the mean depth: over .5 of the cutting edge of a C or S insert, .4 of W, .3 of T and D, .2 of V (Widia's limits for medium geometries, nose radius left off; CNMG432 where no insert is stated), or over half the diameter of a boring bar. The material is not known: soft metal may allow more.</source>
+      <translation>Con un material indicado, la profundidad media: más de .5 del filo de una plaquita C o S, .4 de W, .3 de T y D, .2 de V (límites de Widia para geometrías medias, sin el radio de punta; CNMG432 donde no se indica plaquita), o más de la mitad del diámetro de una barra de mandrinar. La clase de metal no se conoce: un metal blando puede admitir más.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />

@@ -122,7 +122,8 @@ def metal(
     at = np.arange(-30.0, -0.05, 0.0625) + 0.01
     sides = [np.array(side)[::-1] for side in (part.last.outside, part.last.bore) if side]
     found = [np.interp(at, side[:, 0], side[:, 1]) for side in sides]
-    return np.stack(found), [d.in_one_line("x") for d in report.diagnostics]
+    said = [d.in_one_line("x") for d in report.diagnostics if d.check != "depth-of-cut"]  # one pass, as typed
+    return np.stack(found), said
 
 
 @pytest.mark.parametrize("name", STEPS)
