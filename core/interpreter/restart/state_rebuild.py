@@ -79,7 +79,7 @@ class StateRebuild:
         number = visit or visits.at(broken.block if broken is not None else 0)
         why = visits.why_not(line, number)
         anchor, nth = visits.anchor(number) if not why else (0, 0)
-        why = why or self._pass_to_line(anchor)
+        why = why or self._pass_to_line(anchor, position_known=False)
         if why:
             return why.replace(f"line {anchor}", f"line {line}").replace(f"Line {anchor}", f"Line {line}")
         found = self._within(line, anchor, nth, visits.line_visit(number), broken)
@@ -99,25 +99,31 @@ class StateRebuild:
         walks = [self._walk_from(self._walk, anchor)]
         if self._other is not None:
             walks.append(self._walk_from(self._other, anchor))
+        moved = self._moved
         for walk in walks:
-            lost = self._to_visit(walk, line, nth)
+            lost, has_moved = self._to_visit(walk, line, nth)
             if lost:
                 return f"Line {line} is no place to go on: {lost}"
+            moved = moved or has_moved
         walk, known = walks[0], self._other is None or _same_state(*walks)
-        why = self._why_not(line, walk, known=known)
+        why = self._why_not(line, walk, known=known, moved=moved)
         return why or self._found(line, walk, visit, broken)
 
     def _walk_from(self, walk: PassToLine, anchor: int) -> PassToLine:
         setup = replace(walk.setup, begin=Begin(walk.checkpoint, anchor))
         return PassToLine(self._program, setup)
 
-    def _to_visit(self, walk: PassToLine, line: int, nth: int) -> str:
+    def _to_visit(self, walk: PassToLine, line: int, nth: int) -> tuple[str, bool]:
+        """Go to the ``nth`` visit of a line; why its state is not known, and whether an axis has moved."""
+        moved = False
         for number in range(nth):
             for block in walk.once_more(line) if number else walk.before(line):
                 self._count_block()
+                moved = moved or block.action is None
                 if isinstance(block.action, AskInput):
-                    return f"what input {block.action.terminal} answered on line {block.line} is not known."
-        return ""
+                    asks = block.action.terminal
+                    return f"what input {asks} answered on line {block.line} is not known.", moved
+        return "", moved
 
     def _count_block(self) -> None:
         self._count += 1
@@ -146,8 +152,11 @@ class StateRebuild:
         self._walk = PassToLine(self._program, self._setup)
         self._other: PassToLine | None = PassToLine(self._program, replace(self._setup, start=_ELSEWHERE))
 
-    def _pass_to_line(self, line: int) -> str:
-        """Go to the line; why it is not good, empty when it is."""
+    def _pass_to_line(self, line: int, *, position_known: bool = True) -> str:
+        """Go to the line; why it is not good, empty when it is.
+
+        Without ``position_known`` the position may still depend on the start: what follows may fix it.
+        """
         if line < self._at:
             self._begin_anew()
         while self._at < line and not (self._ended or self._lost or self._walk.failed):
@@ -157,7 +166,8 @@ class StateRebuild:
             other = self._other
             if other is not None and not other.failed and _same_state(self._walk, other):
                 self._other = None
-        return self._why_not(line, self._walk, known=self._other is None)
+        known = self._other is None or not position_known
+        return self._why_not(line, self._walk, known=known, moved=self._moved)
 
     def _stop(self, line: int) -> int:
         """Where both passes are compared next: behind each line while little is known, at each input."""
@@ -194,7 +204,7 @@ class StateRebuild:
             self._program, replace(self._setup, begin=begin, inputs=lambda _terminal: True)
         )
 
-    def _why_not(self, line: int, walk: PassToLine, *, known: bool) -> str:
+    def _why_not(self, line: int, walk: PassToLine, *, known: bool, moved: bool) -> str:
         reasons = (
             (walk.failed, f"The program has errors before line {line}."),
             (self._ended, f"The program ends on line {self._ended}, before line {line}."),
@@ -203,7 +213,7 @@ class StateRebuild:
             (walk.checkpoint.modal.mill, f"Line {line} is in plane switching."),
             (not known and self._asked, f"Line {line} depends on the input that line {self._asked} asks."),
             (
-                not known and not self._moved,
+                not known and not moved,
                 f"Nothing has moved before line {line}: start the program from its first line.",
             ),
             (not known, f"Where the slides stand at line {line} depends on where they stood at Cycle Start."),

@@ -11,8 +11,8 @@ from core.language.source import Source
 from tests.interpreter.programs import INCH, setup
 
 
-def find(text: str, line: int, **given: object) -> RestartPoint | NoRestart:
-    return StateRebuild(Source("PART", text), setup(**given), lambda _count: None).find(line)  # type: ignore[arg-type]
+def find(text: str, line: int, visit: int = 0, **given: object) -> RestartPoint | NoRestart:
+    return StateRebuild(Source("PART", text), setup(**given), lambda _count: None).find(line, visit)  # type: ignore[arg-type]
 
 
 PLAIN = "G90G94F300G72\nT1\nX1Z.1\nM03S900\nM08\nG95F.005Z-.5\nX1.1\nM30\n"
@@ -69,6 +69,28 @@ def test_nothing_has_moved_yet(line: int) -> None:
     assert isinstance(answer, NoRestart)
     assert answer.why.startswith(f"Nothing has moved before line {line}")
     assert (answer.before, answer.after) == (0, 4)
+
+
+IN_A_LOOP = "G90G94F300\nT1\nLS3\nX1Z.1\nX.5\nG91Z-.1\nG90X1\nLF\nM30\n"
+
+
+@pytest.mark.parametrize(("visit", "expected"), [(0, 1), (1, 1), (2, 2), (3, 3)])
+def test_a_program_whose_first_move_is_in_a_loop_is_entered_in_every_pass(visit: int, expected: int) -> None:
+    answer = find(IN_A_LOOP, 5, visit=visit)
+    assert isinstance(answer, RestartPoint)
+    assert (answer.visit.number, answer.visit.of) == (expected, 3)
+    assert answer.checkpoint.machine == pytest.approx((INCH, 0.1 * INCH))
+
+
+def test_the_first_move_itself_in_the_first_pass_depends_on_the_start_and_later_passes_do_not() -> None:
+    first, second = find(IN_A_LOOP, 4, visit=1), find(IN_A_LOOP, 4, visit=2)
+    assert isinstance(first, NoRestart)
+    assert isinstance(second, RestartPoint)
+
+
+def test_a_loop_of_incremental_moves_alone_stays_refused() -> None:
+    text = "G91G94F300\nT1\nLS3\nX.1Z-.1\nX-.1\nLF\nM30\n"
+    assert all(isinstance(find(text, 5, visit=each), NoRestart) for each in (1, 2, 3))
 
 
 def test_incremental_moves_from_an_unknown_place_are_refused_until_both_axes_are_known() -> None:
