@@ -44,6 +44,7 @@ from app.desk.persistence import Persistence
 from app.desk.program_folder import ProgramFile, ProgramFolders
 from app.desk.program_loading import LoadingSteps, ProgramLoader
 from app.desk.prompt_line import UNDER_WAY
+from app.desk.start_watch import StartWatch
 from app.desk.translation import tr
 from app.offsets.mill_touch import MillTouch
 from app.offsets.offset_effect import Effect
@@ -215,6 +216,7 @@ def desk_and_executor(
         note=journal.note if journal is not None else _kept_nowhere,
         left=journal.left if journal is not None else None,
         tell=recorder.tell,
+        checks_starts=machine.kind == "lathe",
     )
     desk = _desk(machine, executor, connected, events, offsets)
     events.desk, desk.recorder = desk, recorder
@@ -286,8 +288,9 @@ def _desk(
 
     kept = partial(kept_part, keep.setting)
     changed = file_changes(machine, keep, partial(say, "machine"))
+    first_move = StartWatch(guarded(executor.post, changed, partial(say, "refused")))
     desk = Desk(
-        post=guarded(executor.post, changed, partial(say, "refused")),
+        post=first_move.post,
         snapshot=lambda: executor.snapshot,
         session=ProgramLoader(
             workshop(machine, offsets, journal, left=left, shapes=shapes_at_hand, kept=kept),
@@ -304,6 +307,9 @@ def _desk(
         changes=changed,
         book=book_of(offsets, journal),
     )
+    if machine.kind == "lathe":
+        desk.first_move = first_move
+    desk.attach(first_move)
     desk.attach(Effect(drawer(machine), part_comparer(machine, shapes_at_hand, kept)))
     beside = workshop(machine, offsets, left=left, shapes=shapes_at_hand, kept=kept)
     desk.attach_later("app.editor.editor.Editor", partial(_editor, desk, beside, journal, machine))

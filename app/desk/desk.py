@@ -27,6 +27,7 @@ from app.desk.program_renewal import ProgramRenewal
 from app.desk.prompt_line import ONE_HAND, UNDER_WAY, YES, PromptAnswers
 from app.desk.readouts import Readout
 from app.desk.screen_settings import SettingsBook
+from app.desk.start_watch import StartWatch
 from app.desk.station_hands import OVERRIDE_MOST, StationHands, StationPanel, stepped
 from app.desk.translation import tr
 from app.desk.waiting import how_it_ends
@@ -131,6 +132,7 @@ class Desk:
     own_starts: list[OwnStart] = field(default_factory=list)
     hears: Callable[[Snapshot], None] = lambda _snapshot: None  # the sounds
     offered: Callable[[Snapshot], NoticeRow | None] = lambda _snapshot: None  # between cycles: the next job
+    first_move: StartWatch | None = None  # what is known of it
     watches: list[Watcher] = field(default_factory=list)  # what else looks at every frame
     _attached: dict[type[Attached], Attached] = field(default_factory=dict)
     _made_later: dict[str, Callable[[], Attached]] = field(
@@ -300,6 +302,8 @@ class Desk:
         self.answers.look(snapshot)
         self.rebuilding.look(snapshot, self.book, self.post)
         loaded = self.session.now
+        if self.first_move is not None:
+            self.first_move.see(snapshot, loaded)
         if snapshot.starts is not Starts.LINE:  # a line of MDI is no run of the program
             self.counter.see(snapshot, self.post, self.say)
             self.record.see(snapshot, loaded)

@@ -10,6 +10,7 @@ from core.executor.interrupted_job import InterruptedJob
 from core.executor.job import Job, Proof
 from core.executor.jog_line import Direction
 from core.executor.snapshot import Starts
+from core.executor.start_clearance import Clearance
 from core.interpreter.job_setup import SecondaryOffset, ToolOffset
 
 
@@ -227,6 +228,13 @@ class PartsMade(Command):
     """So many parts of the loaded program are made; for the number of the part that is under way."""
 
     parts: int
+
+
+@dataclass(frozen=True, slots=True)
+class GiveClearance(Command):
+    """The verdicts on the first move of the next start; they take the place of all earlier ones."""
+
+    clearances: tuple[Clearance, ...]
 
 
 @dataclass(frozen=True, slots=True)
