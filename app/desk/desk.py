@@ -342,6 +342,8 @@ class Desk:
         if page:
             return prompt_line.alarm_of(snapshot, self.release_words) or page
         standing = prompt_line.prompt(snapshot, loaded, self.start_words, self.release_words)
+        if snapshot.state is State.IDLE and self.first_move is not None and self.first_move.refusal:
+            standing = f"{prompt_line.NO_START}: {self.first_move.refusal}"
         if snapshot.state is State.WAIT:
             standing = how_it_ends(snapshot, self.set_input is not None) or standing
         other = self.differs() if snapshot.state in {State.IDLE, State.DISABLED} and not loaded.busy else ""

@@ -116,7 +116,7 @@ class PartHistory:
         return self._last
 
     def making_at(self, block: int, tip: Point | None = None, watch: Go | None = None) -> PartMaking:
-        """Return a copy of the part at the beginning of a block, or as far as the ``tip`` (Z, r; mm) is in it."""
+        """Return a copy of the part before a block, or with it done up to the ``tip`` (Z, r; mm)."""
         share = 0.0
         step = self._step(block)
         if tip is not None and isinstance(step, TipMove):

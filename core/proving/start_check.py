@@ -15,7 +15,7 @@ from itertools import pairwise
 from core.interpreter.elementary_blocks import Block
 from core.interpreter.job_setup import ToolOffset
 from core.part.neighbours import SolidTool, solid_tool
-from core.part.swept_edge import Point
+from core.part.swept_edge import FloatArray, Point
 from core.part.tool_outline import nose_circle, outline
 from core.part.turned_part import NOTHING, Cut, TurnedPart
 from core.proving.part_history import Go, PartHistory
@@ -27,6 +27,7 @@ MET = 0.1
 
 ASIDE = 7.3  # mm: the other start; no program's words fall together with it
 _SAME = 1e-6  # mm
+_NOSE = 0.5  # mm of radius about the tip: within the outline of any insert that is assumed
 _MOST = 60  # moves that are followed at most
 _FAR = 500.0  # mm: how far a tool is jogged clear
 
@@ -211,7 +212,7 @@ class StartCheck:
         return met if met.depth > MET and met.width > MET else NOTHING
 
     def _zero(self, tool: int) -> Point | None:
-        """Machine X and Z with this tip on part zero; None where the tool has no known place: T0, as a rule."""
+        """Machine X and Z with this tip on part zero; None where it is not known, as of T0."""
         zero, offset = self.history.zero(tool), self.offsets.get(tool)
         if zero is None and offset is not None:
             return offset.x, offset.z
@@ -219,9 +220,18 @@ class StartCheck:
 
     def _solid(self, tool: int) -> SolidTool:
         if tool not in self._solids:
-            tools = self.history.tools
-            shape = tools.shape(tool)
-            lines = outline(shape) if shape is not None else nose_circle(0.2, 0)
-            body = lines.body if tools.described(tool) else ()
-            self._solids[tool] = solid_tool((*lines.cutting, *body))
+            self._solids[tool] = solid_tool(self._outlines(tool))
         return self._solids[tool]
+
+    def _outlines(self, tool: int) -> tuple[FloatArray, ...]:
+        """Edges and body of a described tool; of any other what is sure: its nose, or a drill's flutes."""
+        tools = self.history.tools
+        shape = tools.shape(tool)
+        if shape is None:
+            return nose_circle(_NOSE, 0).cutting
+        lines = outline(shape)
+        if tools.described(tool):
+            return (*lines.cutting, *lines.body)
+        if shape.turns_itself:
+            return lines.cutting
+        return nose_circle(max(shape.nose_radius, _NOSE), shape.tip).cutting

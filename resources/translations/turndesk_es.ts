@@ -6519,6 +6519,61 @@
       <translation>stdin está cerrado, por ahí no llega nada para «%1»; indique un archivo</translation>
     </message>
     <message>
+      <location filename="app/desk/start_watch.py" />
+      <source>F6, THEN F4 SHOWS THE WAY OUT, OR {jog}</source>
+      <translation>F6 Y DESPUÉS F4 MUESTRA LA SALIDA, O {jog}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/start_watch.py" />
+      <source>JOG IT OUT ALONG THE PATH BY WHICH IT CAME</source>
+      <translation>SÁQUELA EN JOG POR EL CAMINO POR EL QUE ENTRÓ</translation>
+    </message>
+    <message>
+      <location filename="app/desk/start_watch.py" />
+      <source>JOG {direction} UNTIL IT IS CLEAR</source>
+      <translation>MUEVA {direction} EN JOG HASTA QUE QUEDE LIBRE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/start_watch.py" />
+      <source>START</source>
+      <translation>ARRANQUE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/start_watch.py" />
+      <source>THE CHUCK</source>
+      <translation>EL PLATO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/start_watch.py" />
+      <source>THE FIRST MOVE COULD NOT BE CHECKED: {why}</source>
+      <translation>NO SE PUDO COMPROBAR EL PRIMER MOVIMIENTO: {why}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/start_watch.py" />
+      <source>THE FIRST MOVE TAKES {tool} THROUGH {what}</source>
+      <translation>EL PRIMER MOVIMIENTO HACE QUE {tool} ATRAVIESE {what}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/start_watch.py" />
+      <source>THE PART</source>
+      <translation>LA PIEZA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/start_watch.py" />
+      <source>THE PART IN THE CHUCK IS NOT KNOWN: LOOK AT THE FIRST MOVE BEFORE YOU START</source>
+      <translation>NO SE CONOCE LA PIEZA DEL PLATO: MIRE EL PRIMER MOVIMIENTO ANTES DE ARRANCAR</translation>
+    </message>
+    <message>
+      <location filename="app/desk/start_watch.py" />
+      <source>THE TAILSTOCK</source>
+      <translation>EL CONTRAPUNTO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/start_watch.py" />
+      <source>{tool} IS INSIDE {what}</source>
+      <translation>{tool} ESTÁ DENTRO DE {what}</translation>
+    </message>
+    <message>
       <location filename="app/desk/stored_shapes.py" />
       <source>a profile is three points or more, Z and X in mm: 0,0 2.5,0 1.2,1.5</source>
       <translation>un perfil son tres puntos o más, Z y X en mm: 0,0 2.5,0 1.2,1.5</translation>
@@ -18152,6 +18207,11 @@
       <location filename="core/executor/start_conditions.py" />
       <source>the drives are off: switch them on</source>
       <translation>los servos están apagados: enciéndalos</translation>
+    </message>
+    <message>
+      <location filename="core/executor/start_conditions.py" />
+      <source>the first move is being checked against the part: start again in a moment</source>
+      <translation>se está comprobando el primer movimiento con la pieza: vuelva a arrancar en un momento</translation>
     </message>
     <message>
       <location filename="core/executor/start_conditions.py" />
