@@ -72,7 +72,9 @@ class AutomaticPage(Page):
         return True
 
     def prompt(self) -> str:
-        """The keys of measuring; while something moves it is told what stops it, as ever."""
+        """The keys of the question for a file or of measuring; while something moves, what stops it."""
+        if self.files.isVisible() and not self._moving:
+            return self.files.prompt()
         return measuring_words() if self.path.ruler is not None and not self._moving else ""
 
     def escape(self) -> bool:

@@ -107,12 +107,14 @@ def _said(
 
 
 def _shapes(args: argparse.Namespace) -> Mapping[int, ToolShape]:
-    """Those of --tools, else of the offsets file, else of the store."""
+    """Return the shapes of --tools; else those of the store, with what the offsets file describes."""
     from app.compose.stored_offsets import stored_shapes
     from app.offsets.offsets_file import read_tool_shapes
 
-    file = args.tools or args.offsets
-    return stored_shapes() if file is None else read_tool_shapes(Path(file))
+    if args.tools is not None:
+        return read_tool_shapes(Path(args.tools))
+    described = read_tool_shapes(Path(args.offsets)) if args.offsets is not None else {}
+    return {**stored_shapes(), **described}
 
 
 def _stick_out(args: argparse.Namespace, machine: Machine) -> float | None:

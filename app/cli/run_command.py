@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import json
 import sys
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -75,14 +74,13 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _proved(args: argparse.Namespace, around: Circumstances, job: Job) -> Report:
-    """The proof with that of the part, each finding with the weight that it has on a desk (decision 0045)."""
+    """The proof with that of the part."""
     from app.cli.part_options import part_setting, with_kept_stock
-    from app.desk.program_loading import at_a_machine
     from core.proving.part_proof import prove_with_part
 
     setting = with_kept_stock(part_setting(args, around), job.source.name, args)
     report, _part = prove_with_part(job.reading, around.setup, around.machine, setting)
-    return replace(report, diagnostics=tuple(map(at_a_machine, report.diagnostics)))
+    return report
 
 
 def _run(args: argparse.Namespace, around: Circumstances, job: Job, report: Report) -> int:

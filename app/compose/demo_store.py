@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from contextlib import suppress
 from pathlib import Path
 
 from app.compose.backend_entry import has_inverter, played
@@ -10,9 +11,10 @@ from app.compose.machine_setup import read_machine
 from app.compose.workshop import samples
 from app.desk.command_errors import CommandError
 from app.desk.data_folder import HOME, data_folder
+from app.desk.desk import LAST_PROGRAM
 from app.desk.screen_settings import KEY as SCREEN
 from app.offsets.offsets_file import read_rows
-from core.language.source import Dialect
+from core.language.source import Dialect, dialect_of
 from core.store.store import Store
 from core.store.store_errors import StoreError
 from core.store.store_file import has_store
@@ -44,8 +46,24 @@ _PROGRAMS = {Dialect.OMNITURN: "bushing.nc", Dialect.SINUMERIK: "shaft.mpf", Dia
 
 
 def demo_program(machine_file: str | None) -> str:
-    """What the demo has on the desk where nobody names a program: a sample in the machine's language."""
-    return str(samples() / _PROGRAMS[Dialect(read_machine(machine_file).language)])
+    """Return the program that the demo loads if none is named.
+
+    It is the one that was loaded last, if the machine reads its language; otherwise a sample.
+    """
+    dialect = Dialect(read_machine(machine_file).language)
+    last = _last_program()
+    if last is not None and dialect_of(last.name) is dialect:
+        return str(last)
+    return str(samples() / _PROGRAMS[dialect])
+
+
+def _last_program() -> Path | None:
+    """Return the program that the demo loaded last, if its file exists. Its store is in the data folder."""
+    with suppress(StoreError, OSError), Store.open(data_folder(), read_only=True) as store:
+        stored = store.setting(LAST_PROGRAM)
+        if isinstance(stored, str) and Path(stored).is_file():
+            return Path(stored)
+    return None
 
 
 def _seed(folder: Path) -> None:

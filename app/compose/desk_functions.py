@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -9,6 +10,7 @@ from typing import TYPE_CHECKING
 from app.desk.access import Access
 from app.desk.data_folder import data_folder
 from app.desk.desk import Desk
+from app.desk.first_job import FirstJob
 from app.desk.persistence import Persistence
 from app.desk.program_loading import LoadingSteps
 from app.desk.screen_settings import SettingsBook
@@ -16,6 +18,7 @@ from app.programs.run_history import RunHistory
 from app.special.lamps_and_sound import DeskSounds
 from app.special.part_count import PartCounter
 from core.machine.machine_model import Machine
+from core.store.store_errors import StoreError
 
 if TYPE_CHECKING:
     from app.programs.preview import DrawThumbnail
@@ -38,6 +41,8 @@ def furnish(
     """
     desk.access = desk.book.access = Access(persistence, desk.say, desk.clock)
     desk.settings = SettingsBook(persistence)
+    with suppress(StoreError):  # a store that cannot be read is reported elsewhere
+        desk.first_job = FirstJob.stored(persistence)
     desk.counter = PartCounter(persistence)
     desk.record = RunHistory(persistence)
     own = own or data_folder() / "programs"

@@ -13,9 +13,10 @@ from typing import TYPE_CHECKING
 
 from app.desk.kept_part import NOTHING_KEPT, KeptPart
 from app.desk.latest import AbandonedError, Watch, sentence
-from app.desk.program_loading import PartProved, at_a_machine
+from app.desk.program_loading import PartProved
 from app.desk.translation import tr
 from core.language.diagnostics import Diagnostic, Severity
+from core.proving.part_checks import is_serious
 from core.store.store_errors import StoreError
 
 if TYPE_CHECKING:
@@ -119,9 +120,16 @@ def _unusable(why: str) -> Diagnostic:
 
 def _weighed(found: Iterable[Diagnostic], report: PartReport | None) -> PartProved:
     """With the weight that each finding has on the desk, and what of them is announced before a start."""
-    seen = [(each, at_a_machine(each)) for each in found]
-    warned = [now for was, now in seen if was is not now or was.code in {NOT_MADE, NO_STOCK}]
-    return PartProved(tuple(now for _, now in seen), tuple(_in_short(each) for each in warned), report)
+    found = tuple(found)
+    warned = [each for each in found if _is_announced(each)]
+    return PartProved(found, tuple(_in_short(each) for each in warned), report)
+
+
+def _is_announced(found: Diagnostic) -> bool:
+    """Whether a start says it: an error but for what is assumed, and a part that could not be made."""
+    if found.code in {NOT_MADE, NO_STOCK}:
+        return True
+    return is_serious(found) and found.severity is not Severity.ERROR
 
 
 def _in_short(found: Diagnostic) -> str:

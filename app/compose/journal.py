@@ -10,7 +10,7 @@ from pathlib import Path
 
 from app.desk.data_folder import data_folder
 from app.desk.persistence import Persistence
-from app.offsets.offset_book import OffsetBook
+from app.offsets.offset_book import OffsetBook, OffsetRows, rows_of_store
 from app.programs.run_history import note_cut_off_runs
 from app.quality.cycle_recorder import CycleRecorder
 from app.quality.parts_book import PartsBook
@@ -19,10 +19,11 @@ from core.executor.snapshot import Event
 from core.language.source import Source
 from core.store import backup, database, people
 from core.store.backup_verdict import Verdict, verdict
+from core.store.damaged_rows import OF_PROGRAMS
 from core.store.people import People, PersonRow
 from core.store.store import Store
 from core.store.store_errors import StoreError
-from core.store.store_file import FILE_NAME
+from core.store.store_file import FILE_NAME, has_store
 from core.store.store_rows import EventRow, Kind, RunRow, ToolRow, VersionRow
 from core.store.store_writer import Backlog
 
@@ -130,8 +131,21 @@ class Journal(Persistence):
         """The offsets of the store, for the screen to show and to change."""
         store = self._store
         book = OffsetBook(store, "" if store else f"OFFSETS CANNOT BE KEPT: {self.trouble}")
+        rows = self._rows_of_other() if store is None else None
+        if rows is not None:
+            book.show(rows)
         self._know(book, store)
         return book
+
+    def _rows_of_other(self) -> OffsetRows | None:
+        """Return the offsets of a store that another process writes; None if they cannot be read."""
+        if not has_store(self._folder):
+            return None
+        try:
+            with Store.open(self._folder, read_only=True) as store:
+                return None if store.damaged(OF_PROGRAMS) else rows_of_store(store)
+        except StoreError:
+            return None
 
     def parts_book(self, tools: Kind = Kind.TOOL) -> PartsBook:
         """Measured parts and tool lives of the store; ``tools``: the table of this machine."""
@@ -242,6 +256,10 @@ class Journal(Persistence):
         """What each program has done."""
         return self.opened().runs()
 
+    def runs_by_text(self) -> Mapping[str, RunRow]:
+        """Return what each program text has done, by its record key."""
+        return self.opened().runs_by_text()
+
     def tools_of_last_run(self, program: str) -> tuple[str, dict[int, ToolRow]]:
         """When it was started last (UTC), and its tools as they were then; on a worker. Raises StoreError."""
         store = self.opened()
@@ -260,9 +278,9 @@ class Journal(Persistence):
         """Post one whole cycle."""
         self._post(lambda store: store.cycle_finished(program, seconds))
 
-    def program_proved(self, program: str, result: str, planned: float | None) -> None:
+    def program_proved(self, program: str, result: str, planned: float | None, text: str) -> None:
         """Post what proving found."""
-        self._post(lambda store: store.program_proved(program, result, planned))
+        self._post(lambda store: store.program_proved(program, result, planned, text))
 
     def renamed(self, old: str, new: str) -> None:
         """Versions, count and record go with the program; back when that is on the disk."""
@@ -302,8 +320,12 @@ class Journal(Persistence):
             store = self._open()
         except StoreError as error:
             self._trouble = str(error)
+            rows = self._rows_of_other()
             for book in self._books:
-                book.reopen(None, self._trouble)
+                if isinstance(book, OffsetBook):
+                    book.reopen(None, self._trouble, rows)
+                else:
+                    book.reopen(None, self._trouble)
             return
         with self._lock:
             held, self._held, self._store = self._held or (), None, store

@@ -19,6 +19,7 @@ _THREADS = 3  # that answer browsers
 _WAITING = 100  # connections
 _SILENT = 10  # s after which a browser that neither asks nor reads is given up
 _TURN = 0.5  # s
+ENDS = 2.0  # s that closing waits for its threads
 
 
 class PageServer:
@@ -57,7 +58,7 @@ class PageServer:
     def close(self) -> None:
         """No browser is answered any more."""
         self._closing.set()
-        self._thread.join()
+        self._thread.join(ENDS)
         self._workers.shutdown()
 
     def _serve(self) -> None:

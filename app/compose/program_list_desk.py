@@ -24,7 +24,8 @@ def program_list(
         proved = workshop.prove(job, lambda _count: None)
         errors = proved.proof.errors
         result = f"{len(errors)} ERRORS: {errors[0]}" if errors else "PROVED"
-        persistence.program_proved(path.name, result, None if errors else proved.proof.cycle_time)
+        planned = None if errors else proved.proof.cycle_time
+        persistence.program_proved(path.name, result, planned, job.source.text)
         return errors[0] if errors else ""
 
     worker = Latest("editing-programs")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -47,7 +48,8 @@ def said_stock(text: str, around: ProgramBefore) -> Stock | StockSpec:
         ) from error
     except UnicodeDecodeError as error:
         raise StockError(f"{path} is no text; a profile is a CSV file of z, r", "not-text") from error
-    return profile_stock(spec.given, points, 25.4, spec.allowance)
+    profile_stock(spec.given, points, 1.0, spec.allowance)  # refuses what is wrong in it
+    return replace(spec, points=points)
 
 
 def _left_by(path: Path, around: ProgramBefore, spec: StockSpec) -> Stock:

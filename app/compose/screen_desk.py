@@ -49,13 +49,14 @@ from app.desk.translation import tr
 from app.offsets.mill_touch import MillTouch
 from app.offsets.offset_effect import Effect
 from core.access.access_table import Act
+from core.closing import ClosingStep
 from core.coded_error import error_code
 from core.executor.commands import LeftInterrupted
 from core.executor.executor import Executor
 from core.executor.interrupted_job import InterruptedJob
 from core.executor.recorder import Recorder, recorded_of
 from core.executor.snapshot import Event, Snapshot
-from core.executor.watchdog import ExecutorThread, Watchdog
+from core.executor.watchdog import WATCHDOG, ExecutorThread, Watchdog
 from core.interpreter.modal_state import Modal
 from core.language.source import Dialect, usual_ending
 from core.machine.backup_table import BackupTable
@@ -83,7 +84,12 @@ SUPERVISED = {
     "sharing": "THE SHARING OF PROGRAMS",
     "inverter": "WHAT TALKS TO THE INVERTER",
     "recorder": "THE RECORD OF THE SCOPE",
+    "paho-mqtt-client-": "WHAT TALKS TO THE MQTT BROKER",  # the name that paho gives its thread
+    "web-hook": "THE WEB HOOK",
+    WATCHDOG: "THE WATCHDOG OVER THE CONTROL",
 }
+EXECUTOR_CLOSES = 12.0  # s: drives that come on are waited for, then the machine is halted
+STORE_CLOSES = 15.0  # s: a slow disk takes what waits in memory
 _OFTEN = (700, 10, 10)  # Python's usual: a collection stops every thread, so many short ones
 GIVE_WAY = 0.001  # seconds after which a worker that proves or draws lets the screen and the executor go on
 
@@ -98,35 +104,41 @@ def build_desk(machine_file: str | None = None, offsets: Callable[[], Offsets] =
     desk, executor = desk_and_executor(machine_file, offsets, clock, journal, data_folder() / RECORDS)
     thread, log, recorder = ExecutorThread(executor, clock), Log(), desk.recorder
     assert recorder is not None
-    close_floor = _shop_floor(desk, executor, journal)
+    floor = _shop_floor(desk, executor, journal)
     file = ProgramFile(lambda: desk.session.now)
 
     watchdog = Watchdog(thread, executor.halt, SUPERVISED, partial(_thread_ended, desk, journal))
-    let_go = desk.shut
-
-    def shut() -> None:
-        watchdog.close()
-        file.close()
-        thread.close()  # first of what can stop the machine: nothing may keep the machine from being stopped
-        recorder.close()
-        close_floor()
-        let_go()
-        lost = journal.close()
-        if lost:
-            sys.stderr.write(f"turndesk: not kept, and lost by closing: {lost}; {journal.trouble}\n")
-        log.close()
-
-    desk.shut = shut
+    desk.stops += [
+        ClosingStep("watchdog", watchdog.end),  # what ends from now on ends in good order
+        ClosingStep("executor", thread.close, EXECUTOR_CLOSES),
+    ]
+    desk.workers += [
+        ClosingStep("watchdog", watchdog.close),
+        ClosingStep("program-file", file.close),
+        ClosingStep("recorder", recorder.close),
+        *(ClosingStep(f"shop-floor-{number}", close) for number, close in enumerate(floor, 1)),
+    ]
+    desk.ends += [
+        ClosingStep("store", partial(_close_store, journal), STORE_CLOSES),
+        ClosingStep("log", log.close),
+    ]
     executor.stirs = lambda: desk.stirs()  # noqa: PLW0108  the window gives it later
-    desk.differs = lambda: file.differs
+    desk.differs, desk.saved_here = (lambda: file.differs), file.hurry
     desk.not_kept, desk.waiting = (lambda: journal.trouble or log.trouble), (lambda: journal.held)
     gc.freeze()  # modules and the like: collections need not look at them again
     gc.set_threshold(*_OFTEN)
     thread.start()
     recorder.start()
-    watchdog.start()
     file.start()
+    watchdog.start()
     return desk
+
+
+def _close_store(journal: Journal) -> None:
+    """Write what waits, and report what is lost."""
+    lost = journal.close()
+    if lost:
+        sys.stderr.write(f"turndesk: not kept, and lost by closing: {lost}; {journal.trouble}\n")
 
 
 def _thread_ended(desk: Desk, journal: Journal, name: str) -> None:
@@ -138,10 +150,10 @@ def _thread_ended(desk: Desk, journal: Journal, name: str) -> None:
     journal.hear(Event(desk.snapshot().t, "warning", text))
 
 
-def _shop_floor(desk: Desk, executor: Executor, journal: Journal) -> Callable[[], None]:
+def _shop_floor(desk: Desk, executor: Executor, journal: Journal) -> list[Callable[[], None]]:
     """Told to agents, and kept in the status file; what is in the way goes to the prompt line and to the log.
 
-    A folder that another TurnDesk has, as its store tells, has that one's status.
+    A folder that another TurnDesk has, as its store tells, has that one's status. Returns what closes them.
     """
 
     def tell(why: str) -> None:
@@ -162,12 +174,7 @@ def _shop_floor(desk: Desk, executor: Executor, journal: Journal) -> Callable[[]
         open_ones.append(_daily_backup(desk, desk.lathe, journal))
     open_ones.append(open_office(desk, desk.lathe, journal, tell))
     open_ones.append(open_sharing(desk, journal))
-
-    def close() -> None:
-        for each in open_ones:
-            each()
-
-    return close
+    return open_ones
 
 
 def _daily_backup(desk: Desk, machine: Machine, journal: Journal) -> Callable[[], None]:

@@ -35,6 +35,7 @@ from app.offsets.offset_book import NONE_KEPT, OffsetBook
 from app.programs.run_history import RunHistory
 from app.special.part_count import PartCounter
 from core.access.access_table import Act
+from core.closing import ClosingStep, Wait, close_in_order, close_together, wait_for
 from core.executor.commands import (
     Command,
     ConfirmStart,
@@ -52,8 +53,10 @@ if TYPE_CHECKING:
     from core.executor.recorder import Recorder
     from core.machine.machine_model import Machine
 
+DRIVERS_CLOSE = 10.0  # s: an inverter is stopped, a driver process ends
 SWITCHES = frozenset({"single_block", "optional_stop", "cycle_repeat", "no_count"})
 SILENT = "CONTROL SILENT"
+LAST_PROGRAM = "last_program"  # setting: the path of the program that was loaded last
 BY_SCREEN = "key or finger at the screen"  # who holds, for the log
 
 
@@ -104,9 +107,14 @@ class Desk:
     lathe: Machine | None = None  # what the machine file says, for moves by hand
     one_hand: bool = False  # nothing real moves: palms may be pressed one after the other
     set_input: Callable[[str, bool], None] | None = None  # of a simulated machine
-    shut: Callable[[], None] = field(default=lambda: None)  # what drives the machine
+    stops: list[ClosingStep] = field(default_factory=list)  # close the machine: before everything else
+    shut: Callable[[], None] = field(default=lambda: None)  # closes the drivers
+    workers: list[ClosingStep] = field(default_factory=list)  # closed together, with what is attached
+    ends: list[ClosingStep] = field(default_factory=list)  # close what the workers write to, in this order
+    wait: Wait = wait_for  # of closing, for a step
     waiting: Callable[[], str] = str  # what of it waits in memory, in words
     differs: Callable[[], str] = str  # how the file on the disk is not the program on the desk
+    saved_here: Callable[[], None] = lambda: None  # called when the editor has written a program file
     not_kept: Callable[[], str] = str  # why events, parts and versions are not being kept
     clock: Callable[[], float] = time.monotonic
     time_of_day: Callable[[], str] = field(default=partial(time.strftime, "%H:%M:%S"))
@@ -157,8 +165,12 @@ class Desk:
         return self.hands.clock()
 
     def say(self, text: str) -> None:
-        """Put an answer on the prompt line; it stays until the next key or the next state."""
+        """Show an answer; it remains for 4 s or until the next key."""
         self.answers.say(text)
+
+    def warn(self, text: str) -> None:
+        """Show an answer that no key removes before its 4 s are over: input was dropped, for example."""
+        self.answers.say(text, lasting=True)
 
     def done(self, text: str) -> None:
         """Say that it was done: a success looks different from a refusal."""
@@ -169,7 +181,7 @@ class Desk:
         self.say(f"REFUSED: {why}")
 
     def ask(self, question: str, yes: Callable[[], None], key: str = YES) -> None:
-        """Ask before something is lost or moves: ``PRESS Y TO …, ESC TO …``.
+        """Ask before something is lost or moves: ``PRESS Y TO …, N TO …``. Esc is N.
 
         ``key`` means yes, and is never the one that asked; a finger has a target on the prompt line.
         """
@@ -186,12 +198,8 @@ class Desk:
 
     @property
     def notice(self) -> str:
-        """The answer to the last key, empty without one."""
+        """The answer to the last key, or without one the question; empty without either."""
         return self.answers.notice
-
-    @notice.setter
-    def notice(self, text: str) -> None:
-        self.answers.notice, self.answers.asked, self.answers.done = text, None, False
 
     @property
     def start_words(self) -> str:
@@ -244,12 +252,18 @@ class Desk:
         self.choose_setting("readout", self.readout.following.value)
 
     def close(self) -> None:
-        """End the loading and whatever drives the machine."""
-        self.session.close()
-        self.access.close()
-        for part in self._attached.values():
-            part.close()
-        self.shut()
+        """Stop the machine and close its drivers; then end the workers, all at once; then ``ends``.
+
+        No step waits without a limit, and none depends on another: see ``core/closing.py``.
+        """
+        drivers = ClosingStep("drivers", self.shut, DRIVERS_CLOSE)
+        close_in_order([*self.stops, drivers], self.wait)
+        close_together([*self._workers(), *self.workers], self.wait)
+        close_in_order(self.ends, self.wait)
+
+    def _workers(self) -> list[ClosingStep]:
+        own = [ClosingStep("loading", self.session.close), ClosingStep("levels", self.access.close)]
+        return own + [ClosingStep(kind.__name__, part.close) for kind, part in self._attached.items()]
 
     def attach(self, part: Attached) -> None:
         """Have the model of a page with the desk: it is found by its class, and ends with the desk."""
@@ -305,7 +319,8 @@ class Desk:
         if self.first_move is not None:
             self.first_move.see(snapshot, loaded)
         if snapshot.starts is not Starts.LINE:  # a line of MDI is no run of the program
-            self.counter.see(snapshot, self.post, self.say)
+            text = loaded.job.text_digest if loaded.job is not None else self.counter.text
+            self.counter.see(snapshot, self.post, self.say, text)
             self.record.see(snapshot, loaded)
             for watcher in self.watches:
                 watcher.see(snapshot, loaded)
@@ -313,6 +328,7 @@ class Desk:
         self._tell_part(snapshot, loaded)
         if self.settings.now.first_job:
             self.first_job.see(snapshot, loaded, self.counter.count)
+            self.keep(partial(self.first_job.save, self.settings.persistence))
         third = self.lathe.third_axis if self.lathe is not None else "C"
         table = self.lathe is None or self.lathe.table_turns
         view = status_of(
@@ -323,22 +339,19 @@ class Desk:
         return snapshot, view, loaded
 
     def prompt(self, snapshot: Snapshot, loaded: Loaded, page: str = "") -> str:
-        """The prompt line: the answer to the last key, or else what can be done now.
+        """The state's place: what can be done now. Question and answer have places of their own.
 
         ``page`` is what the page in front would say there; an alarm and an E-stop go before it.
         """
+        self.answers.expire(snapshot)
         if self._silence.is_silent:
             return prompt_line.CONTROL_SILENT
-        if self.answers.outlived(snapshot):
-            self.clear()
         if self.keyboard_away and snapshot.state in prompt_line.MOVING:
             return prompt_line.KEYBOARD_AWAY
         announced = prompt_line.announced(snapshot, starts_here=self.starts_here)
         return announced + self._prompt(snapshot, loaded, page)
 
     def _prompt(self, snapshot: Snapshot, loaded: Loaded, page: str) -> str:
-        if self.notice:
-            return self.notice
         if page:
             return prompt_line.alarm_of(snapshot, self.release_words) or page
         standing = prompt_line.prompt(snapshot, loaded, self.start_words, self.release_words)
@@ -346,8 +359,7 @@ class Desk:
             standing = f"{prompt_line.NO_START}: {self.first_move.refusal}"
         if snapshot.state is State.WAIT:
             standing = how_it_ends(snapshot, self.set_input is not None) or standing
-        other = self.differs() if snapshot.state in {State.IDLE, State.DISABLED} and not loaded.busy else ""
-        return " · ".join(each for each in (other, self._due(snapshot, standing), standing) if each)
+        return " · ".join(each for each in (self._due(snapshot, standing), standing) if each)
 
     def _due(self, snapshot: Snapshot, standing: str) -> str:
         """What is to be done some time soon; behind an alarm, an interrupted job or a refusal it can wait."""
@@ -370,7 +382,7 @@ class Desk:
         part, told = loaded.part, self._part_told
         self._part_told = part
         if part is not None and part is not told and part.warned and snapshot.state in UNDER_WAY:
-            self.say(tr("LOOK: {what}; H HOLDS THE FEED").format(what=part.warned[0]))
+            self.say(tr("LOOK: {what}; PAUSE HOLDS THE FEED").format(what=part.warned[0]))
 
     # --- program -------------------------------------------------------------------------------------
 
@@ -401,6 +413,7 @@ class Desk:
     def _load(self, path: Path) -> None:
         if self.may_choose():
             self.session.load(path, self.session.now.block_delete)
+            self.keep(partial(self.settings.persistence.save_setting, LAST_PROGRAM, str(path)))
 
     def begin_with(self, named: str | None) -> None:
         """At the start: the program that was interrupted, or else the one that is ``named``."""
@@ -440,7 +453,7 @@ class Desk:
         """Whether the control may be left; where something would be lost by it Y does ``close``."""
         waiting = self.waiting()
         if waiting:
-            words = tr("NOT KEPT, AND LOST BY CLOSING: {what}; MAKE ROOM, OR PRESS Y TO CLOSE, ESC TO STAY")
+            words = tr("NOT KEPT, AND LOST BY CLOSING: {what}; MAKE ROOM, OR PRESS Y TO CLOSE, N TO STAY")
             self.ask(words.format(what=waiting), close)
         return not waiting
 
@@ -453,7 +466,7 @@ class Desk:
         """Acknowledge an alarm; give up an interrupted program, after asking once."""
         state = self.snapshot().state
         if state in prompt_line.MOVING:
-            self.say("THE MACHINE IS MOVING: PRESS H FOR FEED HOLD FIRST")
+            self.say("THE MACHINE IS MOVING: PRESS PAUSE FOR FEED HOLD FIRST")
         elif state in prompt_line.INTERRUPTED:
             self.ask(prompt_line.GIVE_UP, self._give_up)
         else:
@@ -478,6 +491,12 @@ class Desk:
         else:
             self.clear()
             self.post(ConfirmStart(found.at))
+
+    def no(self) -> None:
+        """N: no to the question that is asked, or to the start at line 1 that was confirmed; never more."""
+        self.clear()
+        if self.snapshot().confirmed:
+            self.post(ConfirmStart(""))
 
     def enable(self) -> None:
         """Switch the drives on, after E-stop or power-up."""
@@ -512,8 +531,7 @@ class Desk:
 
     def answer(self) -> None:
         """Yes to what is asked, as long as the machine is in the state in which it was asked."""
-        if self.answers.outlived(self.snapshot()):
-            self.clear()
+        self.answers.expire(self.snapshot())
         self.answers.yes(self.hands.at())
 
     @property

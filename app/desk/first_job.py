@@ -6,11 +6,13 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from app.desk.interrupted_notice import NoticeRow
+from app.desk.persistence import Persistence
 from app.desk.program_loading import Loaded, Phase
 from app.desk.prompt_line import missing_tools
 from app.desk.translation import tr
 from core.executor.snapshot import CYCLE, Snapshot, State
 
+STEP = "first_job_step"  # setting
 CLOSE = "×"  # what the card's key presses, and shows
 _COUNTED = (("P", "NO COUNT"),)  # no lamp shows it while it is off, so a finger has it here
 
@@ -45,6 +47,19 @@ class FirstJob:
     at: int = 0
     _dry: bool = False  # a cycle runs that counts no part
     _parts: int | None = None
+    _saved: int = -1  # the step that is stored
+
+    @classmethod
+    def stored(cls, persistence: Persistence) -> FirstJob:
+        """Return the card at the step at which TurnDesk was closed. Raises StoreError."""
+        at = persistence.setting(STEP)
+        return cls(at, _saved=at) if isinstance(at, int) and 0 <= at <= len(STEPS) else cls()
+
+    def save(self, persistence: Persistence) -> None:
+        """Store the step if it has changed. Raises StoreError."""
+        if self.at != self._saved:
+            self._saved = self.at
+            persistence.save_setting(STEP, self.at)
 
     def see(self, snapshot: Snapshot, loaded: Loaded, parts: int) -> None:
         """Once a frame: go on as far as has been done. ``parts`` that were made."""
@@ -70,7 +85,7 @@ class FirstJob:
         """The card of now."""
         keys = ((CLOSE, tr("CLOSE")),)
         if self.at >= len(STEPS):
-            return NoticeRow(tr("FIRST JOB: DONE"), tr("F10, 7 SHOWS THIS CARD AGAIN"), keys, "run")
+            return NoticeRow(tr("FIRST JOB: DONE"), tr("F10, 7, RETURN SHOWS THIS CARD AGAIN"), keys, "run")
         step = STEPS[self.at]
         head = tr("FIRST JOB, STEP {number} OF {count}").format(number=self.at + 1, count=len(STEPS))
         own = tuple((name, tr(label)) for name, label in step.keys)

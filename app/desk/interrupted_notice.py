@@ -75,7 +75,7 @@ def may_go_on(loaded: Loaded) -> bool:
 def instead(found: InterruptedJob, name: str) -> str:
     """The question before another program takes the place of an interrupted one."""
     words = tr(
-        "T{tool} MAY STAND IN THE PART OF {program} LINE {line}: Y GIVES THAT JOB UP FOR {name}, ESC KEEPS IT"
+        "T{tool} MAY STAND IN THE PART OF {program} LINE {line}: Y GIVES THAT JOB UP FOR {name}, N KEEPS IT"
     )
     return words.format(tool=found.tool, program=found.program, line=found.line, name=name)
 
@@ -124,7 +124,7 @@ def _uncertain(found: InterruptedJob) -> str:
 
 def _figures(axes: Sequence[str], where: Sequence[float], snapshot: Snapshot, units: Units) -> str:
     """Slides only: where C stands is nothing that a hand can be in the way of."""
-    metric, twice = units.metric(snapshot.modal.metric), snapshot.modal.diameter
+    metric, twice = units.metric(snapshot.modal.metric), snapshot.reads_diameter
     found = [
         f"{name} {'Ø' if twice else 'R'}{formats.length(2 * at if twice else at, metric)}"
         if name == "X" and "Y" not in axes

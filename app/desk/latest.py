@@ -11,12 +11,14 @@ import threading
 import time
 from collections import deque
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from typing import TypeVar
 
+from app.desk.daemon_worker import DaemonWorker
+
 _log = logging.getLogger(__name__)
 
+ENDS = 2.0  # s that closing waits for work in hand
 T = TypeVar("T")
 Watch = Callable[[float], None]
 """Told how far slow work has come; it may raise AbandonedError, which has to be let through."""
@@ -85,10 +87,10 @@ class Latest:
     _asked: float = 0.0
     _closing: bool = False
     _running: bool = False
-    _pool: ThreadPoolExecutor = field(init=False)
+    _pool: DaemonWorker = field(init=False)
 
     def __post_init__(self) -> None:
-        self._pool = ThreadPoolExecutor(1, self.name) if self.beside is None else self.beside._pool
+        self._pool = DaemonWorker(self.name) if self.beside is None else self.beside._pool
 
     # --- the side that asks --------------------------------------------------------------------------
 
@@ -145,13 +147,16 @@ class Latest:
             self.poll()
 
     def close(self) -> None:
-        """End the thread: what was asked for is given up, what was queued is done to its end, unanswered."""
+        """End the thread: what was asked for is given up, what was queued is done to its end, unanswered.
+
+        Work that takes longer than ``ENDS`` seconds is left to the daemon thread.
+        """
         with self.lock:
             self._closing = True
             self.give_up()
             self.lock.notify_all()
         if self.beside is None:
-            self._pool.shutdown(wait=True)
+            self._pool.close(ENDS)
 
     def _begin(
         self, work: Callable[[Request], T], done: Callable[[T], None], failed: Failed, *, queued: bool

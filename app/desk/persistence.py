@@ -84,6 +84,10 @@ class Persistence:
         """What each program has done."""
         return ()
 
+    def runs_by_text(self) -> Mapping[str, RunRow]:
+        """Return what each program text has done, by ``program_texts.key_of_text``. Raises StoreError."""
+        return {}
+
     def run_started(self, program: str) -> None:
         """Note in the record that a run of this program begins."""
 
@@ -93,8 +97,8 @@ class Persistence:
     def cycle_finished(self, program: str, seconds: float) -> None:
         """Note the cycle time of one whole cycle, in seconds."""
 
-    def program_proved(self, program: str, result: str, planned: float | None) -> None:
-        """Note what proving found; ``planned`` is the forecast cycle time in seconds."""
+    def program_proved(self, program: str, result: str, planned: float | None, text: str) -> None:
+        """Store what proving found in this text; ``planned`` is the forecast cycle time in seconds."""
 
     def renamed(self, old: str, new: str) -> None:
         """Versions, count and record go with a program that gets another name."""

@@ -7,13 +7,17 @@ believe that the new one will run.
 
 from __future__ import annotations
 
+import logging
 import threading
+import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from app.desk.program_loading import Loaded
+from app.desk.translation import tr
 from core.drawings.drawing_file import is_drawing
+from core.executor.attempt import Attempt
 from core.language.source import Source, SourceError, load_source
 
 LISTED = 2000  # a folder with more programs than this is typed into, not looked through
@@ -89,21 +93,39 @@ def _files(folder: Path, taken: Callable[[str], bool]) -> Iterator[Path]:
 # --- the file on the disk -----------------------------------------------------------------------------
 
 
+_log = logging.getLogger(__name__)
 LOOK = 2.0  # seconds between two looks at the disk
-GONE = "{name} IS NOT ON THE DISK ANY MORE: WHAT IS SHOWN IS WHAT RUNS"
-CHANGED = "{name} HAS CHANGED ON THE DISK: F2 READS IT ANEW, THE START RUNS WHAT IS SHOWN"
-_Stamp = tuple[int, int]  # time of the last change in nanoseconds, bytes
+HANGS = 5.0  # seconds after which a look that has not returned counts as a file that cannot be read
+GONE = "{name} IS NOT ON THE DISK. CYCLE START RUNS THE LOADED TEXT"
+CHANGED = "{name} ON THE DISK IS NOT THE LOADED TEXT. CYCLE START RUNS THE LOADED TEXT. F2: RELOAD"
+UNREADABLE = "{name} CANNOT BE READ: CHECK THE PROGRAM FOLDER. CYCLE START RUNS THE LOADED TEXT"
+_Said = tuple[str, str]  # the text, and the name of the file in it
+_SAME = ("", "")
+_Stamp = tuple[int, int]  # time of the last change in nanoseconds, bytes; an error number and -1
 
 
 class ProgramFile:
     """Looks at the file now and then, on a thread of its own: a share that hangs keeps nobody waiting."""
 
-    def __init__(self, loaded: Callable[[], Loaded]) -> None:
-        self._loaded = loaded
-        self._seen: tuple[Source, tuple[_Stamp | None, ...]] | None = None  # whose files were compared last
+    def __init__(self, loaded: Callable[[], Loaded], clock: Callable[[], float] = time.monotonic) -> None:
+        self._loaded, self._clock = loaded, clock
+        self._since: float | None = None  # when the look that is under way began
+        self._wanted = threading.Event()
+        self._seen: tuple[Source, tuple[_Stamp, ...]] | None = None  # whose files were compared last
         self._closing = threading.Event()
         self._thread = threading.Thread(target=self._watch, name="program-file", daemon=True)
-        self.differs = ""
+        self._found: tuple[Source | None, _Said] = (None, _SAME)  # of which text, and what is to be said
+
+    @property
+    def differs(self) -> str:
+        """How the files differ from the loaded text, or that they cannot be read; empty while they agree."""
+        loaded, since = self._loaded(), self._since
+        if loaded.source is None:
+            return ""
+        if since is not None and self._clock() - since > HANGS:
+            return tr(UNREADABLE).format(name=loaded.name)
+        source, said = self._found
+        return tr(said[0]).format(name=said[1]) if said[0] and source is loaded.source else ""
 
     def start(self) -> None:
         """Begin to look at the file, on a thread of its own."""
@@ -112,37 +134,72 @@ class ProgramFile:
     def close(self) -> None:
         """Look no more; a look that hangs in the system is left behind."""
         self._closing.set()
+        self._wanted.set()
+
+    def hurry(self) -> None:
+        """Look at once: the file has just been written here."""
+        self._wanted.set()
 
     def look(self) -> None:
         """Compare the files with what was read, where one has been touched since the last look."""
         loaded = self._loaded()
         source, path = loaded.source, loaded.path
         if source is None or path is None:
-            self._seen, self.differs = None, ""
+            self._seen = None
             return
+        self._since = self._clock()
+        try:
+            self._compare(source, path)
+        finally:
+            self._since = None
+
+    def _compare(self, source: Source, path: Path) -> None:
         texts = {path: source} | {path.parent / each.name: each for each in source.subprograms}
         stamps = tuple(_stamp(file) for file in texts)
         if self._seen is None or self._seen[0] is not source or self._seen[1] != stamps:
-            self._seen = (source, stamps)
-            self.differs = next(filter(None, (_difference(file, text) for file, text in texts.items())), "")
+            found = ((_difference(file, text), file.name) for file, text in texts.items())
+            said = next((each for each in found if each[0]), _SAME)
+            unread = said[0] == UNREADABLE  # its stamp may not change: read it at every look
+            self._seen = None if unread else (source, stamps)
+            self._found = (source, said)
 
     def _watch(self) -> None:
-        while not self._closing.wait(LOOK):
+        while not self._closing.is_set():
+            self._wanted.wait(LOOK)
+            self._wanted.clear()
+            if not self._closing.is_set():
+                self.watch_once()
+
+    def watch_once(self) -> None:
+        """Look; the watch survives whatever the look raises, and shows that the file cannot be read."""
+        with Attempt() as trial:
             self.look()
+        if trial.error is not None:
+            _log.error("the program's file cannot be watched", exc_info=trial.error)
+            loaded = self._loaded()
+            self._seen, self._found = None, (loaded.source, (UNREADABLE, loaded.name))
 
 
-def _stamp(file: Path) -> _Stamp | None:
+def _stamp(file: Path) -> _Stamp:
     try:
         found = file.stat()
-    except OSError:
-        return None
+    except OSError as error:
+        return error.errno or 0, -1
     return found.st_mtime_ns, found.st_size
 
 
 def _difference(file: Path, read: Source) -> str:
-    """What is to be told of this file; empty when it holds what was read."""
+    """Return what is to be said of this file; empty if it contains what was read."""
     try:
         now = load_source(file)
-    except SourceError:
-        return (CHANGED if file.exists() else GONE).format(name=file.name)
-    return "" if now.text == read.text else CHANGED.format(name=file.name)
+    except SourceError as error:
+        return _no_text(error)
+    return "" if now.text == read.text else CHANGED
+
+
+def _no_text(error: SourceError) -> str:
+    """What is to be said of a file from which no program text could be read."""
+    cause = error.__cause__
+    if not isinstance(cause, OSError):
+        return CHANGED  # it was read, and is no program
+    return GONE if isinstance(cause, (FileNotFoundError, NotADirectoryError)) else UNREADABLE

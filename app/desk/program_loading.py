@@ -71,14 +71,6 @@ class PartProved:
         return tuple(sorted((*diagnostics, *own), key=lambda each: (each.line, each.column)))
 
 
-def at_a_machine(found: Diagnostic) -> Diagnostic:
-    """A finding with the weight that it has there: what rests on something assumed is a warning at most."""
-    if found.severity is not Severity.ERROR or not found.assumed:
-        return found
-    what = ", ".join(found.assumed)
-    return replace(found, severity=Severity.WARNING, hint=f"{found.hint} Assumed: {what}.")
-
-
 def _no_part(_picture: Picture, _watch: Watch) -> PartProved | None:
     return None
 

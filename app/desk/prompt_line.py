@@ -1,7 +1,7 @@
 """The prompt line: what the operator can do now, and what the desk answers to the last key.
 
-An answer stays until the next key or the next state of the machine; without one the prompt follows from one
-snapshot and the program on the desk.
+State, question and answer have three separate places. An answer remains for 4 s or until the next key; the
+prompt follows from one snapshot and the loaded program.
 """
 
 from __future__ import annotations
@@ -24,9 +24,10 @@ from core.tool_edges import edge_name
 OF_PROGRAM: frozenset[Code] = frozenset({"program-stop", "optional-stop"})  # stops with a message
 NOT_FOUND = "FILE NOT FOUND, PRESS ANY KEY TO CONTINUE"
 ASK_FILE = "FILE TO BE PROCESSED"
+CHOOSE_FILE = "TYPE A NAME OR MARK A PROGRAM WITH THE ARROWS, THEN PRESS RETURN; ESC CLOSES THE LIST"
 NONE_NAMED = "TYPE A NAME, OR MARK A PROGRAM WITH THE ARROWS, BEFORE EDITING"
 ONE_PALM = "ONE PALM BUTTON ALONE DOES NOT START: PRESS BOTH WITHIN HALF A SECOND"
-ONE_HAND = "PRESS BOTH PALMS WITHIN HALF A SECOND; FOR ONE HAND: F10 7, PALM BUTTONS ON THE SCREEN"
+ONE_HAND = "PRESS BOTH PALMS WITHIN HALF A SECOND; FOR ONE HAND: F10, 7, RETURN, PALM BUTTONS ON THE SCREEN"
 STOP_HELD = "A KEY THAT STOPS IS HELD DOWN: LET IT GO FIRST"
 BOTH_UP = "ONE PALM BUTTON WAS HELD LONGER THAN HALF A SECOND: LET BOTH GO, THEN PRESS BOTH"
 CONTROL_SILENT = "THE CONTROL DOES NOT ANSWER: PRESS E-STOP; WHAT IS SHOWN IS NOT OF NOW"
@@ -34,8 +35,8 @@ NOT_HERE = "CYCLES ARE STARTED ON THE AUTOMATIC PAGE: PRESS F1, THEN F2"
 RESTORING = "NO START: A BACKUP IS BEING RESTORED"
 STALE = "NO START: THE PROGRAM IS BEING READ ANEW"
 NO_START = "WILL NOT START"  # how the standing prompt begins then
-GIVE_UP = "PRESS Y TO GIVE THE PROGRAM UP, ESC TO KEEP IT"
-TWIST_OUT = "PRESS Y TO TWIST THE E-STOP OUT, ESC TO LEAVE IT IN"
+GIVE_UP = "PRESS Y TO GIVE THE PROGRAM UP, N TO KEEP IT"
+TWIST_OUT = "PRESS Y TO TWIST THE E-STOP OUT, N TO LEAVE IT IN"
 NO_MUSHROOM = "THE E-STOP IS THE RED BUTTON AT THE MACHINE: HIT IT. THIS KEY HAS HELD THE FEED"
 HOW_TO_HOLD = "FEED HOLD (PAUSE, H OR ESC) HOLDS THE FEED, STOP (SCROLL LOCK) IS THE E-STOP"
 KEYBOARD_AWAY = "ANOTHER WINDOW HAS THE KEYBOARD: NO KEY STOPS HERE. PRESS THE BUTTONS, OR TOUCH THIS WINDOW"
@@ -187,24 +188,29 @@ YES = "Y"
 READ = 0.5  # s: sooner nobody has read a question, and what is pressed is meant for something else
 
 
-_RESTS: dict[State | None, State] = {State.JOG: State.IDLE, State.HOLDING: State.HOLD}  # by itself
+SHOWN = 4.0  # s that an answer remains where no key is pressed
 
 
 @dataclass(slots=True)
 class PromptAnswers:
-    """One answer at a time; it stays until the next key or the next state of the machine.
+    """One answer and one question, each in its own place next to the state.
 
-    An answer may be a question: what is lost for good is done by a key of its own, and never by the key that
+    An answer remains for ``SHOWN`` seconds or until the next key. No change of the machine's state
+    removes it. A question belongs to the state in which it was asked: Y does what it asks,
+    N and Esc never do anything. What is lost for good is done by a key of its own, and never by the key that
     asked. ``clock`` is monotonic.
     """
 
     snapshot: Callable[[], Snapshot]
     not_kept: Callable[[], str]  # why events, parts and versions are not being kept; empty while they are
     clock: Callable[[], float]
-    notice: str = ""
+    answer: str = ""
+    question: str = ""
     asked: Callable[[], None] | None = None  # what yes does now
     key: str = YES  # that means yes
-    done: bool = False  # the notice tells that something was done
+    done: bool = False  # the answer reports a success
+    lasting: bool = False  # no key removes the answer before its time is over
+    _said_at: float = 0.0
     _since: float = 0.0
     _in: State | None = None
     _refused: str = ""
@@ -212,23 +218,33 @@ class PromptAnswers:
     _heard: deque[Event] = field(default_factory=lambda: deque(maxlen=HEARD))
 
     @property
+    def notice(self) -> str:
+        """The answer, or without one the question."""
+        return self.answer or self.question
+
+    @property
     def sort(self) -> Sort:
-        """What stands on the prompt line while there is a notice."""
-        if self.asked is not None:
+        """What the notice is."""
+        if not self.answer and self.asked is not None:
             return Sort.ASKED
         return Sort.DONE if self.done else Sort.ANSWER
 
-    def say(self, text: str, *, done: bool = False) -> None:
-        """Put an answer on the prompt line; ``done``: it tells of a success."""
-        self.notice, self.asked, self.done = text, None, done
-        self._in = self.snapshot().state
+    def say(self, text: str, *, done: bool = False, lasting: bool = False) -> None:
+        """Show an answer; ``done``: it reports a success. A ``lasting`` one outlives keys, too.
+
+        A lasting answer is replaced by nothing but another lasting one until its time is over.
+        """
+        if self.lasting and self.answer and not lasting and self.clock() - self._said_at < SHOWN:
+            return
+        self.answer, self.done, self.lasting, self._said_at = text, done, lasting, self.clock()
 
     def ask(self, question: str, yes: Callable[[], None], key: str = YES) -> None:
-        """Ask on the prompt line; asked again it is the same question, and no answer."""
-        if self.asked is not None and self.notice == question:
+        """Ask a question; asked again it is the same question, and no answer."""
+        if self.asked is not None and self.question == question:
             return
-        self.say(question)
-        self.asked, self.key, self._since = yes, key, self.clock()
+        self.take_back()
+        self.question, self.asked, self.key, self._since = question, yes, key, self.clock()
+        self._in = self.snapshot().state
 
     def read(self, at: float) -> bool:
         """Whether a question stands, and has stood long enough at this time to have been read."""
@@ -242,16 +258,22 @@ class PromptAnswers:
             asked()
 
     def take_back(self) -> None:
-        """Nothing is said or asked any more."""
-        self.notice, self.asked = "", None
+        """Remove the question, and the answer unless it is a lasting one."""
+        self.question, self.asked = "", None
+        if not self.lasting:
+            self.answer = ""
 
-    def outlived(self, snapshot: Snapshot) -> bool:
-        """Whether the answer belongs to a state that is over.
+    def next_key(self) -> None:
+        """Remove the answer to the key before; a question remains."""
+        if not self.lasting:
+            self.answer = ""
 
-        Coming to rest ends none that asks nothing: it takes less time than reading.
-        """
-        rest = _RESTS.get(self._in) if self.asked is None else None
-        return bool(self.notice) and snapshot.state not in {self._in, rest}
+    def expire(self, snapshot: Snapshot) -> None:
+        """Remove an answer whose time is over, and a question of another state of the machine."""
+        if self.answer and self.clock() - self._said_at >= SHOWN:
+            self.answer, self.lasting = "", False
+        if self.asked is not None and snapshot.state is not self._in:
+            self.question, self.asked = "", None
 
     def hear(self, event: Event) -> None:
         """What the executor has to say; it may be called from its thread."""
@@ -272,8 +294,6 @@ class PromptAnswers:
             elif event.kind == "uncounted":
                 self.say(f"NOT COUNTED AS A PART: {event.text}")
         if snapshot.start_refused != self._refused:
-            if self.notice == f"NO START: {self._refused}":
-                self.notice = ""  # it is not so any more
             self._refused = snapshot.start_refused
             if self._refused:
                 self.say(f"NO START: {self._refused}")
@@ -283,8 +303,6 @@ class PromptAnswers:
         """A disk that fails in the middle of a run is told once, not found out the day after."""
         trouble = self.not_kept()
         if trouble != self._not_kept:
-            if self.notice == f"NOT KEPT: {self._not_kept}":
-                self.notice = ""  # it is not so any more
             self._not_kept = trouble
             if trouble:
                 self.say(f"NOT KEPT: {trouble}")

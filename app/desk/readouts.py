@@ -245,7 +245,7 @@ def position_figures(
 
     ``metric``: mm, else inches. C is a row of a lathe only ``with_c``, under the name of ``third_axis``.
     """
-    diameter = snapshot.modal.diameter
+    diameter = snapshot.reads_diameter
     beside = Readout.POSITION if readout is Readout.TO_GO else Readout.TO_GO
     large, small = (_figures(snapshot, r, metric, diameter) for r in (readout, beside))
     mark = "" if snapshot.axes != LATHE else "Ø" if diameter else "R"
@@ -268,7 +268,10 @@ def _words(snapshot: Snapshot, readout: Readout) -> str:
     """What X is on a lathe; on a mill the system that the figures count in."""
     if snapshot.axes != LATHE:
         return system_words(None if readout is Readout.HOME else snapshot.swivel)
-    return "X IS A DIAMETER" if snapshot.modal.diameter else "X IS A RADIUS"
+    words = tr("X IS A DIAMETER") if snapshot.reads_diameter else tr("X IS A RADIUS")
+    if snapshot.reads_diameter == snapshot.modal.diameter:
+        return words
+    return f"{words}  ·  {tr('CONTROL IN G72 Ø') if snapshot.modal.diameter else tr('CONTROL IN G73 R')}"
 
 
 def _unit(metric: bool, control: bool) -> str:
@@ -301,6 +304,7 @@ class FeedFigures:
     actual: str
     actual_unit: str
     override: float
+    prefix: str = ""  # MM before a metric feed, as the control shows it
 
 
 @dataclass(frozen=True, slots=True)
@@ -342,6 +346,7 @@ def feed_figures(snapshot: Snapshot, metric: bool) -> FeedFigures:
         actual=measured,
         actual_unit=unit,
         override=snapshot.feed_override,
+        prefix="MM" if metric else "",
     )
 
 

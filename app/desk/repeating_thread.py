@@ -5,6 +5,8 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable
 
+ENDS = 2.0  # s that closing waits for a look
+
 
 class RepeatingThread:
     """Calls ``look`` after ``first`` s, then every ``every`` s; its name is what the watchdog knows."""
@@ -24,10 +26,10 @@ class RepeatingThread:
         self._thread.start()
 
     def close(self) -> None:
-        """A look that is under way is finished."""
+        """Wait ``ENDS`` seconds at most for a look that is under way; one that hangs is left running."""
         self._closing.set()
         if self._thread.is_alive():
-            self._thread.join()
+            self._thread.join(ENDS)
 
     def _repeat(self) -> None:
         wait = self._first

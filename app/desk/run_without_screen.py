@@ -152,8 +152,8 @@ class HeadlessRun:
 
     def _ended(self) -> Outcome:
         snapshot = self._executor.snapshot
-        if snapshot.alarms:
-            alarm = snapshot.alarms[-1]
+        alarm = snapshot.alarms[-1] if snapshot.alarms else snapshot.stop
+        if alarm is not None and snapshot.state is not State.IDLE:  # an E-stop is a stop, not an alarm
             return self._outcome("alarm", f"{alarm.text}: {alarm.cause}; {alarm.remedy}")
         if snapshot.start_refused:
             return self._outcome("refused", snapshot.start_refused)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 from app.desk.arithmetic import CHARACTERS, LONGEST
@@ -22,11 +22,24 @@ def following(choices: Iterable[T], now: T) -> T:
     return order[(order.index(now) + 1) % len(order) if now in order else 0]
 
 
+class RefusedText(str):
+    """A typed value that was refused: the next character replaces it, Back corrects it."""
+
+    __slots__ = ()
+
+
+def refused(text: str) -> str:
+    """Return a typed text marked as refused; a name is not marked, as it is corrected and not retyped."""
+    return text if set(text) - CHARACTERS else RefusedText(text)
+
+
 def edited(text: str, key: str, longest: int = LONGEST) -> str:
     """A text that is typed, after one more key: a character, ``Back`` or ``Delete``."""
     if key == "Back":
         return text[:-1]
-    return "" if key == "Delete" else (text + key)[:longest]
+    if key == "Delete":
+        return ""
+    return key if isinstance(text, RefusedText) else (text + key)[:longest]
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,6 +75,10 @@ class Sheet:
     raw: frozenset[int] = frozenset()
     figures: frozenset[int] = frozenset()  # columns that stand at the right, as figures do
     tall: bool = False  # rows high enough for two lines and a picture
+    refused: bool = field(init=False)  # the next character replaces the text
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "refused", isinstance(self.text, RefusedText))
 
 
 class Key(NamedTuple):
@@ -77,6 +94,11 @@ class Entry:
 
     words: bool = False
     text: str = ""
+    offered: str = ""  # a text that the first character replaces, and Back edits
+
+    def offer(self, text: str) -> None:
+        """Start with a text that was not typed."""
+        self.text = self.offered = text
 
     def takes(self, key: str) -> bool:
         """Whether a character belongs to it."""
@@ -86,5 +108,6 @@ class Entry:
         """A key; False when it means nothing here. Return is the caller's."""
         taken = self.takes(key) or key in {"Back", "Delete"}
         if taken:
-            self.text = edited(self.text, key)
+            replaced = self.takes(key) and self.text == self.offered
+            self.text, self.offered = edited("" if replaced else self.text, key), ""
         return taken

@@ -42,7 +42,7 @@ def how_it_ends(snapshot: Snapshot, simulated: bool = False) -> str:
         return ""
     words = tr("THE PROGRAM WAITS FOR {what}").format(what=waits_for(snapshot))
     if simulated:
-        words += "  ·  " + tr("F10, 3, F4 SWITCHES THE SIMULATED INPUTS")
+        words += "  ·  " + tr("F10, 3, RETURN, F4 SWITCHES THE SIMULATED INPUTS")
     return f"{words}  ·  {tr(GIVES_UP)}"
 
 

@@ -14,7 +14,7 @@ from pathlib import Path
 
 from app.desk.desk import Desk
 from app.desk.latest import Latest
-from app.desk.program_loading import LoadingSteps
+from app.desk.program_loading import Loaded, LoadingSteps
 from app.desk.prompt_line import UNDER_WAY
 from app.desk.readouts import TURNING
 from app.desk.translation import tr
@@ -53,6 +53,7 @@ class LeftProgram:
     path: Path
     changed: bool
     to_desk: bool
+    text: str = ""
 
 
 @dataclass(slots=True)
@@ -142,6 +143,7 @@ class Editor:
 
     def _opened(self, document: Document) -> None:
         self.document, self.stage, self._changed = document, Stage.OPEN, False
+        self.proof.forget()
         self._put(document.text)
         self.drafts.recover(document, self._recovered)
 
@@ -157,6 +159,11 @@ class Editor:
         self.text_number += 1
 
     # --- writing -------------------------------------------------------------------------------------
+
+    @property
+    def was_saved(self) -> bool:
+        """Whether something was saved since the document was opened."""
+        return self._changed
 
     @property
     def name(self) -> str:
@@ -231,7 +238,7 @@ class Editor:
     def leave(self, text: str, *, to_desk: bool = False) -> None:
         """Save what has changed, then go; an untouched new file is forgotten.
 
-        ``to_desk``: it was left to be the program of the desk. Who has only looked changes nothing there.
+        ``to_desk``: it is loaded then (F3); otherwise the loaded program stays as it is (F1).
         """
         document, self._to_desk = self.document, to_desk
         if document is None or self.stage is not Stage.OPEN:
@@ -288,7 +295,8 @@ class Editor:
 
     def _go(self, document: Document) -> None:
         self._shut()
-        self.left(LeftProgram(document.path, self._changed, self._to_desk))
+        text = with_last_line_ended(document.text)
+        self.left(LeftProgram(document.path, self._changed, self._to_desk, text))
 
     def _shut(self) -> None:
         if self.document is not None:
@@ -340,21 +348,42 @@ def enter(desk: Desk, editor: Editor) -> bool:
 
 
 def _take_up(desk: Desk, left: LeftProgram) -> None:
-    """The program on the desk is read and proved anew when its text has changed.
-
-    Another one comes there only when it was written and left for that; to look at it changes nothing.
-    """
+    """Load the program if it was left by F3 and is not loaded yet; otherwise report what stays loaded."""
     path, now = left.path, desk.session.now
-    if path != now.path and not (left.to_desk and (left.changed or now.path is None)):
-        stays = messages.SAVED_ONLY if left.changed else messages.LOOKED
-        if now.path is None:
-            stays = messages.SAVED_NONE
-        desk.done(tr(stays).format(name=path.name, other=now.name))
-    elif path == now.path and not left.changed:
-        return
+    if left.changed:
+        desk.saved_here()
+    if not left.to_desk:
+        if left.changed or path != now.path:
+            desk.done(tr(_stays(left, now)).format(name=path.name, other=now.name))
+    elif not _is_to_load(left, now):
+        if path != now.path:
+            desk.done(tr(messages.LOOKED).format(name=path.name, other=now.name))
     elif desk.snapshot().state in UNDER_WAY:
         desk.say(tr(messages.RELOAD))  # somebody started a cycle at the station meanwhile
     elif path == now.path:
         desk.session.load(path, now.block_delete)
     else:
         desk.put_on_desk(path)
+
+
+def _stays(left: LeftProgram, now: Loaded) -> str:
+    if now.path is None:
+        return messages.SAVED_NONE
+    if not left.changed:
+        return messages.LOOKED
+    return messages.SAVED_SAME if left.path == now.path else messages.SAVED_ONLY
+
+
+def _is_to_load(left: LeftProgram, now: Loaded) -> bool:
+    """Return whether F3 loads it: it was written or is not what is loaded. Looking never loads another."""
+    if left.changed or now.path is None:
+        return True
+    return left.path == now.path and not _is_loaded(left.text, now)
+
+
+def _is_loaded(text: str, now: Loaded) -> bool:
+    """Return whether the loaded program has this text; line ends do not count."""
+    if now.source is None:
+        return False
+    loaded = now.source.text.replace("\r\n", "\n").replace("\r", "\n")
+    return with_last_line_ended(loaded) == text

@@ -146,9 +146,13 @@ class EditorPage(Page):
             found |= {"Measure": self.back, "View": path.next_view}
         return found
 
+    def esc_holds(self) -> bool:
+        """Return whether Esc holds the feed while something moves; beside a question it is no."""
+        return not self.editor.notice and self.editor.stage is not Stage.OFFERED
+
     def escape(self) -> bool:
         """A question is taken back, else the answer of the last key; what has nothing to save is left."""
-        if self._moving:
+        if self._moving and self.esc_holds():
             self.desk.feed_hold()  # what a hand hits first must do the safe thing on every page
         elif self.editor.stage is Stage.OFFERED:
             self.editor.abort()
@@ -242,12 +246,21 @@ class EditorPage(Page):
     def _text_keys(self) -> Keys:
         return {
             2: Key("SAVE", self.save),
-            3: Key("LEAVE", partial(self.leave_to, page_table.AUTOMATIC)),
+            3: Key(self._load_label(), partial(self.leave_to, page_table.AUTOMATIC)),
             4: Key("FIND", partial(self.enter, Mode.FIND)),
             5: Key("GO TO", partial(self.enter, Mode.GO_TO)),
             6: Key("YES", self.answer) if self.editor.asked else Key("NEXT ERR", self.next_finding),
             7: Key("HISTORY", partial(self.enter, Mode.HISTORY)),
         }
+
+    def _load_label(self) -> str:
+        """What F3 does: it loads what was written, and what is not the loaded text."""
+        editor, now = self.editor, self.desk.session.now
+        if self.typed_text.dirty:
+            return "SAV+LOAD"
+        document = editor.document
+        other = document is not None and document.path == now.path and self.desk.differs()
+        return "LOAD" if editor.was_saved or other or now.path is None else "LEAVE"
 
     def enter(self, mode: Mode) -> None:
         """From now on the keys are for this."""
@@ -408,6 +421,7 @@ class EditorPage(Page):
             self.editor.take_name(entry)
         elif (number := line_of(entry)) is None or number > self.field.blockCount():
             self.ask.answer = f"A NUMBER FROM 1 TO {self.field.blockCount()}"
+            self.ask.first.selectAll()  # the next digit replaces it
         else:
             self.enter(Mode.TEXT)
             self.go_to(number)

@@ -85,6 +85,11 @@ class LiveProof:
         self.worker.ask(work, self._show, self._failed)
         return self._number
 
+    def forget(self) -> None:
+        """Drop the findings: another document is opened, and these are of the one before."""
+        self._number += 1
+        self._now = Findings(self._number)
+
     def close(self) -> None:
         """Give up what is being proved and end the worker."""
         self.worker.close()

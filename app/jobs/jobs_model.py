@@ -13,7 +13,7 @@ from app.desk.desk import Desk
 from app.desk.formats import NOTHING, duration
 from app.desk.machine_status import Tone
 from app.desk.prompt_line import UNDER_WAY
-from app.desk.sheet import STEPS, Entry, Key, Row, Sheet
+from app.desk.sheet import STEPS, Entry, Key, Row, Sheet, refused
 from app.desk.translation import tr
 from app.jobs.job_setup import ProvedJob, Station, findings, missing, stations, tool_name
 from app.jobs.jobs_watch import JobsWatch
@@ -251,7 +251,7 @@ class JobsModel:
         if job is None:
             self.desk.say(NONE_YET)
             return
-        words = tr("PRESS Y TO TAKE {program} OUT OF THE QUEUE, {made} OF {wanted} MADE; ESC KEEPS IT")
+        words = tr("PRESS Y TO TAKE {program} OUT OF THE QUEUE, {made} OF {wanted} MADE; N KEEPS IT")
         words = words.format(program=job.program, made=job.made, wanted=job.wanted)
         self.desk.ask(
             words,
@@ -266,7 +266,7 @@ class JobsModel:
         if not done:
             self.desk.done("NO JOB IS DONE YET: THERE IS NOTHING TO CLEAR")
             return
-        words = tr("PRESS Y TO TAKE {count} JOBS THAT ARE DONE OUT OF THE QUEUE, ESC TO KEEP THEM")
+        words = tr("PRESS Y TO TAKE {count} JOBS THAT ARE DONE OUT OF THE QUEUE, N TO KEEP THEM")
         self.desk.ask(words.format(count=done), partial(self._write, _clear_done))
 
     def _write(
@@ -308,6 +308,7 @@ class JobsModel:
         try:
             wanted = whole_number(text)
         except EntryError as error:
+            self.entry.text = refused(self.entry.text)
             self.desk.refuse(str(error))
             return
         program, last = self.program, len(self.jobs)

@@ -14,7 +14,7 @@ from app.desk.arithmetic import CHARACTERS, LONGEST, EntryError, value_of
 from app.desk.desk import Desk
 from app.desk.prepared_line import PreparedLine, ProveLine
 from app.desk.readouts import TURNING
-from app.desk.sheet import edited
+from app.desk.sheet import edited, refused
 from app.desk.translation import tr
 from core.executor.commands import ForceOutput, Reset, SpindleStop
 from core.executor.snapshot import CYCLE, STOPPED, Snapshot, Starts, State
@@ -238,10 +238,12 @@ class HandFunctions:
         try:
             rpm = value_of(self.text)
         except EntryError as error:
+            self.text = refused(self.text)
             self.desk.say(tr("REFUSED: {why}").format(why=error))
             return
         highest = self.desk.snapshot().spindle_limit or self.machine.spindle.rpm_max
         if not 0.0 < rpm <= highest:
+            self.text = refused(self.text)
             self.desk.say(
                 tr("REFUSED: {rpm:g} RPM IS NOT BETWEEN 0 AND {highest:g}").format(rpm=rpm, highest=highest)
             )

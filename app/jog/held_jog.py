@@ -134,7 +134,7 @@ class HeldJog:
 
     def look(self, snapshot: Snapshot) -> None:
         """Once a frame: renew the lease while everything is as it should be, or let it go."""
-        self.mode = Mode(snapshot.modal.metric, snapshot.modal.diameter)
+        self.mode = Mode(snapshot.modal.metric, snapshot.reads_diameter)
         held, now = self.held, self.clock()
         if held is None:
             self._say_again(snapshot)

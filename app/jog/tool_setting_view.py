@@ -52,6 +52,18 @@ class ToolPanel(Panel):
         self._tip = tool.tip(snapshot)
         self._shown = (tool.number, tool.row, tool.asked, tool.from_master(), tool.book.master)
 
+    @property
+    def shown_mode(self) -> Mode:
+        """The unit of the readout above: a position is never shown in two units on one page."""
+        return Mode(self._model.desk.settings.units.metric(self._mode.metric), self._mode.diameter)
+
+    @property
+    def tip_words(self) -> str:
+        """What the position of the tip counts from, and in which unit where that is not the panel's."""
+        if self.shown_mode.metric == self._mode.metric:
+            return tr("TIP FROM PART ZERO")
+        return tr("TIP FROM PART ZERO, MM") if self.shown_mode.metric else tr("TIP FROM PART ZERO, INCH")
+
     def draw(self, painter: Painter) -> None:
         unit = tr("MM") if self._mode.metric else tr("INCH")
         self.frame(painter, f"{tr('TOOL SETTING')}  ·  {unit}")
@@ -80,8 +92,8 @@ class ToolPanel(Panel):
         self._stands(painter, room.adjusted(tip.right() + 1.2 * u - room.x(), 0, 0, 0))
 
     def _stands(self, painter: Painter, room: QRectF) -> None:
-        u, mode = self.look.u, self._mode
-        painter.write(QRectF(room.x(), room.y(), room.width(), 2.0 * u), tr("ITS TIP IS NOW AT"), 1.5, "soft")
+        u, mode = self.look.u, self.shown_mode
+        painter.write(QRectF(room.x(), room.y(), room.width(), 2.0 * u), self.tip_words, 1.5, "soft")
         high = (room.height() - 2.0 * u) / 2
         if self._tip is None:
             painter.write(room.adjusted(0, 2 * u, 0, 0), not_set(), 2.8, "soft")

@@ -10,7 +10,7 @@ from app.desk.arithmetic import CHARACTERS, EntryError, value_of
 from app.desk.desk import Desk
 from app.desk.machine_status import Tone
 from app.desk.prompt_line import UNDER_WAY
-from app.desk.sheet import edited
+from app.desk.sheet import edited, refused
 from app.desk.translation import tr
 from app.offsets.offset_history import LETTERS, refusal
 from app.offsets.offset_table import OffsetTable
@@ -251,11 +251,13 @@ class CellTable(OffsetTable):
         try:
             new = value()
         except EntryError as error:
+            self.text = refused(self.text)
             self.desk.say(tr("REFUSED: {why}").format(why=error))
             return False
         if self.stored is not None and self.value_before == new:
             self.desk.say(tr("{which} IS AS IT WAS").format(which=self.which))
         elif why := self.keep({self.name: new, **also(new)}, self._reason(typed)):
+            self.text = refused(self.text)
             self.desk.say(why)
             return False
         self.drop()

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from concurrent.futures import Future
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from app.desk.access import Access
 from app.offsets.offset_acts import act_of
@@ -33,6 +33,32 @@ NONE_KEPT = "NO OFFSETS ARE KEPT HERE"
 SAVING = "STILL SAVING THE CHANGE BEFORE: PRESS RETURN AGAIN"
 
 
+class OffsetRows(NamedTuple):
+    """All offsets of a store at one moment."""
+
+    tools: dict[int, ToolRow]
+    secondary: dict[int, SecondaryRow]
+    zero: dict[int, ZeroRow]
+    shapes: dict[int, ShapeRow]
+    mill_tools: dict[int, MillRow]
+    presets: dict[int, PresetRow]
+    preset: int
+
+
+def rows_of_store(store: Store) -> OffsetRows:
+    """Read all offsets. Raises StoreError."""
+    presets = store.presets()
+    return OffsetRows(
+        store.tools(),
+        store.secondary(),
+        store.zero_offsets(),
+        store.shapes(),
+        store.mill_tools(),
+        presets,
+        preset_of(store.setting(PRESET), presets),
+    )
+
+
 @dataclass(slots=True)
 class OffsetBook:
     """Tool, secondary and zero offsets and tool shapes by number, mm and degrees, X a radius.
@@ -54,7 +80,7 @@ class OffsetBook:
     at: int = 1  # the tool that the pages of tools stand at
     changes: int = 0  # how many were saved
     _saving: Future[Any] | None = None
-    _reopened: tuple[Store | None, str] | None = None  # by another thread, for the next poll
+    _reopened: tuple[Store | None, str, OffsetRows | None] | None = None  # by another thread, for a poll
 
     def __post_init__(self) -> None:
         self.read()
@@ -85,11 +111,22 @@ class OffsetBook:
     def read(self) -> None:
         """Take the values of the store; it answers at once, also while it is being written."""
         if self.store is not None:
-            store = self.store
-            self.tools, self.secondary, self.zero = store.tools(), store.secondary(), store.zero_offsets()
-            self.shapes = store.shapes()
-            self.mill_tools, self.presets = store.mill_tools(), store.presets()
-            self.preset = preset_of(store.setting(PRESET), self.presets)
+            self.show(rows_of_store(self.store))
+
+    def show(self, rows: OffsetRows) -> None:
+        """Take these values; without a store they can be looked at, and not changed."""
+        self.tools, self.secondary, self.zero = dict(rows.tools), dict(rows.secondary), dict(rows.zero)
+        self.shapes, self.mill_tools, self.presets = (
+            dict(rows.shapes),
+            dict(rows.mill_tools),
+            dict(rows.presets),
+        )
+        self.preset = rows.preset
+
+    def _shown(self) -> OffsetRows:
+        return OffsetRows(
+            self.tools, self.secondary, self.zero, self.shapes, self.mill_tools, self.presets, self.preset
+        )
 
     # --- changes: each answers why not, or nothing ----------------------------------------------------
 
@@ -160,14 +197,19 @@ class OffsetBook:
             self.changes += 1
         return self._read_or_why() or (str(error) if error is not None else "")
 
-    def reopen(self, store: Store | None, trouble: str) -> None:
-        """Another store is in the place of the one before; None: ``trouble`` says why. From any thread."""
-        self._reopened = store, trouble
+    def reopen(self, store: Store | None, trouble: str, rows: OffsetRows | None = None) -> None:
+        """Another store is in the place of the one before; None: ``trouble`` says why. From any thread.
 
-    def _turn_to(self, store: Store | None, trouble: str) -> str:
+        ``rows``: what another TurnDesk, which has the store, has set.
+        """
+        self._reopened = store, trouble, rows
+
+    def _turn_to(self, store: Store | None, trouble: str, rows: OffsetRows | None) -> str:
         self._reopened, self._saving = None, None
-        if store is not self.store:
+        if store is not self.store or (rows is not None and rows != self._shown()):
             self.changes += 1
+        if rows is not None:
+            self.show(rows)
         self.store = store
         self.locked = "" if store is not None else f"OFFSETS CANNOT BE KEPT: {trouble}"
         return self._read_or_why()

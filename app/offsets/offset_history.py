@@ -86,7 +86,7 @@ class OffsetHistory:
 
     def look(self, snapshot: Snapshot) -> None:
         """Once a frame: follow the control's unit, and say what has been saved since."""
-        self.mode = Mode(snapshot.modal.metric, snapshot.modal.diameter)
+        self.mode = Mode(snapshot.modal.metric, snapshot.reads_diameter)
         if self.book.changes == self._seen:
             return
         self._seen = self.book.changes

@@ -15,6 +15,7 @@ from PySide6.QtWidgets import QWidget
 
 from app.desk.machine_status import MachineStatus
 from app.desk.program_loading import Loaded
+from app.desk.translation import tr
 from app.offsets.offset_effect import EffectDisplay
 from app.offsets.offset_table import OffsetTable
 from app.offsets.part_effect import part_table
@@ -187,14 +188,17 @@ class OffsetPage(ModelPage):
         self.effect_model.turn()
 
     def typed(self, key: str) -> bool:
-        """Figures and signs are the entry's; letters stay what they are everywhere, but for C and remarks."""
+        """Give figures, signs and the table's own letters to the entry; nothing while the effect is shown."""
         if self.history.isVisible() and key in {"Page up", "Page down"}:
             self.history.leaf_by((1 if key == "Page down" else -1) * self.history.rows)
+            return True
+        if self.effect_model.open and len(key) == 1 and self.model.takes(key):
+            self.desk.say(tr("VALUES ARE TYPED INTO THE TABLE: PRESS ESC TO SHOW IT"))
             return True
         return self.model.typed(key)
 
     def has_field(self) -> bool:
-        """Figures are always typed here, but while one looks at what they do."""
+        """Return whether values are typed: always, except while the effect of a change is shown."""
         return not self.effect_model.open
 
     def prompt(self) -> str:
@@ -212,6 +216,10 @@ class OffsetPage(ModelPage):
         self.effect_model.close()
         self.model.leave()
         return True
+
+    def esc_holds(self) -> bool:
+        """Return False: Esc leaves an entry, the history, then the page, also while something moves."""
+        return False
 
     def escape(self) -> bool:
         """Esc goes one step back, and from the first question to the Automatic page."""

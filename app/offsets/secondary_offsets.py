@@ -11,6 +11,7 @@ from enum import IntEnum
 from app.desk.arithmetic import CHARACTERS, EntryError, value_of
 from app.desk.desk import Desk
 from app.desk.formats import length
+from app.desk.sheet import refused
 from app.desk.translation import tr
 from app.offsets.offset_history import counts_from
 from app.offsets.offset_table import OffsetTable, Proposed
@@ -43,7 +44,7 @@ class SecondaryOffsets(OffsetTable):
 
     kind = Kind.SECONDARY
     own_key = "C"
-    clears = "PRESS Y TO CLEAR ALL 32 SECONDARY OFFSETS, ESC TO KEEP THEM"
+    clears = "PRESS Y TO CLEAR ALL 32 SECONDARY OFFSETS, N TO KEEP THEM"
     why_cleared = "C: all offsets cleared"
 
     def __init__(self, desk: Desk) -> None:
@@ -177,6 +178,7 @@ class SecondaryOffsets(OffsetTable):
         try:
             self._take_number() if self.step is Step.NUMBER else self._take_value()
         except EntryError as error:
+            self.text = refused(self.text)
             self.desk.say(tr("REFUSED: {why}").format(why=error))
 
     def _take_number(self) -> None:

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from typing import ClassVar
 
 from app.desk.arithmetic import CHARACTERS, LONGEST, EntryError
+from app.desk.sheet import refused
 from app.desk.translation import tr
 from app.offsets.offset_history import OffsetHistory
 from app.offsets.offset_table import OffsetTable
@@ -176,12 +177,13 @@ class ToolEntry(OffsetTable):
 
     def store(self, save: Callable[[], str]) -> bool:
         """Save the field; what is refused is said, and the text stays to be mended."""
-        why = self.cell_barred()
+        barred = self.cell_barred()
         try:
-            why = why or save()
+            why = barred or save()
         except EntryError as error:
             why = tr("REFUSED: {why}").format(why=error)
         if why:
+            self.text = self.text if barred else refused(self.text)
             self.desk.say(why)
             return False
         self.text, self.writing = "", False

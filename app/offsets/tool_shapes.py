@@ -216,7 +216,7 @@ class ToolShapes(ToolEntry):
             self.desk.say(why)
         else:
             number = self.number
-            question = tr("PRESS Y TO FORGET THE SHAPE OF T{number}, ESC TO KEEP IT").format(
+            question = tr("PRESS Y TO FORGET THE SHAPE OF T{number}, N TO KEEP IT").format(
                 number=edge_number(number)
             )
             self.desk.ask(question, lambda: self._remove(number))

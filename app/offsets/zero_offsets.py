@@ -18,7 +18,7 @@ class ZeroOffsets(CellTable):
     kind = Kind.ZERO
     own_key = "C"
     numbers = ZERO_CODES
-    clears = "PRESS Y TO CLEAR G54 TO G59, ESC TO KEEP THEM"
+    clears = "PRESS Y TO CLEAR G54 TO G59, N TO KEEP THEM"
     why_cleared = "C: all cleared"
 
     @property

@@ -18,7 +18,7 @@ from app.desk.latest import Latest
 from app.desk.persistence import Persistence
 from app.desk.program_loading import Loaded
 from app.desk.prompt_line import UNDER_WAY
-from app.desk.sheet import STEPS, Key, edited, following
+from app.desk.sheet import STEPS, Key, edited, following, refused
 from app.desk.translation import tr
 from app.part.stock_entry import StockEntry, StockField, StockKind
 from core.access.access_table import Act
@@ -171,7 +171,7 @@ class PartSheet:
         """Arrows mark, Return takes or shows, figures and letters are typed where one is asked."""
         if key == "Enter":
             self._enter()
-        elif self.takes(key) or (key in {"Back", "Delete"} and self._asked):
+        elif self.takes(key) or (key in {"Back", "Delete"} and self.has_entry):
             self.text = edited(self.text, key, 200)
         elif key in _TURNS and self.section is Section.STOCK and self.marked_field is StockField.KIND:
             self.turn_kind(_TURNS[key])
@@ -182,7 +182,8 @@ class PartSheet:
         return True
 
     @property
-    def _asked(self) -> bool:
+    def has_entry(self) -> bool:
+        """Whether something is typed: a reason, the name of a file, or a figure of the stock."""
         return self.has_keyboard or (self.section is Section.STOCK and self._figures)
 
     def choose(self, row: int) -> None:
@@ -301,6 +302,7 @@ class PartSheet:
             else:
                 entry = self.entry.typed(self.marked_field, self.text, self.metric)
         except EntryError as error:
+            self.text = refused(self.text)
             self.desk.refuse(str(error))
             return
         self.drop()

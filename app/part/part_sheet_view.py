@@ -68,8 +68,8 @@ class PartPage(ListPage):
         }
 
     def has_field(self) -> bool:
-        """A reason or the name of a file is written; figures are typed beside the letters' own meaning."""
-        return self.model.has_keyboard
+        """Return whether a reason, the name of a file or a figure of the stock is typed."""
+        return self.model.has_entry
 
     def dress(self) -> None:
         """The picture in the colours of now."""

@@ -15,7 +15,8 @@ import numpy as np
 import numpy.typing as npt
 
 from app.desk.latest import Latest, Request
-from core.language.diagnostics import Diagnostic, Severity
+from core.language.diagnostics import Diagnostic
+from core.proving.part_checks import is_serious
 
 if TYPE_CHECKING:
     from app.desk.desk import Desk
@@ -216,7 +217,7 @@ class PartPlayer:
         if self._played is None or self._picture is None:
             return np.zeros(0)
         ends = self._picture.ends
-        errors = [each.n for each in self._played.findings if each.severity is Severity.ERROR]
+        errors = [each.n for each in self._played.findings if is_serious(each)]
         return np.array([ends[min(n, len(ends) - 1)] for n in errors])
 
     def want(self, t: float) -> None:

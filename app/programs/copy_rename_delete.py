@@ -133,7 +133,8 @@ class CopyRenameDelete:
             self.desk.say(self._fixed(here))
         else:
             self.desk.clear()
-            self.question, self.entry.text = question, without_ending(here.name)
+            self.question = question
+            self.entry.offer(without_ending(here.name))
 
     def _fixed(self, program: Program) -> str:
         """Why a program stays as it is; empty when it may be changed."""
@@ -168,7 +169,7 @@ class CopyRenameDelete:
             return
         if self.desk.refused(Act.PROGRAMS):
             return
-        asked = tr("PRESS Y TO DELETE {name} (ITS VERSIONS ARE KEPT), ESC TO LEAVE IT")
+        asked = tr("PRESS Y TO DELETE {name} (ITS VERSIONS ARE KEPT), N TO LEAVE IT")
         self.desk.ask(asked.format(name=here.name), lambda: self._delete(here))
 
     def _delete(self, program: Program) -> None:

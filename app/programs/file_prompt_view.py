@@ -10,7 +10,7 @@ from PySide6.QtGui import QKeyEvent, QResizeEvent, QWheelEvent
 from PySide6.QtWidgets import QLineEdit, QWidget
 
 from app.desk.program_folder import ListedProgram, ProgramFolders
-from app.desk.prompt_line import ASK_FILE, NOT_FOUND
+from app.desk.prompt_line import ASK_FILE, CHOOSE_FILE, NOT_FOUND
 from app.desk.translation import tr
 from app.screen.entry_panel import dress_line
 from app.screen.look import CENTRE, RIGHT, Look, Painter, put
@@ -56,6 +56,10 @@ class FilePrompt(Panel):
         if self._moved and self._entries:
             return str(self._entries[self._row].path)
         return self.edit.text().strip()
+
+    def prompt(self) -> str:
+        """What the keyboard does here; Cycle Start is not offered, since its keys are text or dead."""
+        return NOT_FOUND if self.not_found else CHOOSE_FILE
 
     def ask(self) -> None:
         """Come up empty, with the keyboard."""

@@ -309,7 +309,7 @@ class ImportExport:
         self._done_of = (0, 0)
         if carried.differing:
             names = ", ".join(carried.differing[:3]) + (" …" if len(carried.differing) > 3 else "")
-            asked = tr("{names}: THERE ALREADY WITH ANOTHER TEXT. PRESS Y TO REPLACE, ESC TO KEEP")
+            asked = tr("{names}: THERE ALREADY WITH ANOTHER TEXT. PRESS Y TO REPLACE, N TO KEEP")
             again = partial(self._carry, self._asked, self._at, replace=True)
             self.desk.ask(asked.format(names=names), again)
             return

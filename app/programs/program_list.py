@@ -12,14 +12,13 @@ from app.desk.desk import Desk
 from app.desk.latest import Latest
 from app.desk.machine_status import Tone
 from app.desk.persistence import Persistence
-from app.desk.prompt_line import MOVING
+from app.desk.prompt_line import UNDER_WAY
 from app.desk.sheet import STEPS, Entry, Key, Row, Sheet, following
 from app.desk.translation import tr
 from app.programs.copy_rename_delete import COPY, NONE, RENAME, CopyRenameDelete
 from app.programs.import_export import ImportExport
 from app.programs.preview import Preview
 from app.programs.program_rows import ORDERS, Program, list_programs, minute_of, minute_of_file, sorted_by
-from core.executor.snapshot import State
 
 DRAWING = "{name} IS A DRAWING: F3 MAKES A PROGRAM OF IT"
 
@@ -40,7 +39,6 @@ class ProgramList:
     all: tuple[Program, ...] = ()
     listed: tuple[Program, ...] = ()
     changer: CopyRenameDelete = field(init=False)
-    naming: bool = False  # letters are a name although something is under way
     _after: str = ""  # the name to mark when the list has been read again
 
     def __post_init__(self) -> None:
@@ -111,34 +109,19 @@ class ProgramList:
             "F9": Key("EXPORT", lambda: self._transfer(out=True)),
         }
 
-    @property
-    def may_type(self) -> bool:
-        """Letters are a name at rest; else they keep their meaning, H above all, until Tab or a question."""
-        return self.naming or bool(self.question) or self._rests
-
-    @property
-    def _rests(self) -> bool:
-        return self.desk.snapshot().state in {State.IDLE, State.DISABLED, State.ESTOP, State.FAULT}
-
-    def turn_naming(self) -> None:
-        """Tab, or a finger on the entry: letters are a name, or keys again."""
-        self.naming = not self.naming and not self._rests
-
     def takes(self, key: str) -> bool:
-        """Whether a character is text now."""
-        return not self.transfer.open and self.may_type and self.find.takes(key)
+        """Return whether a character is part of a name: all are, except while folders are chosen."""
+        return not self.transfer.open and self.find.takes(key)
 
     def typed(self, key: str) -> bool:
         """Arrows mark, Return loads or answers, letters find."""
         if self.transfer.open:
             return self.transfer.typed(key)
-        if key == "Tab" and not self.question:
-            self.turn_naming()
-        elif key in STEPS and not self.question:
+        if key in STEPS and not self.question:
             self.choose(self.marked + STEPS[key])
         elif key == "Enter":
             self.changer.answer() if self.question else self.load()
-        elif self.may_type and (self.entry if self.question else self.find).type(key):
+        elif (self.entry if self.question else self.find).type(key):
             self.desk.clear()
             if not self.question:
                 self._narrow(self.program.name if self.program else "")
@@ -153,10 +136,8 @@ class ProgramList:
             self.marked = max(0, min(len(self.listed) - 1, row))
 
     def escape(self) -> bool:
-        """One step back; False: the page may be left. Where a name is typed while something moves, a hold."""
-        if self.desk.snapshot().state in MOVING and (self.naming or self.question):
-            self.desk.feed_hold("Esc at the screen")
-        elif self.desk.notice:
+        """Go one step back; False: the page may be left."""
+        if self.desk.notice:
             self.desk.clear()
         elif self.transfer.open:
             self.transfer.escape()
@@ -172,7 +153,6 @@ class ProgramList:
     def leave(self) -> None:
         """The page goes: nothing stays half asked."""
         self.changer.question = self.find.text = ""
-        self.naming = False
         self.transfer.shut()
         self.preview.of(None)
         self._narrow(self.program.name if self.program else "")
@@ -213,13 +193,11 @@ class ProgramList:
         if self.transfer.open:
             return self.transfer.prompt()
         if self.question:
-            return "TYPE A NAME AND PRESS RETURN; ESC KEEPS EVERYTHING AS IT IS"
-        if not self.may_type:
-            return "TAB: A NAME TO LOOK FOR OR TO BEGIN; F3 OPENS THE MARKED PROGRAM IN THE EDITOR; H HOLDS"
+            return "TYPE A NAME, OR PRESS BACKSPACE TO EDIT THIS ONE. RETURN: ACCEPT    ESC: CANCEL"
         if self.find.text and not self.listed:
             return tr("NO PROGRAM HAS THAT IN ITS NAME: F3 BEGINS A NEW ONE")
-        if not self._rests:
-            return "TYPE A PART OF A NAME; F3 OPENS IT IN THE EDITOR; TAB: LETTERS ARE KEYS AGAIN; ESC HOLDS"
+        if self.desk.snapshot().state in UNDER_WAY:
+            return "TYPE A PART OF A NAME; F3 OPENS IT IN THE EDITOR; PAUSE HOLDS THE FEED; ESC FOR AUTOMATIC"
         return "TYPE A PART OF A NAME, OR MARK IT WITH ARROWS; RETURN LOADS IT; ESC FOR AUTOMATIC"
 
     def close(self) -> None:
@@ -241,8 +219,7 @@ def sheet_of(model: ProgramList) -> Sheet:
     )
     question, text = model.question, model.entry.text
     if not question:
-        question = "FIND OR NEW NAME" if model.may_type else "TAB: FIND OR NEW NAME"
-        text = model.find.text
+        question, text = "FIND OR NEW NAME", model.find.text
     return Sheet(
         f"PROGRAMS  ·  {count}  ·  BY {model.order}",
         ("NAME", "CHANGED", "LAST RUN", "PARTS", "BEST"),

@@ -6,12 +6,15 @@ import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime
+from functools import lru_cache
 from pathlib import Path
 
 from app.desk import formats
 from app.desk.persistence import Persistence
-from app.desk.program_folder import ProgramFolders
+from app.desk.program_folder import LISTED, ProgramFolders
 from core.drawings.drawing_file import is_drawing
+from core.language.source import SourceError, load_source
+from core.store.program_texts import key_of_text
 from core.store.store_rows import RunRow
 
 
@@ -40,17 +43,31 @@ class Program:
 def list_programs(
     program_folders: ProgramFolders, own: Path, persistence: Persistence
 ) -> tuple[Program, ...]:
-    """All programs of the folders, and the drawings beside them.
+    """Return all programs of the folders and their drawings, each with the record of the text in the file.
 
-    Takes its time; raises StoreError when the store cannot be read.
+    It reads every file whose text is not known yet: call it on a worker. Raises StoreError when the store
+    cannot be read.
     """
-    runs = {row.program: row for row in persistence.runs()}
+    runs = persistence.runs_by_text()
     return tuple(
         Program(entry.name, entry.path, status.st_size, status.st_mtime, entry.path.parent != own, run)
         for entry in (*program_folders.entries(), *program_folders.drawings())
         if (status := _status(entry.path)) is not None
-        for run in (runs.get(entry.name, RunRow(entry.name)),)
+        for run in (runs.get(_text_key(entry.path, status), RunRow(entry.name)),)
     )
+
+
+def _text_key(path: Path, status: os.stat_result) -> str:
+    """Return the record key of the text in a file; empty for a drawing and for what is not program text."""
+    return "" if is_drawing(path.name) else _key_in(path, status.st_mtime_ns, status.st_size)
+
+
+@lru_cache(maxsize=2 * LISTED)
+def _key_in(path: Path, _changed: int, _size: int) -> str:
+    try:
+        return key_of_text(load_source(path).text)
+    except SourceError:
+        return ""
 
 
 def _status(path: Path) -> os.stat_result | None:

@@ -168,7 +168,7 @@ class ProgramsPage(ListPage):
 
     def has_field(self) -> bool:
         """The name that is looked for or asked."""
-        return not self.model.transfer.open and self.model.may_type
+        return not self.model.transfer.open
 
     def dress(self) -> None:
         """The path is drawn anew."""
@@ -207,8 +207,6 @@ class ProgramsPage(ListPage):
 
     def _turn_letters(self) -> None:
         self._with_letters = not self._with_letters
-        if self.model.naming is not self._with_letters:
-            self.model.turn_naming()
 
     def opened(self) -> None:
         """The list; a finger on the entry brings the letters."""

@@ -16,7 +16,7 @@ from core.store.store_errors import StoreError
 COMPLETE, UNCOUNTED, GIVEN_UP, ESTOP = "COMPLETE", "NOT COUNTED", "GIVEN UP", "E-STOP"
 CUT_OFF = "CUT OFF"  # the control ended in its middle: found at the next start
 _RUNNING = frozenset({State.RUN, State.HOLDING, State.WAIT}) | prompt_line.INTERRUPTED
-_SETTLED = frozenset({Phase.READY, Phase.REFUSED, Phase.UNREADABLE})
+_SETTLED = frozenset({Phase.READY, Phase.REFUSED})
 
 
 @dataclass(slots=True)
@@ -68,17 +68,15 @@ class RunHistory:
         if loaded is self._loaded:
             return
         self._loaded = loaded
-        if loaded.phase not in _SETTLED or loaded.path is None:
+        if loaded.phase not in _SETTLED or loaded.path is None or loaded.source is None:
             return
-        errors = len(loaded.errors)
-        if loaded.phase is Phase.UNREADABLE:
-            self.persistence.program_proved(loaded.path.name, "UNREADABLE", None)
-        elif loaded.phase is Phase.REFUSED:
+        errors, name, text = len(loaded.errors), loaded.path.name, loaded.source.text
+        if loaded.phase is Phase.REFUSED:
             first = loaded.errors[0].message if errors else ""
-            self.persistence.program_proved(loaded.path.name, f"{max(errors, 1)} ERRORS: {first}", None)
+            self.persistence.program_proved(name, f"{max(errors, 1)} ERRORS: {first}", None, text)
         else:
             planned = loaded.proof.cycle_time if loaded.proof else None
-            self.persistence.program_proved(loaded.path.name, "PROVED", planned)
+            self.persistence.program_proved(name, "PROVED", planned, text)
 
 
 def _outcome(snapshot: Snapshot) -> str:

@@ -271,7 +271,7 @@ class FeaturesSection(QualitySection):
         if row is None:
             self.desk.say(self.missing())
             return
-        asked = tr("PRESS Y TO MEASURE {name} NO MORE (ITS READINGS STAY IN THE STORE), ESC TO KEEP IT")
+        asked = tr("PRESS Y TO MEASURE {name} NO MORE (ITS READINGS STAY IN THE STORE), N TO KEEP IT")
         done = partial(self.desk.say, tr("{name} REMOVED").format(name=row.name))
         self.desk.ask(
             asked.format(name=row.name),

@@ -154,7 +154,7 @@ class ReadingsSection(QualitySection):
         if taken.value <= 0.0:
             raise EntryError(f"{row.name} is more than 0; type the measured size, not the deviation")
         if abs(taken.value - feature.middle) > FAR * feature.width:
-            asked = tr("{name} {size} IS FAR OFF: PRESS Y TO KEEP IT ALL THE SAME, ESC TO MEASURE AGAIN")
+            asked = tr("{name} {size} IS FAR OFF: PRESS Y TO KEEP IT ALL THE SAME, N TO MEASURE AGAIN")
             shown = size(taken.value, self.mode)
             self.desk.ask(asked.format(name=row.name, size=shown), partial(self._keep, taken))
             return True
@@ -191,7 +191,7 @@ class ReadingsSection(QualitySection):
             self.desk.say(self.missing() or tr("NOTHING IS MEASURED OF THIS FEATURE YET"))
             return
         last = taken[-1]
-        asked = tr("PRESS Y TO TAKE {size} OF PART {part} OUT, ESC TO KEEP IT")
+        asked = tr("PRESS Y TO TAKE {size} OF PART {part} OUT, N TO KEEP IT")
         done = partial(self.desk.say, tr("THE READING IS TAKEN OUT"))
         self.desk.ask(
             asked.format(size=size(last.value, self.mode), part=last.part),
@@ -260,7 +260,7 @@ class ReadingsSection(QualitySection):
         except (QualityError, EntryError) as error:
             self.desk.refuse(str(error))
             return
-        asked = tr("{words}: PRESS Y TO TAKE IT OVER, ESC TO LEAVE IT").format(words=change.words)
+        asked = tr("{words}: PRESS Y TO TAKE IT OVER, N TO LEAVE IT").format(words=change.words)
         self.desk.ask(asked, partial(self._correct, feature))
         taken = tuple((each.part, each.value) for each in self.data.readings_of(feature.id))
         self.effect.show(self.desk.notice, found, change, taken)

@@ -141,7 +141,7 @@ class ToolLifeSection(QualitySection):
         tool = self.tool
         if tool is None:
             return
-        asked = tr("PRESS Y WHEN T{number} HAS A FRESH INSERT ({words} ARE ON THE OLD ONE), ESC IF NOT")
+        asked = tr("PRESS Y WHEN T{number} HAS A FRESH INSERT ({words} ARE ON THE OLD ONE), N IF NOT")
         self.desk.ask(
             asked.format(number=tool.number, words=tool.words),
             lambda: self.watch.lives.change_insert(tool.number, tool.words, self.desk.say),

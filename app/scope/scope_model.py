@@ -440,7 +440,7 @@ class Scope:
         def yes() -> None:
             self.filing.queue(lambda: self.shelf.delete(kept.path), gone, self.desk.refuse)
 
-        question = tr("PRESS Y TO DELETE {path}, ESC TO KEEP IT").format(path=kept.path.name)
+        question = tr("PRESS Y TO DELETE {path}, N TO KEEP IT").format(path=kept.path.name)
         self.desk.ask(question, yes)
 
     def write_picture(self, png: Callable[[], bytes]) -> None:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 
 from app.desk import formats
 from app.desk.arithmetic import EntryError, line_of, value_of
-from app.desk.sheet import STEPS, Entry, Key, Row, Sheet
+from app.desk.sheet import STEPS, Entry, Key, Row, Sheet, refused
 from app.desk.translation import tr
 from app.scope.scope_model import Scope, Side
 from app.scope.scope_trigger import When
@@ -208,6 +208,7 @@ class ScopeSheets:
         if trigger.when is When.LINE:
             line = line_of(self.entry.text)
             if line is None:
+                self.entry.text = refused(self.entry.text)
                 scope.desk.refuse(tr("a line of the program is a whole number from 1 on"))
                 return
             scope.set_trigger(replace(trigger, line=line))
@@ -218,6 +219,7 @@ class ScopeSheets:
         try:
             scope.set_trigger(replace(trigger, level=value_of(self.entry.text) / scale))
         except EntryError as error:
+            self.entry.text = refused(self.entry.text)
             scope.desk.refuse(str(error))
             return
         self.entry.text = ""

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 
 from PySide6.QtCore import QRectF
 from PySide6.QtGui import QFontMetricsF
 from PySide6.QtWidgets import QLineEdit, QWidget
 
+from app.desk.sheet import RefusedText
 from app.screen.look import Look, Painter
 from app.screen.panel import Panel, Shown
 
@@ -24,6 +25,10 @@ class EntryWords:
     change: str = ""
     foot: str = ""
     warn: bool = False  # the change is to be wondered at
+    refused: bool = field(init=False)  # the next character replaces the text
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "refused", isinstance(self.text, RefusedText))
 
 
 class EntryPanel(Panel):
@@ -55,13 +60,19 @@ class EntryPanel(Panel):
 def draw_entry(
     painter: Painter, inside: QRectF, text: str, *, size: float = 2.8, cursor: bool = True
 ) -> None:
-    """What is typed, in letters of ``size`` units, and the bar behind it."""
-    u = painter.look.u
-    painter.write(inside, text, size, "text", raw=True, margin=1.0)
-    if cursor:
-        wide = QFontMetricsF(painter.font()).horizontalAdvance(text)
-        at = inside.x() + min(wide, inside.width() - u) + 0.3 * u
-        high = (size + 0.2) * u
+    """Draw what is typed, in letters of ``size`` units, and a caret where the entry has the keyboard.
+
+    A refused text is drawn as selected, because the next character replaces it.
+    """
+    u, selected = painter.look.u, painter.look.caret and isinstance(text, RefusedText)
+    painter.setFont(painter.look.fit(text, size, inside.width() - u, bold=True))
+    wide = min(QFontMetricsF(painter.font()).horizontalAdvance(text), inside.width() - u)
+    high = (size + 0.2) * u
+    if selected:
+        painter.fill(QRectF(inside.x(), inside.center().y() - high / 2, wide, high), "lit")
+    painter.write(inside, text, size, "on_lit" if selected else "text", raw=True, margin=1.0)
+    if cursor and painter.look.caret:
+        at = inside.x() + wide + 0.3 * u
         painter.fill(QRectF(at, inside.center().y() - high / 2, 0.3 * u, high), "accent")
 
 

@@ -12,6 +12,7 @@ from collections.abc import Callable
 
 STALL = 0.3  # s without a frame: whatever waited behind it starts nothing
 FRAMES = 2  # that must have been shown since, before anything starts
+PAUSE = 1.0  # s without a press that end a burst of which a press was dropped
 _WRAPPED = 1e5  # s: further off than this the 32 bits of the stamps have run over
 _DRIFT = 1e-3  # of the time passed: how much two clocks may go apart
 
@@ -26,6 +27,7 @@ class EventTimes:
         self.stalled = 0.0  # s that the last stall took
         self._alive: float | None = None
         self._behind = float("-inf")  # the end of the last stall
+        self._dropped = float("-inf")  # when the last press that was dropped was made
         self._frames = FRAMES  # shown since
         self._offsets: dict[str, tuple[float, float]] = {}  # of whose clock: offset, and when it was seen
 
@@ -72,3 +74,11 @@ class EventTimes:
             return False
         at = self.at(stamp, whose)
         return at <= self._behind or not self.known or self.clock() - at > STALL
+
+    def drop(self, stamp: int, whose: str = "") -> None:
+        """Note that a press was dropped: what follows without a pause relies on it."""
+        self._dropped = max(self._dropped, self.at(stamp, whose))
+
+    def in_burst(self, stamp: int, whose: str = "") -> bool:
+        """Return whether a press follows one that was dropped without a pause of ``PAUSE`` seconds."""
+        return self.at(stamp, whose) - self._dropped < PAUSE

@@ -1,9 +1,10 @@
 """The keyboard: every key passes here before any page, field, dialog or drawn keyboard sees it.
 
 Two keys act everywhere, with any modifier, lock and layout: Pause holds the feed, Scroll Lock is the E-stop.
-So do Esc, while something moves, and H, Space and E, where no field has the keyboard. Of all other keys this
-knows which are really down: a repeat is no press, a key held while the keyboard was elsewhere is dead
-until it is let go, and what waited behind a stall of the screen is text or nothing.
+H, Space and E do the same where no caret is visible. Esc holds while something moves, unless the page uses
+Esc for something else. Of all other keys this knows which are really down: a repeat is no press, and a key
+held while the keyboard was elsewhere is dead until it is let go. A key that waited behind a stall of the
+screen is text, or it is dropped; the rest of a burst of which a key was dropped is dropped too.
 """
 
 from __future__ import annotations
@@ -86,9 +87,6 @@ _PC = frozenset({"xcb", "wayland"})  # there a key's code is X's
 _LETTERS = dict(
     zip((*range(24, 34), *range(38, 47), *range(52, 59)), "QWERTYUIOPASDFGHJKLZXCVBNM", strict=True)
 )
-_CHORD = (
-    Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.AltModifier | Qt.KeyboardModifier.MetaModifier
-)
 _MODIFIERS = frozenset(
     {Key.Key_Shift, Key.Key_Control, Key.Key_Alt, Key.Key_AltGr, Key.Key_Meta, Key.Key_Super_L}
     | {Key.Key_Super_R, Key.Key_CapsLock, Key.Key_NumLock, Key.Key_Mode_switch, Key.Key_Hyper_L}
@@ -111,7 +109,9 @@ class Behind(Protocol):
 
     def estop(self) -> None: ...
 
-    def moving(self) -> bool: ...
+    def esc_holds(self) -> bool: ...
+
+    def has_field(self) -> bool: ...
 
     def is_text(self, key: str) -> bool: ...
 
@@ -233,10 +233,10 @@ class Keyboard(QObject):
         return False
 
     def _pressed_late(self, event: QInputEvent) -> bool:
-        if not self._late(event) or self._behind.stops_at(event):
+        if self._behind.stops_at(event) or not (self._late(event) or self._in_burst(event)):
             return False
         event.setAccepted(True)  # or Qt makes a mouse button of the finger
-        return self._forget()
+        return self._forget(event)
 
     def _key(self, event: QKeyEvent) -> bool:
         self.times.alive()
@@ -259,9 +259,9 @@ class Keyboard(QObject):
         repeat = self._repeats(event, code)
         if code in self._dead:
             return True
-        if self._late(event) and not self._writes(event):
+        if self._in_burst(event) or (self._late(event) and not self._writes(event)):
             self._dead.add(code)
-            return repeat or self._forget()
+            return repeat or self._forget(event)
         if repeat and not event.isAutoRepeat():
             return self._send_repeat(event)
         return self._latched(event) and self._send(_like(event, repeat=repeat, shift=False))
@@ -315,23 +315,26 @@ class Keyboard(QObject):
         """What a key does that stops the machine, whatever else is so; None for any other key."""
         place = _STOPS.get(event.nativeScanCode(), "") if QApplication.platformName() in _PC else ""
         key, letter = event.key(), letter_of(event)
-        if key == Key.Key_ScrollLock or place == "estop" or self._is(letter, "E", event):
+        if key == Key.Key_ScrollLock or place == "estop" or self._stops_by(letter == "E"):
             return self._behind.estop
-        holds = key in {Key.Key_Pause, Key.Key_Cancel} or place == "hold" or self._is(letter, "H", event)
-        holds = holds or (key == Key.Key_Space and self._is(" ", " ", event))
-        if key == Key.Key_Escape and self._behind.moving():
+        holds = key in {Key.Key_Pause, Key.Key_Cancel} or place == "hold"
+        holds = holds or self._stops_by(letter == "H" or key == Key.Key_Space)
+        if key == Key.Key_Escape and self._behind.esc_holds():
             return partial(self._behind.hold, "Esc at the screen")
         return self._behind.hold if holds else None
 
-    def _is(self, letter: str, wanted: str, event: QKeyEvent) -> bool:
-        if letter != wanted:
-            return False
-        return _field() is None if event.modifiers() & _CHORD else not self._behind.is_text(wanted)
+    def _stops_by(self, key_of_stop: bool) -> bool:
+        """Return whether a character stops the machine; where a caret is visible every character is text."""
+        return key_of_stop and not self._behind.has_field()
 
     def _late(self, event: QInputEvent) -> bool:
         return self.times.late(event.timestamp(), _clock_of(event))
 
-    def _forget(self) -> bool:
+    def _in_burst(self, event: QInputEvent) -> bool:
+        return self.times.in_burst(event.timestamp(), _clock_of(event))
+
+    def _forget(self, event: QInputEvent) -> bool:
+        self.times.drop(event.timestamp(), _clock_of(event))
         self._behind.forgotten(self.times.stalled)
         return True
 

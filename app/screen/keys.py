@@ -69,7 +69,9 @@ REPEATING = frozenset(
 )
 # What stops the machine does so with any modifier.
 _STOPS = {Key.Key_H: "H", Key.Key_Space: "H", Key.Key_E: "E"}
-STOPPING = frozenset("HE")
+NO = "No"  # N while a question is asked, and its target: it never does anything
+OF_AUTOMATIC = frozenset({"A", "C", "O", "P", "S", "/"})
+"""Keys that change how a cycle runs: keys of the Automatic page alone."""
 ANSWER = "Yes"  # what the key that means yes does, and its target on the prompt line
 # Signs that stand on shifted keys on one keyboard and on bare ones on another.
 _SIGNS = {Key.Key_Slash, Key.Key_Plus, Key.Key_Minus, Key.Key_Comma, Key.Key_Period}

@@ -56,6 +56,7 @@ class Look:
     def __init__(self, palette: Palette, u: float = 12.0) -> None:
         self.palette = palette
         self.u = u
+        self.caret = False  # an entry of the page in front has the keyboard; only then its caret is drawn
         self.mm = DESK_DPI / 25.4  # pixels of a millimetre of the glass
         self._colours: dict[str, QColor] = {}
         self._fonts: dict[tuple[float, bool], QFont] = {}

@@ -49,6 +49,10 @@ class MenuPage(Page):
         """How a page is chosen."""
         return "PRESS A FUNCTION KEY OR TOUCH A PAGE; ESC FOR AUTOMATIC"
 
+    def esc_holds(self) -> bool:
+        """Return False: Esc opens the Automatic page, also while something moves."""
+        return False
+
     def escape(self) -> bool:
         """Back to the Automatic page."""
         self.host.go(page_table.AUTOMATIC)

@@ -25,7 +25,7 @@ from app.desk.prompt_line import MOVING, UNDER_WAY
 from app.desk.translation import spoken, tr
 from app.screen.event_times import EventTimes
 from app.screen.keyboard import Keyboard, key_of, letter_of
-from app.screen.keys import ANSWER, PALMS, REPEATING, STOPPING, TYPED_AGAIN, name_of, typed_of
+from app.screen.keys import ANSWER, NO, OF_AUTOMATIC, PALMS, REPEATING, TYPED_AGAIN, name_of, typed_of
 from app.screen.language import speak_in
 from app.screen.look import Look, dress
 from app.screen.page_table import AUTOMATIC
@@ -158,6 +158,8 @@ class MainWindow(QWidget):
         if action is not None:
             if frame is not None:
                 frame.page.pressed()
+                if key != "Esc":  # which removes the answer, and does nothing else then
+                    frame.desk.answers.next_key()
             action()
             self.refresh()
         elif frame is not None and key.startswith("F") and key[1:].isdecimal():
@@ -177,6 +179,7 @@ class MainWindow(QWidget):
             "E": desk.estop,
             "U": desk.twist_out,
             ANSWER: desk.answer,
+            NO: desk.no,
             "A": desk.turn_spindle_switch,
             ",": partial(desk.hands.turn_spindle_pot, -1),
             ".": partial(desk.hands.turn_spindle_pot, 1),
@@ -259,9 +262,14 @@ class MainWindow(QWidget):
             self.frame.desk.estop()
             self.refresh()
 
-    def moving(self) -> bool:
-        """Whether an axis or a program is moving."""
-        return self.frame is not None and self.frame.desk.snapshot().state in MOVING
+    def esc_holds(self) -> bool:
+        """Return whether Esc holds the feed now: something moves, and nothing else is offered for Esc."""
+        frame = self.frame
+        return frame is not None and frame.desk.snapshot().state in MOVING and frame.esc_holds()
+
+    def has_field(self) -> bool:
+        """Return whether an entry has the keyboard, and with it all characters."""
+        return self.frame is not None and self.frame.has_field()
 
     def used(self) -> None:
         """A key or a finger: who has signed in is there."""
@@ -273,10 +281,10 @@ class MainWindow(QWidget):
         return self.frame is not None and self.frame.is_text(key)
 
     def forgotten(self, seconds: float) -> None:
-        """What was pressed while the screen stood still does nothing."""
+        """Show that what was pressed while the screen stood still does nothing."""
         if self.frame is not None:
-            text = tr("THE SCREEN STOOD STILL FOR {seconds} S: WHAT WAS PRESSED MEANWHILE WAS FORGOTTEN")
-            self.frame.desk.say(text.format(seconds=f"{seconds:.1f}"))
+            text = tr("NOT RESPONDING FOR {seconds} S: KEYS WERE DROPPED. WAIT A SECOND, THEN PRESS AGAIN")
+            self.frame.desk.warn(text.format(seconds=f"{seconds:.1f}"))
 
     def stops_at(self, event: QInputEvent) -> bool:
         """Whether a press is on something that stops the machine."""
@@ -316,22 +324,32 @@ class MainWindow(QWidget):
         if self._typed(frame, event) or self._kept_from(frame, event):
             return
         name = name_of(key_of(event), event.modifiers())
-        if name and (name in REPEATING or not event.isAutoRepeat()):
+        if name and (name in REPEATING or not event.isAutoRepeat()) and not self._elsewhere(frame, name):
             self.press(name)
+
+    def _elsewhere(self, frame: Frame, name: str) -> bool:
+        """Return whether a key that changes how a cycle runs is typed on another page; say so."""
+        if name not in OF_AUTOMATIC or frame.page is frame.automatic or name in frame.page.key_actions():
+            return False
+        frame.desk.say(tr("{key} IS A KEY OF THE AUTOMATIC PAGE: PRESS F1, THEN F2").format(key=name))
+        self.refresh()
+        return True
 
     def _answered(self, frame: Frame, event: QKeyEvent) -> bool:
         """Whether the key was the answer to a question: pressed by itself, after all others were let go."""
-        if frame.desk.asked not in {letter_of(event), typed_of(event)} - {""}:
+        typed = {letter_of(event), typed_of(event)} - {""}
+        if not frame.desk.asked or not typed & {frame.desk.asked, "N"}:
             return False
-        if not event.isAutoRepeat() and self.keyboard.alone(event):
+        if "N" in typed and frame.desk.asked != "N":
+            self.press(NO)
+        elif not event.isAutoRepeat() and self.keyboard.alone(event):
             self.press(ANSWER)
         return True
 
     def _kept_from(self, frame: Frame, event: QKeyEvent) -> bool:
         """Whether an entry has the keyboard and does not take a character: it is no other key then."""
         text = event.text()
-        stops = text == " " or letter_of(event) in STOPPING
-        if not text.isprintable() or not text or stops or not frame.has_field():
+        if not text.isprintable() or not text or not frame.has_field():
             return False
         if not event.isAutoRepeat():
             self._untaken = tr("AN ENTRY HAS THE KEYBOARD, AND DOES NOT TAKE {key} HERE").format(key=text)

@@ -9,7 +9,7 @@ spindle, lamps, dock, prompt and function keys belong to the ``Frame``. To plug 
 ``labels()``  the same, where they change with what the page is doing.
 ``STARTS``    whether cycles are started while it is shown; only the Automatic page's palms start anything.
 ``key_actions()``  what its keys do, by the names of ``app.screen.keys``. They go before the frame's own
-              keys; H, E, D, R, A and the pots work on every page, as does F1.
+              keys; H, E, D, R and the pots work on every page without a caret, F1 on all pages.
 ``key_down``  sees every key that goes down (also a repeating one) before all else; True takes it.
 ``pressed()`` is told before any other key or finger acts: what is held on the page ends then.
 ``key_up``    sees every key that comes up; ``let_go()``: no release will arrive any more, let go of all.
@@ -17,13 +17,15 @@ spindle, lamps, dock, prompt and function keys belong to the ``Frame``. To plug 
               ``Page up``, ``Page down``; True when it was taken. A stock widget
               that has the focus takes its keys by itself.
 ``takes(k)``  whether it takes that character as text: the lamps then do not show it as their key.
-``has_field()`` whether an entry has the keyboard: characters that it does not take mean nothing then.
+``has_field()`` whether an entry has the keyboard. Exactly then a caret is drawn, and every character is the
+              entry's: one that it does not take means nothing.
 ``asks()``    a question of its own: it goes before anything else on the prompt line.
 ``prompt()``  what stands on the prompt line when the desk has no answer and no alarm to show there.
 ``opens()``   whether it may come up now; when not, it says why by ``desk.say`` and the page before stays.
 ``opened()``  it has come up; it may take the focus (the window has it otherwise).
 ``leave()``   it is about to go, or the window is about to close; False keeps it (it then says why by
               ``desk.say``).
+``esc_holds()`` whether Esc holds the feed while something moves; not where the page offers Esc for something.
 ``escape()``  Esc; False when nothing was closed by it: then the desk takes its question back or holds, and
               where it has neither the Automatic page comes up.
 ``ahead()``   makes one slice of what takes long, while the page is not shown yet; False: nothing is left.
@@ -143,6 +145,10 @@ class Page(QWidget):
     def leave(self) -> bool:
         """Whether another page may take its place; where not, it says why on the prompt line."""
         return True
+
+    def esc_holds(self) -> bool:
+        """Return whether Esc holds the feed while something moves; an entry takes Esc for itself."""
+        return not self.has_field()
 
     def escape(self) -> bool:
         """Whether Esc has closed something here."""

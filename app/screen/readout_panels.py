@@ -133,6 +133,7 @@ class FeedGauge(Gauge):
         unit = QRectF(top.right() - 7.6 * self.look.u, top.y(), 7.6 * self.look.u, top.height())
         self.figure(painter, top.adjusted(0, 0, -8.2 * self.look.u, 0), view.value, 4.2)
         self.label(painter, unit.adjusted(0, 1.0 * self.look.u, 0, 1.0 * self.look.u), view.unit)
+        self.label(painter, top, view.prefix)
         actual = self.row(7.4, 2.8)
         self.label(painter, actual, "ACTUAL")
         self.figure(painter, actual.adjusted(7 * self.look.u, 0, -8.2 * self.look.u, 0), view.actual, 2.5)
@@ -268,7 +269,11 @@ class HeadLine(Panel):
         u = self.look.u
         feed, spindle = view.feed, view.spindle
         cells = (
-            (f"FEED {percent(feed.override)}", f"{feed.actual} {tr(feed.actual_unit)}", 0.36),
+            (
+                f"FEED {percent(feed.override)}",
+                f"{feed.prefix} {feed.actual} {tr(feed.actual_unit)}".strip(),
+                0.36,
+            ),
             (
                 f"SPINDLE {percent(spindle.override)}",
                 f"{tr(spindle.direction)} {spindle.rpm}/{spindle.actual}",

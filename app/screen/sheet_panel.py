@@ -229,6 +229,10 @@ class ListPage(ModelPage):
         self.model.leave()
         return True
 
+    def esc_holds(self) -> bool:
+        """Return False: Esc goes one step back, also while something moves."""
+        return False
+
     def escape(self) -> bool:
         """One step back, and from the list to the Automatic page."""
         if not self.model.escape():

@@ -16,13 +16,14 @@ from app.desk.machine_status import Tone
 from app.desk.prompt_line import Sort
 from app.desk.readouts import Lamp
 from app.desk.translation import tr
-from app.screen.keys import ANSWER
+from app.screen.keys import ANSWER, NO
 from app.screen.look import CENTRE, LEAST, LEFT, RIGHT, Look, Painter, draw_sign, put, width_of
 from app.screen.panel import Panel, Shown
 from app.screen.window_layout import FINGER
 
 TARGET = 13.0  # units: width of an answer to touch
 ANSWERS = {Sort.ANSWER: ("pause", "!"), Sort.DONE: ("run", "✓"), Sort.ASKED: ("wait", "?")}  # ground, sign
+PROMPT_SHARE = 0.47  # of the prompt line: the row of answer and question
 SIGN = 5.0  # units: width of the sign
 
 
@@ -80,47 +81,75 @@ class TitleLine(Panel):
 
 
 class PromptLine(Panel):
-    """What can be done now, or the answer to the last key; below it why the machine stands.
+    """Three places above the function keys: answer and question in one row, the state below them.
 
-    A question has two targets for a finger.
+    Each place has one subject, and none covers another. Where there is an answer and a question, each has
+    half of the row. The question has two targets, always at the right end.
     """
 
-    text, reason, asked = Shown(""), Shown(""), Shown("")
-    sort: Shown[Sort | None] = Shown(None)
+    state, reason, question, answer, asked = (Shown("") for _ in range(5))
+    sort: Shown[Sort | None] = Shown(None)  # of the answer
 
     def __init__(self, look: Look, press: Callable[[str], None], parent: QWidget | None = None) -> None:
         super().__init__(look, parent)
         self._press = press
 
-    def show_text(self, text: str, *, sort: Sort | None, asked: str = "", reason: str = "") -> None:
-        """``sort`` when it answers a key: it stands out then. ``asked``: the key that means yes."""
-        self.text, self.sort, self.asked, self.reason = text, sort, asked, reason
+    @property
+    def text(self) -> str:
+        """What there is to read first: the answer to the last key, a question, or else the state."""
+        return self.answer or self.question or self.state
+
+    def show_state(self, text: str, reason: str = "") -> None:
+        """Show what can be done now, and the reason why the machine is stopped."""
+        self.state, self.reason = text, reason
+
+    def show_question(self, text: str, asked: str = "") -> None:
+        """Show a question; ``asked`` is the key that means yes."""
+        self.question, self.asked = text, asked
+
+    def show_answer(self, text: str, *, sort: Sort | None) -> None:
+        """Show an answer; ``sort`` gives its color and its sign."""
+        self.answer, self.sort = text, sort
 
     def draw(self, painter: Painter) -> None:
-        u = self.look.u
         area = self.area()
-        ground, sign = ANSWERS[self.sort] if self.sort is not None else ("panel", "")
-        painter.fill(area, ground)
-        if self.asked:
-            area.setRight(self._targets(painter, area))
-        ink = "on_state" if sign else "text"
+        upper = QRectF(area.x(), area.y(), area.width(), PROMPT_SHARE * area.height())
+        painter.fill(area, "panel")
+        self._state(painter, area.adjusted(0, upper.height(), 0, 0))
+        both = bool(self.answer and self.question)
+        half = upper.width() / 2
+        if self.answer:
+            place = upper.adjusted(0, 0, -half - 2 if both else 0, 0)
+            self._notice(painter, place, self.answer, self.sort or Sort.ANSWER)
+        if self.question:
+            place = upper.adjusted(half + 2 if both else 0, 0, 0, 0)
+            self._notice(painter, place, self.question, Sort.ASKED)
+
+    def _state(self, painter: Painter, area: QRectF) -> None:
+        u = self.look.u
         room = area.adjusted(1.4 * u, 0, -1.4 * u, 0)
-        if sign:
-            painter.write(
-                QRectF(area.x(), area.y(), SIGN * u, area.height()), sign, 3.0, ink, at=CENTRE, raw=True
-            )
-            room.setLeft(area.x() + SIGN * u)
         if self.reason:
             low = room.adjusted(0, 0.48 * room.height(), 0, -0.05 * room.height())
-            painter.write(low, self.reason, 1.9, ink, bold=False)
+            painter.write(low, self.reason, 1.9, "text", bold=False)
             room.setBottom(low.top())
-        painter.write(room, self.text, 2.1 if self.reason else 2.3, ink)
+        painter.write(room, self.state, 2.1 if self.reason else 2.3, "text")
+
+    def _notice(self, painter: Painter, area: QRectF, text: str, sort: Sort) -> None:
+        u = self.look.u
+        ground, sign = ANSWERS[sort]
+        painter.fill(area, ground)
+        if sort is Sort.ASKED and self.asked:
+            area.setRight(self._targets(painter, area))
+        painter.write(
+            QRectF(area.x(), area.y(), SIGN * u, area.height()), sign, 3.0, "on_state", at=CENTRE, raw=True
+        )
+        painter.write(area.adjusted(SIGN * u, 0, -1.4 * u, 0), text, 2.3, "on_state")
 
     def _targets(self, painter: Painter, area: QRectF) -> float:
-        """Yes and no for a finger, at the right end, where no key is that asks; where the text ends."""
+        """Draw yes and no at the right end, where no key is that asks; return where the text ends."""
         u = self.look.u
         left = area.right() - 2 * TARGET * u
-        for number, (word, key) in enumerate((("YES", ANSWER), ("NO", "Esc"))):
+        for number, (word, key) in enumerate((("YES", ANSWER), ("NO", NO))):
             box = QRectF(left + number * TARGET * u, area.y(), (TARGET - 0.6) * u, area.height())
             self.key(painter, box, word, 2.1, partial(self._press, key))
         return left

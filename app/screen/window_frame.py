@@ -16,11 +16,13 @@ from app.desk.first_job import CLOSE
 from app.desk.interrupted_notice import NoticeRow, may_go_on, notice_of
 from app.desk.machine_status import MachineStatus
 from app.desk.program_loading import Loaded
+from app.desk.prompt_line import Sort
 from app.desk.readouts import Lamp, drives_lamp
 from app.desk.translation import tr
 from app.desk.unheard_notice import unheard_notice
 from app.screen import page_table
 from app.screen.alarm_panels import AlarmList, Notice
+from app.screen.keys import OF_AUTOMATIC
 from app.screen.look import Look
 from app.screen.page_base import Host, KeyActions, Page
 from app.screen.page_table import make_page, page_on
@@ -126,7 +128,7 @@ class Frame(QWidget):
 
     def _front(self) -> None:
         page = self.page
-        self.desk.starts_here, self.desk.field_open = page.STARTS, page.has_field
+        self.desk.starts_here, self.desk.field_open = page.STARTS, self.has_field
         self.keys.labels = page.labels()
         self._lay_out()
         self.log.hide()
@@ -178,6 +180,10 @@ class Frame(QWidget):
             self.log.hide()
             return True
         return self.page.escape()
+
+    def esc_holds(self) -> bool:
+        """Return whether Esc holds the feed while something moves and is offered for nothing else."""
+        return not self.desk.asked and not self.log.isVisible() and self.page.esc_holds()
 
     def dress(self) -> None:
         """Everything in the colours that are in force now."""
@@ -273,8 +279,8 @@ class Frame(QWidget):
             self._lay_out()
         self._show_bars(snapshot, view, loaded)
         lamps = self._lamps_of(snapshot, view)
-        mute = frozenset(lamp.key for lamp in lamps if self.has_field() or self.is_text(lamp.key))
-        self.strip.lamps, self.strip.mute = lamps, mute
+        self.strip.lamps = lamps
+        self.strip.mute = frozenset(lamp.key for lamp in lamps if self._is_dead(lamp.key))
         if self.page is self.automatic:
             self._show_readouts(snapshot, view, loaded)
             go_on = tr("{start} TO GO ON").format(start=tr(self.desk.start_words))
@@ -287,14 +293,28 @@ class Frame(QWidget):
         if self.dock is not None:
             self.dock.show_station(snapshot)
         self.page.refresh(snapshot, view, loaded)
+        self._show_caret()
         self.keys.labels = self.page.labels()
+
+    def _show_caret(self) -> None:
+        """Draw the caret of the page's entry exactly while the characters are that entry's."""
+        has_field = self.page.has_field()
+        if has_field is not self.look.caret:
+            self.look.caret = has_field
+            for panel in self.page.findChildren(Panel):
+                panel.update()
+
+    def _is_dead(self, key: str) -> bool:
+        """Return whether the key of a lamp does not switch it on this page; a touch does on every page."""
+        elsewhere = key in OF_AUTOMATIC and self.page is not self.automatic
+        return elsewhere or self.has_field() or self.is_text(key)
 
     def is_text(self, key: str) -> bool:
         """Whether a character goes to an entry now: the page's, or a field that has the keyboard."""
         return self.page.takes(key) or self._stock_field()
 
     def has_field(self) -> bool:
-        """Whether an entry has the keyboard: no character is a key then, but for those that stop."""
+        """Return whether an entry has the keyboard: then its caret is drawn, and no character is a key."""
         return self.page.has_field() or self._stock_field()
 
     def _stock_field(self) -> bool:
@@ -307,10 +327,10 @@ class Frame(QWidget):
         self.title.page = self.page.NAME
         self.title.access = desk.access.words
         self.title.show_state(name, view.state, view.tone, desk.machine, desk.time_of_day())
-        text = self.page.asks() or desk.prompt(snapshot, loaded, self.page.prompt())
-        reason = prompt_line.reason(view) or prompt_line.remedy(loaded, text)
-        sort = desk.answers.sort if desk.notice else None
-        self.prompt.show_text(text, sort=sort, asked=desk.asked, reason=reason)
+        state = desk.prompt(snapshot, loaded, self.page.prompt())
+        self.prompt.show_state(state, prompt_line.reason(view) or prompt_line.remedy(loaded, state))
+        self.prompt.show_question(desk.answers.question or self.page.asks(), desk.asked)
+        self.prompt.show_answer(desk.answers.answer, sort=desk.answers.sort)
 
     def _show_readouts(self, snapshot: Snapshot, view: MachineStatus, loaded: Loaded) -> None:
         """The figures of this instant, large."""
@@ -347,12 +367,15 @@ class Frame(QWidget):
             rows.append(replace(found, keys=_KEYS[not may_go_on(loaded) :] if offered else ()))
         if here and desk.settings.now.first_job:
             rows.append(desk.first_job.row)
+        differs = desk.differs()
+        if differs:
+            rows.append(NoticeRow(differs))
         offered_job = desk.offered(snapshot) if here else None
         if offered_job is not None:
             rows.append(offered_job)
         if desk.not_kept():
             held = desk.waiting()
-            waits = tr("HELD IN MEMORY, WRITTEN WHEN THERE IS ROOM: {what}").format(what=held) if held else ""
+            waits = tr("IN MEMORY UNTIL THE STORE CAN BE WRITTEN: {what}").format(what=held) if held else ""
             rows.append(NoticeRow(tr("NOT KEPT: {why}").format(why=desk.not_kept()), waits))
         return tuple(rows)
 

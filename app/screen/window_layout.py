@@ -68,7 +68,7 @@ def places(width: int, height: int, dock: bool) -> Places:
     """Divide a window of this size."""
     u = unit(width, height)
     gap = _gap(u)
-    title_h, strip_h, prompt_h, keys_h = (round(k * u) for k in (4.8, 6.0, 4.6, 6.6))
+    title_h, strip_h, prompt_h, keys_h = (round(k * u) for k in (4.8, 6.0, 7.6, 6.6))
     strip_h, keys_h = max(strip_h, FINGER), max(keys_h, FINGER)
     top_h = round(27.2 * u)
     keys = Rect(gap, height - gap - keys_h, width - 2 * gap, keys_h)

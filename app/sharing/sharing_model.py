@@ -226,7 +226,7 @@ class SharingModel:
             self.desk.say(why)
         elif here[1].here:
             words = tr(
-                "PRESS Y TO TAKE {name} AS {desk} HAS IT (WHAT IS HERE STAYS A VERSION), ESC TO LEAVE IT"
+                "PRESS Y TO TAKE {name} AS {desk} HAS IT (WHAT IS HERE STAYS A VERSION), N TO LEAVE IT"
             )
             self.desk.ask(words.format(name=version.program, desk=version.desk), lambda: self._take(version))
         else:
@@ -252,7 +252,7 @@ class SharingModel:
         if self.desk.refused(Act.PROGRAMS):
             return
         key, name = here[0], here[1].versions[here[1].here].program
-        words = tr("PRESS Y TO KEEP {name} AS IT IS HERE (THE OTHERS STAY VERSIONS), ESC TO LEAVE IT")
+        words = tr("PRESS Y TO KEEP {name} AS IT IS HERE (THE OTHERS STAY VERSIONS), N TO LEAVE IT")
         self.desk.ask(words.format(name=name), lambda: self._keep(key, name))
 
     def _keep(self, key: str, name: str) -> None:

@@ -273,7 +273,7 @@ class AccessLevels(SpecialFunction):
             return
         said = tr("{name} IS TAKEN AWAY").format(name=data(row.name))
         work = partial(self.persistence.remove_person, row.name)
-        asked = tr("PRESS Y TO TAKE {name} AWAY, ESC TO KEEP THE PIN").format(name=data(row.name))
+        asked = tr("PRESS Y TO TAKE {name} AWAY, N TO KEEP THE PIN").format(name=data(row.name))
         self.desk.ask(asked, partial(self._change, work, said, f"{row.name} taken away"))
 
     def next_minutes(self) -> None:
@@ -290,7 +290,7 @@ class AccessLevels(SpecialFunction):
         if why:
             self.desk.say(why)
             return
-        question = tr("PRESS Y TO TAKE ALL PINS AWAY IN 10 MINUTES; IT IS LOGGED; ESC TO KEEP THEM")
+        question = tr("PRESS Y TO TAKE ALL PINS AWAY IN 10 MINUTES; IT IS LOGGED; N TO KEEP THEM")
         self.desk.ask(question, self.service_reset.begin)
 
     def _reset_now(self) -> None:

@@ -184,7 +184,7 @@ class BackupAndRestore(SpecialFunction):
         if self.desk.snapshot().state in UNDER_WAY:
             self.desk.say(BARRED)
             return
-        asked = tr("PRESS Y TO RESTORE {name} OVER EVERYTHING KEPT NOW ({what}), ESC TO LEAVE IT")
+        asked = tr("PRESS Y TO RESTORE {name} OVER EVERYTHING KEPT NOW ({what}), N TO LEAVE IT")
         self.desk.ask(asked.format(name=place.label, what=_other(verdict)), lambda: self._restore_now(place))
 
     def _restore_now(self, place: Place) -> None:

@@ -156,9 +156,9 @@ class InputsOutputs(SpecialFunction):
             return
         on = name not in snapshot.outputs
         asked = (
-            tr("PRESS Y TO SWITCH {name} ON, ESC TO LEAVE IT OFF")
+            tr("PRESS Y TO SWITCH {name} ON, N TO LEAVE IT OFF")
             if on
-            else tr("PRESS Y TO SWITCH {name} OFF, ESC TO LEAVE IT ON")
+            else tr("PRESS Y TO SWITCH {name} OFF, N TO LEAVE IT ON")
         )
         self.desk.ask(asked.format(name=name), lambda: self._force(name, on))
 

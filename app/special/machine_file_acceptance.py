@@ -55,7 +55,7 @@ class MachineFileAcceptance(SpecialFunction):
         if self.desk.snapshot().state not in _OFF:
             self.desk.say(tr("A CHANGED MACHINE FILE IS ACCEPTED WITH THE DRIVES OFF"))
         else:
-            question = tr("PRESS Y TO ACCEPT THE MACHINE FILE AS IT IS NOW, ESC TO LEAVE IT")
+            question = tr("PRESS Y TO ACCEPT THE MACHINE FILE AS IT IS NOW, N TO LEAVE IT")
             self.desk.ask(question, self._accepted)
 
     def _accepted(self) -> None:

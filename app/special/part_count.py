@@ -31,6 +31,7 @@ class PartCounter:
     _seen: int | None = None
     _announced: int = -1
     _made: int = -1  # as the executor was told
+    text: str = ""  # digest of the text whose parts are counted
 
     @property
     def words(self) -> str:
@@ -47,11 +48,18 @@ class PartCounter:
         """Whether all the parts that were asked for are made."""
         return 0 < self.aim <= self.count
 
-    def see(self, snapshot: Snapshot, post: Callable[[Command], None], say: Callable[[str], None]) -> None:
-        """One frame: another program, another part, the last part."""
+    def see(
+        self,
+        snapshot: Snapshot,
+        post: Callable[[Command], None],
+        say: Callable[[str], None],
+        text: str = "",
+    ) -> None:
+        """One frame: another program, another part, the last part. ``text``: digest of the loaded text."""
         name = Path(snapshot.program).name
-        if name != self.program:
+        if name != self.program or text != self.text:
             self._load(name)
+            self.text = text
             self._seen = snapshot.parts
         if self._seen is not None and snapshot.parts > self._seen:
             self.count += snapshot.parts - self._seen

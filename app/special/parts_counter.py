@@ -7,14 +7,14 @@ from functools import partial
 
 from app.desk import formats
 from app.desk.arithmetic import EntryError, value_of
-from app.desk.sheet import Key, Row, Sheet
+from app.desk.sheet import Key, Row, Sheet, refused
 from app.desk.translation import tr
 from app.special.part_count import MOST, PartCounter
 from app.special.special_functions import FigureFunction
 from core.access.access_table import Act
 from core.executor.snapshot import Snapshot
 
-RESET = "PRESS Y TO PUT THE COUNT TO NOUGHT, ESC TO KEEP IT"
+RESET = "PRESS Y TO PUT THE COUNT TO NOUGHT, N TO KEEP IT"
 NO_PROGRAM = "CHOOSE A PROGRAM FIRST: EVERY PROGRAM HAS ITS OWN COUNT"
 
 
@@ -102,6 +102,7 @@ class PartsCounterFunction(FigureFunction):
         target = whole_number(text)
         if 0 < target <= self.counter.count:
             made = self.counter.count
+            self.entry.text = refused(self.entry.text)
             self.desk.say(
                 tr("REFUSED: {made} PARTS ARE MADE ALREADY; F4 PUTS THE COUNT TO NOUGHT").format(made=made)
             )

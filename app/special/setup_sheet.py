@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from app.desk.program_loading import at_a_machine
 from app.desk.translation import tr
 from app.report.run_record import RunRecord, Stop, ToolTime
 from app.special.mill_setup import MillSetup, mill_setup
@@ -165,7 +164,7 @@ def setup_sheet(
     return SetupSheet(
         metric=report.metric or report.dialect is not Dialect.OMNITURN,
         cycle=report.times.cycle,
-        found=tuple(map(at_a_machine, report.diagnostics)),
+        found=report.diagnostics,
         stock=part.stock if part is not None else None,
         part=part.last if part is not None else None,
         milled=part is not None and part.milled,

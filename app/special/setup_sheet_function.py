@@ -223,7 +223,7 @@ class SetupSheetFunction(SpecialFunction):
         if at is None:
             self.desk.say("MARK A NOTE FIRST")
         else:
-            self.desk.ask("PRESS Y TO THROW THIS NOTE AWAY, ESC TO KEEP IT", partial(self._without, at))
+            self.desk.ask("PRESS Y TO THROW THIS NOTE AWAY, N TO KEEP IT", partial(self._without, at))
 
     def _without(self, at: int) -> None:
         self._keep([text for number, text in enumerate(self.notes) if number != at])

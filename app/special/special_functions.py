@@ -10,7 +10,7 @@ from typing import ClassVar
 from app.desk.arithmetic import EntryError
 from app.desk.desk import Desk
 from app.desk.latest import Latest
-from app.desk.sheet import STEPS, Entry, Key, Row, Sheet
+from app.desk.sheet import STEPS, Entry, Key, Row, Sheet, refused
 from app.desk.translation import tr
 from core.executor.snapshot import Snapshot
 
@@ -119,6 +119,7 @@ class FigureFunction(SpecialFunction):
             if self.take(self.entry.text):
                 self.entry.text = ""
         except EntryError as error:
+            self.entry.text = refused(self.entry.text)
             self.desk.refuse(str(error))
 
     def takes(self, key: str) -> bool:
@@ -153,6 +154,7 @@ class SpecialFunctions:
     worker: Latest
     at: int = 0
     inside: bool = False
+    number: str = ""  # as typed in the list so far
 
     @property
     def current(self) -> SpecialFunction:
@@ -161,6 +163,7 @@ class SpecialFunctions:
 
     def show(self, number: int) -> None:
         """Another function, seen from the list."""
+        self.number = ""
         number = max(0, min(len(self.functions) - 1, number))
         if number != self.at or self.inside:
             self.current.desk.clear()
@@ -174,22 +177,33 @@ class SpecialFunctions:
         self.inside = True
 
     def typed(self, key: str) -> bool:
-        """Arrows and figures in the list; in a function its own keys."""
+        """Mark a function by arrows or by its number, and open it by Return; in a function its own keys."""
         if self.inside:
             return self.current.typed(key)
         if key in {"Up", "Down"}:
             self.show(self.at + (1 if key == "Down" else -1))
         elif key in {"Enter", "Tab"}:
             self.enter(self.at)
-        elif key.isdigit() and (int(key) or 10) <= len(self.functions):
-            self.enter((int(key) or 10) - 1)
+        elif self.takes(key):
+            self._type_number(key)
         else:
             return False
         return True
 
+    def _type_number(self, digit: str) -> None:
+        """Mark the function of the number typed so far; a digit that names none after it begins another."""
+        numbers = range(1, len(self.functions) + 1)
+        typed = next((each for each in (self.number + digit, digit) if int(each) in numbers), "")
+        if not typed:
+            words = tr("FUNCTION {number} DOES NOT EXIST: TYPE 1 TO {last}")
+            self.current.desk.say(words.format(number=self.number + digit, last=len(self.functions)))
+            return
+        self.show(int(typed) - 1)
+        self.number = typed
+
     def takes(self, key: str) -> bool:
         """Whether a character is text now."""
-        return self.current.takes(key) if self.inside else key.isdigit()
+        return self.current.takes(key) if self.inside else key.isascii() and key.isdigit()
 
     def escape(self) -> bool:
         """One step back; False from the list."""
@@ -206,11 +220,11 @@ class SpecialFunctions:
         """Of the function, or how to choose one."""
         if self.inside:
             return self.current.prompt()
-        return "A FINGER OPENS A FUNCTION; ARROWS OR A FIGURE CHOOSE, RETURN OPENS IT; ESC FOR AUTOMATIC"
+        return "A FINGER OPENS A FUNCTION; ARROWS OR ITS NUMBER CHOOSE, RETURN OPENS IT; ESC FOR AUTOMATIC"
 
     def opened(self) -> None:
         """The page comes up with the list."""
-        self.inside = False
+        self.inside, self.number = False, ""
         self.current.opened()
 
     def leave(self) -> None:

@@ -17,7 +17,7 @@ from core.executor.snapshot import Snapshot
 from core.machine.machine_model import SpindleModel
 from core.ports import Unknown
 
-LIFT = "PRESS Y TO LIFT THE LIMIT, ESC TO KEEP IT"
+LIFT = "PRESS Y TO LIFT THE LIMIT, N TO KEEP IT"
 
 
 class SpindleSpeedLimit(FigureFunction):

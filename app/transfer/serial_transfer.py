@@ -10,7 +10,6 @@ from app.desk.desk import Desk
 from app.desk.latest import Latest
 from app.desk.machine_status import Tone
 from app.desk.persistence import Persistence
-from app.desk.prompt_line import UNDER_WAY
 from app.desk.sheet import Entry, Key, Row, Sheet
 from app.desk.translation import tr
 from app.programs.whole_file import FileError
@@ -94,9 +93,8 @@ def received_sheet(received: Received, name: str) -> Sheet:
 
 SETTING = "rs232"
 BUSY = "A TRANSFER IS UNDER WAY: WAIT UNTIL IT IS DONE, OR F6 GIVES IT UP"
-UNDER_WAY_NAME = "A PROGRAM IS UNDER WAY: RETURN STORES IT AS IT IS NAMED; ANOTHER NAME CAN BE TYPED AT REST"
 SETS = "RETURN OR A TOUCH CHANGES THE MARKED SETTING; F4 SENDS THE PROGRAM ON THE DESK, F5 RECEIVES ONE"
-THROW_AWAY = "PRESS Y TO THROW THE RECEIVED PROGRAM AWAY, ESC TO KEEP IT"
+THROW_AWAY = "PRESS Y TO THROW THE RECEIVED PROGRAM AWAY, N TO KEEP IT"
 
 
 class SerialTransfer(SpecialFunction):
@@ -153,11 +151,8 @@ class SerialTransfer(SpecialFunction):
         }
 
     def takes(self, key: str) -> bool:
-        """Letters of the new name; while a program is under way they keep their meaning: H holds."""
-        return self.received is not None and self._at_rest() and self.entry.takes(key)
-
-    def _at_rest(self) -> bool:
-        return self.desk.snapshot().state not in UNDER_WAY
+        """Return whether a character belongs to the name of what was received."""
+        return self.received is not None and self.entry.takes(key)
 
     def typed(self, key: str) -> bool:
         """Arrows mark a setting, Return steps it on; or the name of what has come."""
@@ -178,8 +173,6 @@ class SerialTransfer(SpecialFunction):
 
     def prompt(self) -> str:
         """What the keys do, for the prompt line."""
-        if self.received is not None and not self._at_rest():
-            return UNDER_WAY_NAME
         if self.received is not None:
             return "RETURN STORES IT AS A NEW PROGRAM AND STARTS NOTHING; F6 THROWS IT AWAY"
         if self.under_way is not None:
@@ -258,7 +251,7 @@ class SerialTransfer(SpecialFunction):
         if key == "Enter":
             self._store()
             return True
-        if not self._at_rest() or not self.entry.type(key):
+        if not self.entry.type(key):
             return False
         self.desk.clear()
         return True

@@ -29,12 +29,14 @@ CONTROL: Entries = {
     ),
     "control-silent": off(
         908,
-        "the control's thread is stuck or dead",
+        "the control does not respond",
         (
-            "a driver does not come back: its wire, its adapter, the computer's disk or network",
-            "a mistake in TurnDesk; the log has it",
+            "the computer is overloaded: another program, a backup or an update uses the processor",
+            "a driver does not respond: its cable, its adapter, the computer's disk or network",
+            "a fault in TurnDesk; see the log",
         ),
-        "PRESS E-STOP: what is shown is not of now; save the log, end TurnDesk and start it again",
+        "PRESS E-STOP: the display is out of date; close other programs and stop backups and updates, "
+        "save the log, end TurnDesk and start it again",
         tells=True,
     ),
     "feeder-tripped": hold(

@@ -123,6 +123,8 @@ class CommandHandler:
             self._refuse(_UNDER_WAY)
             return
         status = self._control.status
+        if status.job is None or status.job.source.name != command.job.source.name:
+            status.modal = status.modal._replace(comment="")  # it belongs to the program before
         self._control.program_run.interruption.loaded(command.job)
         status.job, status.proof, status.start_refused = command.job, command.proof, ""
         self._control.program_run.changed_offsets.forget()

@@ -219,9 +219,13 @@ class MachineControl:
         self.jogger.stop()
 
     def let_go(self) -> None:
-        """The key or finger that holds a jog is up: the next press counts again. Raises DriverError."""
+        """The key or finger that holds a jog is up: the next press counts again. Raises DriverError.
+
+        A release that comes late or twice stops nothing that runs after the jog.
+        """
         self.jog_ended = ""
-        self.stop_jog("it was let go")
+        if self.state is State.JOG:
+            self.stop_jog("it was let go")
 
     def _end_jog(self, why: str) -> None:
         """The control ends what is moved by hand; renewals of a key that is still held are refused."""
@@ -353,6 +357,7 @@ class MachineControl:
     def _give_up(self, why: str) -> None:
         """What was under way is over, whether or not what it stood on still answers."""
         self._giving_up = False
+        self.jogger.forget()  # the stop has ended it: a release that comes later finds nothing to stop
         with Attempt() as trial:
             self.program_run.forget(why)
         if trial.error is not None:

@@ -36,6 +36,7 @@ _GRAIN = 0.005  # s; half a tick
 _MOST = 12_000  # ticks that wait for a recorder that does not come: two minutes
 BEFORE, BEHIND = 10.0, 2.0  # s before an alarm and after it that are kept with it
 _SOON = 0.2  # s; a machine that stands is waited for so long
+ENDS = 3.0  # s that closing waits for the thread: a disk may hang
 KEPT = 50  # records of alarms
 _FROZEN = frozenset({"alarm", "estop"})  # kinds of events
 _STATES = {state: float(i) for i, state in enumerate(State)}
@@ -151,7 +152,7 @@ class Recorder:
         self._closing.set()
         self._happens.set()
         if self._thread.is_alive():
-            self._thread.join()
+            self._thread.join(ENDS)
         self.drain(last=True)
         if self._file is not None:
             self._file.close()

@@ -129,6 +129,7 @@ class Snapshot:
     offset: tuple[float, float] = (0.0, 0.0)  # machine minus program, X and Z
     swivel: Swivel | None = None  # of a mill: the working plane of the last block that was begun
     modal: Modal = field(default_factory=Modal)
+    x_diameter: bool | None = None  # X is read as a diameter; None: as ``modal`` counts
     velocity: float = 0.0  # along the path, mm/s, actual
     feed: float = 0.0  # programmed: mm/s or mm/rev by modal
     rapid: bool = False
@@ -196,6 +197,11 @@ class Snapshot:
         """The line at which the loaded program was interrupted, 0: it was not."""
         found = self.interrupted
         return found.line if found is not None and found.program == self.program else 0
+
+    @property
+    def reads_diameter(self) -> bool:
+        """Whether displays show X as a diameter; a program's mode remains after its end, reset or E-stop."""
+        return self.modal.diameter if self.x_diameter is None else self.x_diameter
 
     @property
     def tip(self) -> tuple[float, float]:

@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 from typing import TypedDict
 
+from core.executor.control_status import ControlStatus
 from core.executor.cycle import Cycle
 from core.executor.machine_context import MachineContext
 from core.executor.machine_control import MachineControl
-from core.executor.snapshot import Snapshot, State
-from core.interpreter.actions import ProgramStop
+from core.executor.snapshot import Snapshot, Starts, State
+from core.interpreter.actions import ProgramEnd, ProgramStop
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.modal_state import Modal
 from core.interpreter.working_plane import Swivel
@@ -36,6 +37,8 @@ class Publisher:
         self._before: AxisSample | None = None
         self._velocity = 0.0
         self._swivel: Swivel | None = None
+        self._diameter: bool | None = None  # how X is read; None: as the control counts
+        self._shown_for = ""  # the program whose mode that is
 
     def snapshot(self, context: MachineContext, control: MachineControl) -> Snapshot:
         """The snapshot of this tick."""
@@ -58,6 +61,7 @@ class Publisher:
             homed=context.sample.homed,
             powered=context.sample.enabled,
             modal=modal,
+            x_diameter=self._x_mode(block, modal, status),
             swivel=self._swivel,
             velocity=self._measured(context.sample, sum(not axis.rotary for axis in context.machine.axes)),
             rpm_command=context.spindle.command,
@@ -113,6 +117,22 @@ class Publisher:
             touched=control.touch.touched,
             spindle_load=context.spindle_load,
         )
+
+    def _x_mode(self, block: Block | None, modal: Modal, status: ControlStatus) -> bool:
+        """Return whether X is read as a diameter.
+
+        The mode of the last program, or of the last line of MDI, remains after its end, a reset or an E-stop:
+        the tool may still be in the part, and a value that halves on its own misleads. Another program, and
+        MDI, in which typed values count, bring the mode of the control.
+        """
+        name = status.job.source.name if status.job is not None else ""
+        if name != self._shown_for:
+            self._shown_for, self._diameter = name, None
+        if status.starts is Starts.LINE:
+            self._diameter = modal.diameter
+        elif block is not None and not isinstance(block.action, ProgramEnd):
+            self._diameter = block.modal.diameter
+        return modal.diameter if self._diameter is None else self._diameter
 
     def _system(self, block: Block | None, *, under_way: bool) -> Swivel | None:
         """Of a mill: the system of the last block; between programs nothing is tilted or shifted."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+from collections import Counter
 from collections.abc import Iterable
 from dataclasses import replace
 
@@ -13,17 +15,33 @@ MOST_COUNTED = 10_000
 REPEATS = frozenset({"finer-than-step", "dwell-too-short", "comment-in-loop", "n-word"})
 """What is wrong in the same way in line after line: told once, where it is first, with its count."""
 
+_HABITS = frozenset({"g-digits", "m-digits", "tool-number", "g-unknown", "m-unknown", "unknown-letter",
+    "other-control", "character", "comma", "letter-o", "letter-l"})  # fmt: skip
+"""Habits of an author: from ``_FEW`` on of one form, they are one finding with its count."""
+
+_FEW = 5
+_DIGITS = re.compile(r"[0-9.]+")
+
 
 def without_repeats(found: Iterable[Diagnostic]) -> list[Diagnostic]:
     """Findings in which what repeats is told at its first place, with its count."""
+    each_once = list(
+        {(each.code, each.severity, each.line, each.column, each.message): each for each in found}.values()
+    )
+    often = Counter(_form(each) for each in each_once)
     kept: dict[object, Diagnostic] = {}
-    for each in found:
-        repeats = each.code in REPEATS
-        place = (each.line, each.column, each.message)
-        key: object = (each.code, each.severity) if repeats else (each.code, each.severity, place)
+    for place, each in enumerate(each_once):
+        repeats = each.code in REPEATS or (each.code in _HABITS and often[_form(each)] >= _FEW)
+        key: object = _form(each) if repeats else place
         known = kept.get(key)
-        kept[key] = each if known is None else replace(known, count=known.count + each.count * repeats)
+        kept[key] = each if known is None else replace(known, count=known.count + each.count)
     return list(kept.values())
+
+
+def _form(found: Diagnostic) -> object:
+    """What findings have in common that differ in place and numbers alone."""
+    text = "" if found.code in REPEATS else _DIGITS.sub("", found.message)
+    return found.code, found.severity, text
 
 
 class Log:

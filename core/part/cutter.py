@@ -83,18 +83,18 @@ class Cutter:
     def strikes(self, part: TurnedPart, start: Point, end: Point) -> Cut:
         """What holder and shank run into; it is taken off, so that one collision is told once."""
         met = NOTHING
-        start, end = self._front(start), self._front(end)
+        start, end = self._fronts(start, end)
         if self._clear_of(part, self._body_low, start, end):
             return NOTHING
         for outline in self._body:
             met = met.joined(self._take(part, outline, start, end, cut=True))
-            if self.side is Side.BORE:
+            if self.side is Side.BORE and not self.drills:
                 met = met.joined(_opposite(part, outline, start, end))
         return met if met.depth > _OVERLAP and met.width > _OVERLAP else NOTHING
 
     def reaches(self, part: TurnedPart, start: Point, end: Point) -> Cut:
         """What edges and body would meet, left where it is: the outline of a chuck."""
-        start, end = self._front(start), self._front(end)
+        start, end = self._fronts(start, end)
         met = NOTHING
         for low, outlines in ((self._edges_low, self._cutting), (self._body_low, self._body)):
             if not self._clear_of(part, low, start, end):
@@ -105,8 +105,11 @@ class Cutter:
     def thread(self, part: TurnedPart, start: Point, end: Point, lead: float, turns: float) -> Cut:
         """The form of a thread in the section: the edge stands once a turn on its way.
 
-        ``turns`` is how far the spindle has turned since the pass began in step.
+        ``turns`` is how far the spindle has turned since the pass began in step. A lead finer than a column
+        leaves nothing standing between two turns that a column could show.
         """
+        if lead <= part.columns.step:
+            return self.cut(part, start, end)
         count = abs(end[0] - start[0]) / lead
         met, at = NOTHING, np.ceil(turns - _PHASE) - turns
         while at <= count + _PHASE:
@@ -126,9 +129,16 @@ class Cutter:
     def _front(self, place: Point) -> Point:
         return place[0], place[1] * self.across
 
+    def _fronts(self, start: Point, end: Point) -> tuple[Point, Point]:
+        """Both ends of a move on the side of the axis where the outlines are; a round tool works on both."""
+        if self.drills:
+            side = math.copysign(1.0, start[1] + end[1])
+            return (start[0], start[1] * side), (end[0], end[1] * side)
+        return self._front(start), self._front(end)
+
     def _swept(self, part: TurnedPart, start: Point, end: Point, *, cut: bool) -> Cut:
         met = NOTHING
-        start, end = self._front(start), self._front(end)
+        start, end = self._fronts(start, end)
         for outline in self._cutting:
             met = met.joined(self._take(part, outline, start, end, cut=cut))
         return met
@@ -137,7 +147,7 @@ class Cutter:
         if self.side is Side.OUTSIDE:
             return part.outwards(*sweep(outline.near, start, end, part.columns), cut=cut)
         first, far = sweep(outline.far, _mirrored(start), _mirrored(end), part.columns)
-        if self.side is Side.BORE:
+        if self.side is Side.BORE and not self.drills:
             return part.inwards(first, -far, cut=cut)
         _, near = sweep(outline.near, start, end, part.columns)
         return part.between(first, near, -far, cut=cut)

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from itertools import combinations
+from math import dist
 from typing import NamedTuple
 
 import numpy as np
@@ -12,6 +14,9 @@ from core.part.swept_edge import FloatArray, Point
 from core.part.tool_outline import outline
 from core.part.tool_shape import ToolShape
 from core.part.turned_part import NOTHING, Cut, TurnedPart
+
+_ONE_PLACE = 1.0  # mm between the tips of two tools that cannot both be mounted
+_ASSUMED_BODY = frozenset({"holder", "stick_out", "length"})
 
 
 class SolidTool(NamedTuple):
@@ -44,11 +49,20 @@ class _Neighbour(NamedTuple):
 
 
 class Neighbours:
-    """Tools with a shape and an offset; ``offsets`` are machine Z and X of each tip on part zero, mm."""
+    """Tools with a shape and an offset; ``offsets`` are machine Z and X of each tip on part zero, mm.
+
+    Two tools with the same offset cannot both be mounted: ``in_one_place`` has such pairs, and neither is
+    taken for the neighbour of the other. A holder without a stated size is left out.
+    """
 
     def __init__(self, shapes: Mapping[int, ToolShape], offsets: Mapping[int, Point]) -> None:
         self._offsets = offsets
         self._tools = {n: _neighbour(shapes[n], offsets[n]) for n in sorted(shapes.keys() & offsets.keys())}
+        self.in_one_place = tuple(
+            (a, b)
+            for a, b in combinations(sorted(self._tools), 2)
+            if dist(offsets[a], offsets[b]) < _ONE_PLACE
+        )
 
     def struck(self, part: TurnedPart, tool: int, way: Iterable[tuple[Point, Point]]) -> int:
         """The first other tool that metal meets while ``tool`` goes this way; 0 where none does."""
@@ -58,7 +72,9 @@ class Neighbours:
         for start, end in way:
             for number, each in self._tools.items():
                 shift = own[0] - each.at[0], own[1] - each.at[1]
-                if number != tool and each.solid.met(part, _moved(start, shift), _moved(end, shift)):
+                if number == tool or dist(own, each.at) < _ONE_PLACE:
+                    continue
+                if each.solid.met(part, _moved(start, shift), _moved(end, shift)):
                     return number
         return 0
 
@@ -72,7 +88,12 @@ def solid_tool(outlines: Sequence[FloatArray]) -> SolidTool:
 
 def _neighbour(shape: ToolShape, at: Point) -> _Neighbour:
     lines = outline(shape)
-    return _Neighbour(at, solid_tool((*lines.cutting, *lines.body)))
+    assumed = _ASSUMED_BODY.intersection(lines.assumed)
+    return _Neighbour(at, solid_tool(lines.cutting if assumed else (*lines.cutting, *lines.body)))
+
+
+def _same(one: Point, other: Point) -> bool:
+    return dist(one, other) < _ONE_PLACE
 
 
 def _moved(place: Point, by: Point) -> Point:

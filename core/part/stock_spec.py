@@ -39,9 +39,15 @@ class StockSpec:
     allowance: float = 0.0
     profile: str = ""
     after: str = ""
+    points: str = ""  # text of the profile's file, in the unit of the program
 
-    def stock(self, back: float) -> Stock:
-        """The bar or tube; ``back`` is the least Z that is cut, mm."""
+    def stock(self, back: float, unit: float) -> Stock:
+        """Return the bar, tube or profile.
+
+        ``back`` is the least Z that is cut, mm; ``unit`` is that of the program, mm. Raises StockError.
+        """
+        if self.points:
+            return profile_stock(self.given, self.points, unit, self.allowance)
         front = self.allowance
         ends = front - self.length if self.length else min(back, front) - _BEHIND, front
         hole = tuple((z, self.bore / 2) for z in ends) if self.bore else ()

@@ -348,7 +348,8 @@ def _drill(drawing: _Drawing) -> None:
     length = drawing.size("length", 8.0 * diameter)
     cone = radius / math.tan(math.radians(drawing.size("point", _POINTS[ToolKind.DRILL]) / 2.0))
     length = max(length, cone)
-    drawing.cutting.append(_symmetrical([(0.0, 0.0), (cone, radius), (length, radius)]))
+    point = [(0.0, 0.0)] if cone > CHORD else []  # a flat drill has none
+    drawing.cutting.append(_symmetrical([*point, (cone if point else 0.0, radius), (length, radius)]))
     _shank_of(drawing, length, diameter)
 
 

@@ -8,6 +8,8 @@ the outline that cuts them, and a shoulder stands within half a column of its pl
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -15,7 +17,7 @@ import numpy.typing as npt
 
 from core.part.polyline_fit import simplified
 from core.part.stock import Stock
-from core.part.swept_edge import Columns, FloatArray
+from core.part.swept_edge import Columns, FloatArray, Point
 
 STEP = 0.008
 """Width of a column, mm, up to ``_FINE`` of them: a shoulder is off by .004 mm (.00016 in) at most."""
@@ -77,6 +79,12 @@ class Piece(NamedTuple):
     min_wall: float | None
 
 
+def _span(r0: float, r1: float) -> tuple[float, float]:
+    """The least and the greatest distance from the axis on a straight way from ``r0`` to ``r1``."""
+    nearest = 0.0 if r0 * r1 < 0.0 else min(abs(r0), abs(r1))
+    return nearest, max(abs(r0), abs(r1))
+
+
 class TurnedPart:
     """A part in the lathe: metal from ``low`` to ``high`` (layers, columns), radii in mm."""
 
@@ -92,6 +100,8 @@ class TurnedPart:
         self.largest = stock.radius
         self.whole = self.volume  # mm³ of the stock
         self.pieces: list[Piece] = []
+        self.holds = False  # what is cut off stays where it is until ``let_fall``
+        self._parted = False
         self.removed = 0.0  # mm³, by cuts alone
 
     # --- what is there
@@ -118,6 +128,26 @@ class TurnedPart:
     def _volume(self, there: slice) -> float:
         low, high = self.low[:, there], self.high[:, there]
         return math.pi * self.columns.step * float(np.sum(high * high - low * low))
+
+    def contains(self, points: Sequence[Point], depth: float) -> bool:
+        """Whether a path of Z and r, mm, runs more than ``depth`` inside the material somewhere."""
+        return any(self._crossed(start, end, depth) for start, end in pairwise(points))
+
+    def _crossed(self, start: Point, end: Point, depth: float) -> bool:
+        (z0, r0), (z1, r1) = (start, end) if start[0] <= end[0] else (end, start)
+        first, last = self.columns.at(z0), self.columns.at(z1)
+        if first == last:  # square to the axis: within one column
+            if not 0 < first < self.columns.number:
+                return False
+            nearest, farthest = _span(r0, r1)
+            low, high = self.low[:, first], self.high[:, first]
+            return bool(
+                np.any((high - low > 2 * depth) & (farthest > low + depth) & (nearest < high - depth))
+            )
+        z = self.columns.first + self.columns.step * np.arange(first, last)
+        r = np.abs(r0 + (r1 - r0) * (z - z0) / (z1 - z0))
+        low, high = self.low[:, first:last], self.high[:, first:last]
+        return bool(np.any((r > low + depth) & (r < high - depth)))
 
     # --- what a cut meets and takes off
 
@@ -203,9 +233,17 @@ class TurnedPart:
     def _taken(self, met: Cut, *, cut: bool) -> Cut:
         if cut and met:
             self.removed += met.volume
-            if met.parts:
-                self._part_off()
+            self._parted = self._parted or met.parts
+            if not self.holds:
+                self.let_fall()
         return met
+
+    def let_fall(self) -> None:
+        """Let fall what has been cut off while it was held."""
+        self.holds = False
+        if self._parted:
+            self._parted = False
+            self._part_off()
 
     # --- parting off
 

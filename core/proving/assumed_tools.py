@@ -16,6 +16,7 @@ from core.part.tool_shape import Hand, ToolKind, ToolShape
 from core.proving.tip_moves import QUICK, LiveStep, TipMove
 from core.tool_edges import edge_name
 
+_BY_MOVES = "by its moves"
 _ON_AXIS = 0.05  # mm; a tool that feeds along Z no further off it is a drill
 _SQUARE = 0.02  # mm of Z, in a plunge
 _NAMES = {
@@ -41,27 +42,28 @@ _WIDTH = r"(\d+\.\d*|\.\d+|\d{3}|\d+(?=\s*MM))\s*(MM)?\s*(?:IN\b\.?|INCH)?\s*WID
 _AT_FACE = 0.1  # mm
 _WIDE = 1.6  # widths; what feeds further along Z than that turns
 
-_OPENS = frozenset({ToolKind.DRILL, ToolKind.REAMER})
+OPENS = frozenset({ToolKind.DRILL, ToolKind.REAMER})
 GROOVERS = frozenset({ToolKind.GROOVING, ToolKind.PARTING})
 
 # Words of shop comments, the more telling first; as text, since few programs need one of them compiled.
 _WORDS = (
-    (r"\b(WORK|BAR)? ?STOP(PER)?\b|\bGRIPPER\b|\bPULLER\b", None),
-    (r"\bCENT(ER|RE)[ -]?DRILL|\bSPOT", ToolKind.CENTRE_DRILL),
-    (r"\bREAM", ToolKind.REAMER),
-    (r"\bTAP(PING)?\b", ToolKind.TAP),
-    (r"\bTHREAD", ToolKind.THREADING),
-    (r"\bPART(ING|[ -]?OFF)?\b|\bCUT[ -]?OFF\b", ToolKind.PARTING),
-    (r"\bGROOV", ToolKind.GROOVING),
-    (r"\bBOR(E|ING)\b", ToolKind.BORING),
-    (r"\bDRILL", ToolKind.DRILL),
-    (r"\bEND ?MILL|\bMILL", ToolKind.END_MILL),
-    (r"\bTURN|\bFAC(E|ING)\b", ToolKind.TURNING),
+    (r"\b(WORK|BAR)? ?STOP(PER)?\b|\bGRIPPER\b|\bPULLER\b|\bTOPE\b", None),
+    (r"\bCENT(ER|RE)[ -]?DRILL|\bSPOT|\bBROCA DE (CENTROS?|CENTRAR|PUNTO)|\bPUNTEAR", ToolKind.CENTRE_DRILL),
+    (r"\bREAM|\bESCARIA", ToolKind.REAMER),
+    (r"\bTAP(PING)?\b|\bMACHO\b|\bMACHUEL", ToolKind.TAP),
+    (r"\bTHREAD|\bROSCA", ToolKind.THREADING),
+    (r"\bPART(ING|[ -]?OFF)?\b|\bCUT[ -]?OFF\b|\bTRONZA|\bSEGAR\b", ToolKind.PARTING),
+    (r"\bGROOV|\bRANURA", ToolKind.GROOVING),
+    (r"\bBOR(E|ING)\b|\bMANDRINA|\bBARRA DE INTERIOR", ToolKind.BORING),
+    (r"\bDRILL|\bBROCA|\bTALADR", ToolKind.DRILL),
+    (r"\bEND ?MILL|\bMILL|\bFRESA", ToolKind.END_MILL),
+    (r"\bTURN|\bFAC(E|ING)\b|\bCUCHILLA|\bCILINDRA|\bREFRENTA|\bDESBAST", ToolKind.TURNING),
 )
 _SIZE = r"(?:(\d+)/(\d+)|(\d*\.\d+))\s*(?:IN(?:CH)?\b|\")?(?=[^/]*\bDRILL|\s*DIA)"
 _MILLIMETRES = r"(\d+(?:\.\d+)?)\s*MM\b"
-_TAP_NUMBER = r"(?:^|[^\d/.])#?(\d{1,2})\s*-\s*(\d{2})\b"  # 10-32
-_TAP_INCH = r"(?:(\d+)/(\d+)|(\d*\.\d+))\s*-\s*(\d{1,2})\b"  # 1/4-20
+_TAP_NUMBER = r"(?:^|[^\d/.])#?(\d{1,2})(?:\s*-\s*|\s+)(\d{2})\b(?!\s*TPI)"  # 10-32, or 10 32
+_TAP_INCH = r"(?:(\d+)[/ ](\d+)|(\d*\.\d+))\s*[- ]\s*(\d{1,2})\b"  # 1/4-20, or 1 4 20
+_TAP_TPI = r"\b(\d{1,2})\s*TPI\b"  # 20 TPI
 _TAP_METRIC = r"\bM(\d+(?:\.\d+)?)(?:\s*X\s*(\d*\.?\d+))?"  # M6X1
 _METRIC_COARSE = {
     **{2.0: 0.4, 2.5: 0.45, 3.0: 0.5, 4.0: 0.7, 5.0: 0.8, 6.0: 1.0, 8.0: 1.25, 10.0: 1.5, 12.0: 1.75},
@@ -126,21 +128,23 @@ class ToolUse:
 
 @dataclass(frozen=True, slots=True)
 class Assumed:
-    """``shape`` None: no cutting tool, but a bar stop."""
+    """``shape`` None: no cutting tool, but a bar stop. ``named``: a comment says what kind of tool it is."""
 
     shape: ToolShape | None
     words: str
+    named: bool = False
+    sized: bool = False  # its diameter is assumed
 
     def with_diameter(self, use: ToolUse, bore: Sequence[TipMove]) -> Assumed:
         """A drill without a diameter gets one: just under what is cut in the ``bore`` behind it."""
         shape = self.shape
         if shape is None or not shape.turns_itself or shape.diameter:
             return self
-        bore = bore if shape.kind in _OPENS else ()
+        bore = bore if shape.kind in OPENS else ()
         inside = [abs(r) for m in bore if not m.quick for z, r in m.points if z < -_SQUARE]
         diameter = max(2.0 * min(inside) - _ALLOWANCE, _SMALLEST) if inside else _USUAL
         words = f"{self.words}, its diameter as {_size(diameter, use)}"
-        return Assumed(replace(shape, diameter=diameter), words)
+        return replace(self, shape=replace(shape, diameter=diameter), words=words, sized=True)
 
     def with_width(self, use: ToolUse, threads: Sequence[TipMove]) -> Assumed:
         """A grooving or parting tool without a width gets one: see ``groove_width``."""
@@ -148,7 +152,8 @@ class Assumed:
         if shape is None or shape.kind not in GROOVERS or shape.width:
             return self
         width = groove_width(shape, use.moves, threads)
-        return Assumed(replace(shape, width=width), f"{self.words}, its width as {_size(width, use)}")
+        words = f"{self.words}, its width as {_size(width, use)}"
+        return replace(self, shape=replace(shape, width=width), words=words)
 
 
 def groove_width(shape: ToolShape, moves: Iterable[TipMove], threads: Iterable[TipMove]) -> float:
@@ -171,7 +176,8 @@ def assumed_tool(use: ToolUse, said: ToolShape | None = None) -> Assumed:
     if kind is None:
         return Assumed(None, f"{edge_name(use.number)} is taken for a bar stop")
     shape = said or _shape(kind, use)
-    return Assumed(shape, f"{edge_name(use.number)} is taken for {_names(kind, shape, use)} ({why})")
+    words = f"{edge_name(use.number)} is taken for {_names(kind, shape, use)} ({why})"
+    return Assumed(shape, words, why != _BY_MOVES)
 
 
 def _kind(use: ToolUse) -> tuple[ToolKind | None, str]:
@@ -180,10 +186,10 @@ def _kind(use: ToolUse) -> tuple[ToolKind | None, str]:
         if re.search(words, text):
             return kind, "by its comment"
     if use.pushes_bar:
-        return None, "by its moves"
+        return None, _BY_MOVES
     if use.live:
-        return ToolKind.END_MILL, "by its moves"
-    return _by_moves(use.moves), "by its moves"
+        return ToolKind.END_MILL, _BY_MOVES
+    return _by_moves(use.moves), _BY_MOVES
 
 
 def _by_moves(moves: Sequence[TipMove]) -> ToolKind:
@@ -287,7 +293,10 @@ def _round_tool(kind: ToolKind, use: ToolUse) -> ToolShape:
 
 
 def tap_size(comment: str) -> tuple[float, float]:
-    """Diameter and pitch, mm, of a tap as a comment names it: 1/4-20, 10-32, M6X1; 0 where it does not."""
+    """Return diameter and pitch, mm, as a comment names a tap; 0 where it does not.
+
+    1/4-20, 10-32, M6X1, and in the letters that the control allows: 1 4 20, 10 32, 20 TPI.
+    """
     text = _plain(comment)
     if found := re.search(_TAP_METRIC, text):
         across = float(found[1])
@@ -295,6 +304,8 @@ def tap_size(comment: str) -> tuple[float, float]:
     if found := re.search(_TAP_INCH, text):
         inches = float(found[3]) if found[3] else int(found[1]) / max(int(found[2]), 1)
         return inches * 25.4, 25.4 / max(int(found[4]), 1)
+    if found := re.search(_TAP_TPI, text):
+        return 0.0, 25.4 / max(int(found[1]), 1)
     if found := re.search(_TAP_NUMBER, text):  # ASME B1.1: .060 and .013 for each number
         return (0.060 + 0.013 * int(found[1])) * 25.4, 25.4 / max(int(found[2]), 1)
     return 0.0, 0.0

@@ -123,7 +123,7 @@ class CuttingChecks:
             return
         elif modal.c_locked or block.kind in _MILLING:
             self._live_tool_off(block)
-        elif not modal.spindle and not block.per_rev and self._has_run:
+        elif not modal.spindle and not block.per_rev and (self._has_run or modal.rpm):
             self._spindle_off(block)
 
     def _no_tool(self, block: Block) -> None:
@@ -160,7 +160,9 @@ class CuttingChecks:
             self._report(block, Severity.WARNING, "live-tool-off", text, hint)
 
     def _spindle_off(self, block: Block) -> None:
-        text = "This move cuts after the program has stopped the spindle, and no live tool is on."
+        text = "This move cuts with the spindle stopped, and no live tool is on."
+        if not self._has_run:
+            text = "S sets a speed, but nothing starts the spindle before this cut."
         self._report(block, Severity.WARNING, "spindle-off", text, "Start it with M03 or M04 before it.")
 
     def _input(self, block: Block, terminal: str) -> None:

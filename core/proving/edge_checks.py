@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from itertools import pairwise
 
 import numpy as np
 
 from core.interpreter.elementary_blocks import Kind
 from core.part.cutter import Cutter, Side
 from core.part.stock import Stock
+from core.part.swept_edge import Point
 from core.part.tool_shape import Hand, ToolKind, ToolShape
-from core.part.turned_part import Cut, TurnedPart
+from core.part.turned_part import NOTHING, Cut, TurnedPart
 from core.proving.assumed_tools import GROOVERS
 from core.proving.thread_checks import Found
 from core.proving.tip_moves import TipMove
@@ -23,10 +25,14 @@ _OF_WIDTH = 0.25  # of a grooving edge
 _OF_DRILL = 0.1  # of a drill's diameter
 _WRONG_SIDE = 0.5  # mm that the back of an insert may take off
 _BEHIND = 0.05  # mm of metal behind the nose
+_FACED = 2.54  # mm that is usually faced off in one cut towards the axis
 _STEEPER = 2.0  # degrees
 _OVER_AXIS = 1.5  # mm beyond it, which a face or a part-off needs at most
 _BEHIND_FACE = 0.5  # mm
 _PAST = 12.7  # mm
+_ENTERS = 1.0  # mm; less is a chamfer or a face
+_BREAKS_THROUGH = 2.54  # mm that a tool may go beyond the stock
+_OFF_AXIS = 0.25  # mm; less is the play of a floating holder
 _NEAR = 1e-6
 _DRILLS = frozenset({ToolKind.DRILL, ToolKind.CENTRE_DRILL, ToolKind.REAMER, ToolKind.TAP})
 _INSERTS = frozenset({ToolKind.TURNING, ToolKind.BORING})
@@ -40,21 +46,44 @@ class EdgeChecks:
     parted_at: float | None = None  # Z of the deepest part-off
     _turned: dict[int, float] = field(default_factory=dict)  # T → which way its edge has been cut with
     _told: set[int] = field(default_factory=set)
+    _solid: float = 0.0  # mm of Z without a bore that the move under way enters
+
+    def before_cut(self, move: TipMove, shape: ToolShape | None, part: TurnedPart) -> None:
+        """Note how much solid material a tool for bores is about to enter."""
+        self._solid = 0.0
+        if shape is None or not shape.internal or move.quick:
+            return
+        z = [z for z, _ in move.points]
+        there = slice(part.columns.at(min(z)), part.columns.at(max(z)))
+        solid = np.all(part.low[:, there] <= 0.0, axis=0) & np.any(part.high[:, there] > 0.0, axis=0)
+        self._solid = part.columns.step * float(np.count_nonzero(solid))
 
     def look(
-        self, move: TipMove, met: Cut, shape: ToolShape | None, cutter: Cutter, part: TurnedPart, tool: int
+        self,
+        move: TipMove,
+        cuts: Sequence[Cut],
+        met: Cut,
+        shape: ToolShape | None,
+        cutter: Cutter,
+        part: TurnedPart,
+        tool: int,
     ) -> Iterator[Found]:
-        """What is wrong with a feed that has just taken metal off."""
+        """Yield the faults of a feed that has just cut; ``cuts``: what each piece of it has met."""
         if shape is None or not met:
             return
         yield from self._feed(move, shape, tool, held=cutter.held)
-        yield from self._spindle(move, shape, tool)
+        yield from self._spindle(move, shape, cutter, tool)
+        yield from _off_axis(move, shape, tool)
+        if self._solid > _ENTERS and met.width > _ENTERS:
+            words = f"{edge_name(tool)} is fed {move.modal.length_text(self._solid)} into solid material."
+            yield Found("no-bore", words)
+        yield from self._past_stock(move, shape, tool)
         yield from self._over_axis(move, cutter, tool)
         yield from self._past_part_off(move, shape, cutter, tool)
         yield from self._drilled(move, shape, tool)
         if cutter.held and shape.kind in _INSERTS and move.kind is not Kind.THREAD:  # else it is assumed
             yield from _too_deep(move, met, shape, cutter, tool)
-            yield from _wrong_side(move, met, shape, cutter, part, tool)
+            yield from _wrong_side(move, cuts, shape, cutter, part, tool)
 
     @staticmethod
     def _feed(move: TipMove, shape: ToolShape, tool: int, *, held: bool) -> Iterator[Found]:
@@ -78,7 +107,7 @@ class EdgeChecks:
                 f"{edge_name(tool)} feeds {shown} with a nose radius of {text(shape.nose_radius)}.",
             )
 
-    def _spindle(self, move: TipMove, shape: ToolShape, tool: int) -> Iterator[Found]:
+    def _spindle(self, move: TipMove, shape: ToolShape, cutter: Cutter, tool: int) -> Iterator[Found]:
         """M03 and M04 against the hand of a drill; one edge cuts one way only."""
         if not move.rpm:
             return
@@ -93,6 +122,12 @@ class EdgeChecks:
             return
         if shape.turns_itself:
             return
+        if cutter.held and _turns_backwards(shape, move.rpm) and tool not in self._told:
+            self._told.add(tool)
+            code = "M04" if move.rpm < 0.0 else "M03"
+            words = f"{edge_name(tool)}, a {shape.hand}-hand tool in front of the axis, cuts with {code}."
+            yield Found("wrong-spindle-direction", words)
+            return
         radii = [r for _, r in move.points]
         if min(radii) < _NEAR and max(radii) > -_NEAR:
             return  # over the axis
@@ -106,11 +141,14 @@ class EdgeChecks:
 
     def _over_axis(self, move: TipMove, cutter: Cutter, tool: int) -> Iterator[Found]:
         """An outside tool that is fed through the axis, or cuts on its other side."""
-        z, r = move.points[-1]
-        behind = z < (self.stock.front if self.stock is not None else 0.0) - _BEHIND_FACE
-        if cutter.side is Side.OUTSIDE and behind and r * cutter.across < -_OVER_AXIS:
-            words = f"{edge_name(tool)} cuts {move.modal.length_text(abs(r))} beyond the axis"
-            yield Found("over-axis", f"{words}, on the side where it does not stand.")
+        face = (self.stock.front if self.stock is not None else 0.0) - _BEHIND_FACE
+        beyond = max((-r * cutter.across for z, r in move.points[1:] if z < face), default=0.0)
+        if cutter.side is Side.OUTSIDE and beyond > _OVER_AXIS:
+            deep = move.modal.length_text(beyond)
+            yield Found(
+                "over-axis",
+                f"{edge_name(tool)} cuts {deep} beyond the axis, on the side where it is not mounted.",
+            )
 
     def _past_part_off(self, move: TipMove, shape: ToolShape, cutter: Cutter, tool: int) -> Iterator[Found]:
         if self.parted_at is None or cutter.drills or shape.kind is ToolKind.PARTING:
@@ -124,6 +162,18 @@ class EdgeChecks:
                 f"{edge_name(tool)} cuts at Z {text(z)}; the part ends at {text(self.parted_at)}.",
             )
 
+    def _past_stock(self, move: TipMove, shape: ToolShape, tool: int) -> Iterator[Found]:
+        """A feed beyond the far end of the stock; the point of a drill may come out of it."""
+        if self.stock is None or not self.stock.given:
+            return
+        z, allowed = min(z for z, _ in move.points), _BREAKS_THROUGH
+        if shape.turns_itself:
+            allowed += shape.diameter
+        if z < self.stock.back - allowed:
+            text = move.modal.length_text
+            words = f"{edge_name(tool)} is fed to Z {text(z)}; the stock ends at {text(self.stock.back)}."
+            yield Found("past-stock", words)
+
     def _drilled(self, move: TipMove, shape: ToolShape, tool: int) -> Iterator[Found]:
         deep = part_depth(move, self.stock)
         if shape.turns_itself and shape.length and deep > shape.length:
@@ -131,6 +181,23 @@ class EdgeChecks:
             yield Found(
                 "drill-too-deep", f"{edge_name(tool)} goes {text(deep)} deep; it cuts {text(shape.length)}."
             )
+
+
+def _turns_backwards(shape: ToolShape, rpm: float) -> bool:
+    """Whether the spindle turns against the rake of a tool in front, which lies face up.
+
+    A tool mounted upside down cuts the other way along Z than its hand says, and is not examined.
+    """
+    upright = {Hand.RIGHT: -1, Hand.LEFT: 1}.get(shape.hand) == shape.direction[0]
+    return shape.kind in _INSERTS and upright and not shape.behind and rpm < 0.0
+
+
+def _off_axis(move: TipMove, shape: ToolShape, tool: int) -> Iterator[Found]:
+    """A round tool that is held still makes its hole on the axis alone."""
+    off = min(abs(r) for _, r in move.points)
+    if shape.kind in _DRILLS and move.rpm and off > _OFF_AXIS:
+        words = f"{edge_name(tool)} cuts {move.modal.length_text(off)} off the spindle axis."
+        yield Found("drill-off-axis", words)
 
 
 def part_depth(move: TipMove, stock: Stock | None) -> float:
@@ -150,32 +217,34 @@ def _too_deep(move: TipMove, met: Cut, shape: ToolShape, cutter: Cutter, tool: i
 
 
 def _wrong_side(
-    move: TipMove, met: Cut, shape: ToolShape, cutter: Cutter, part: TurnedPart, tool: int
+    move: TipMove, cuts: Sequence[Cut], shape: ToolShape, cutter: Cutter, part: TurnedPart, tool: int
 ) -> Iterator[Found]:
-    """The back of an insert cuts: fed backwards at depth, or down a wall that is steeper than it clears."""
+    """Yield what the back of an insert cuts: fed backwards at depth, or down a wall steeper than it clears.
+
+    ``cuts`` has what each straight piece of the move has met.
+    """
     forward, across = shape.direction
-    if not forward or not across or len(move.points) != 2:
+    if not forward or not across:
         return
-    (z0, r0), (z1, r1) = move.points
-    along = (z1 - z0) * forward
-    inwards = (r1 - r0) * across
     text = move.modal.length_text
-    if along < -_NEAR and abs(inwards) < -along * 0.05:
-        if met.depth > max(_WRONG_SIDE, 2.0 * shape.nose_radius):
-            yield Found(
-                "wrong-side", f"{edge_name(tool)} cuts {text(met.depth)} deep with the back of its insert."
+    deep = max(
+        (met.depth for (start, end), met in zip(pairwise(move.points), cuts, strict=True)
+         if _goes_back(start, end, forward)),
+        default=0.0,
+    )  # fmt: skip
+    if deep > max(_WRONG_SIDE, 2.0 * shape.nose_radius):
+        yield Found("wrong-side", f"{edge_name(tool)} cuts {text(deep)} deep with the back of its insert.")
+        return
+    clears = cutter.clears(forward)
+    for start, end, met, steep in _steep_runs(move.points, cuts, shape, clears + _STEEPER):
+        behind = met.front - start[0] if forward < 0 else start[0] - met.back
+        faces = behind <= _FACED and not _stands_behind(part, met, forward, abs(end[1]), cutter.side)
+        if behind > 2.0 * shape.nose_radius + _BEHIND and met.depth > _BEHIND and not faces:
+            words = (
+                f"{edge_name(tool)} goes in at {steep:.0f}°, and the back of its insert clears {clears:.0f}°."
             )
-        return
-    if along < 0.0 or inwards <= _NEAR:
-        return
-    steep, clears = math.degrees(math.atan2(inwards, along)), cutter.clears(forward)
-    if steep <= clears + _STEEPER:
-        return
-    behind = met.front - z0 if forward < 0 else z0 - met.back
-    beyond = _stands_behind(part, met, forward, abs(r1), cutter.side)
-    if behind > 2.0 * shape.nose_radius + _BEHIND and met.depth > _BEHIND and beyond:
-        words = f"{edge_name(tool)} goes in at {steep:.0f}°, and the back of its insert clears {clears:.0f}°."
-        yield Found("wrong-side", words)
+            yield Found("wrong-side", words)
+            return
 
 
 def _stands_behind(part: TurnedPart, met: Cut, forward: int, r: float, side: Side) -> bool:
@@ -188,3 +257,30 @@ def _stands_behind(part: TurnedPart, met: Cut, forward: int, r: float, side: Sid
     low, high = part.low[:, at], part.high[:, at]
     above = low < r if side is Side.BORE else high > r
     return bool(np.any((high > low + _NEAR) & above))
+
+
+def _goes_back(start: Point, end: Point, forward: int) -> bool:
+    along = (end[0] - start[0]) * forward
+    return along < -_NEAR and abs(end[1] - start[1]) < -along * 0.05
+
+
+def _steep_runs(
+    points: Sequence[Point], cuts: Sequence[Cut], shape: ToolShape, steepest: float
+) -> Iterator[tuple[Point, Point, Cut, float]]:
+    """Yield the stretches of a move that go in more steeply than ``steepest`` degrees.
+
+    Each is its start, its end, what it has met, and its greatest angle.
+    """
+    forward, across = shape.direction
+    start, end, met, angle = points[0], points[0], NOTHING, 0.0
+    for (a, b), cut in zip(pairwise(points), cuts, strict=True):
+        along, inwards = (b[0] - a[0]) * forward, (b[1] - a[1]) * across
+        steep = math.degrees(math.atan2(inwards, along)) if inwards > _NEAR and along >= 0.0 else 0.0
+        if steep > steepest:
+            start, end = start if angle else a, b
+            met, angle = met.followed(cut), max(angle, steep)
+        elif angle:
+            yield start, end, met, angle
+            met, angle = NOTHING, 0.0
+    if angle:
+        yield start, end, met, angle

@@ -5,16 +5,17 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from core.language.diagnostics import Severity
+from core.language.diagnostics import Diagnostic, Severity
 
-STOCK, TOOL = "stock", "tool"
+STOCK, TOOL, KIND, HOLES = "stock", "tool", "kind of tool", "earlier holes"
 
 
 @dataclass(frozen=True, slots=True)
 class Check:
     """One check: what it looks for, how it decides, and what to do when it finds something.
 
-    ``rests_on`` is what it takes from stock and tools: where nobody has said them, it is only assumed.
+    ``rests_on`` is what it takes from stock and tools: where these are not stated, it is only assumed.
+    ``KIND`` is the kind of tool, which a comment may give; ``HOLES`` are those of drills without a size.
     """
 
     severity: Severity
@@ -65,6 +66,13 @@ CHECKS: Mapping[str, Check] = {
         'With [tooling] kind = "gang": its outline, placed by its tool offset, overlaps metal.',
         "Take another way there, a shorter tool, or another place on the plate.",
         (STOCK,),
+    ),
+    "tools-in-one-place": Check(
+        Severity.NOTE,
+        "Two tools have the same offset.",
+        "The offsets of two described tools are less than .04 in apart.",
+        "Remove the offset of the tool that is not mounted.",
+        (),
     ),
     "spindle-overspeed": Check(
         _ERROR,
@@ -118,11 +126,39 @@ CHECKS: Mapping[str, Check] = {
         "The hole is deeper than the cutting length of the drill; without a length the proof says so.",
         "Use a longer drill, or peck and check the length that was entered.",
     ),
+    "drill-off-axis": Check(
+        _ERROR,
+        "A drill, reamer or tap cuts beside the spindle axis.",
+        "It takes off material more than .01 in off the axis while the spindle turns.",
+        "Move to X0 before drilling, and check the X offset of the tool.",
+        (TOOL,),
+    ),
+    "past-stock": Check(
+        _ERROR,
+        "A tool is fed beyond the far end of the stock.",
+        "A cut ends more than .1 in, and a drill more than .1 in and its diameter, beyond the stated stock.",
+        "Check Z, the length of the stock and how far it sticks out of the chuck.",
+        (STOCK,),
+    ),
+    "no-bore": Check(
+        _ERROR,
+        "A boring tool enters solid material.",
+        "A tool that works in a bore is fed .04 in and more into material that has no bore yet.",
+        "Drill the bore first, or check the bore of the stock.",
+        (STOCK, KIND),
+    ),
+    "tap-no-hole": Check(
+        _ERROR,
+        "A tap cuts more than its thread: it has no hole, or goes beyond the bottom of the hole.",
+        "It takes off more than its pitch in r.",
+        "Drill the hole for the tap, deep enough for its chamfer.",
+        (STOCK, TOOL, HOLES),
+    ),
     "wrong-spindle-direction": Check(
-        _WARNING,
+        _ERROR,
         "The spindle turns against the cutting edge.",
-        "M04 with a right-hand drill, reamer or tap, M03 with a left-hand one; or one edge is made to cut "
-        "both ways.",
+        "M04 with a right-hand drill, reamer or tap, M03 with a left-hand one; M04 with a turning or boring "
+        "tool in front of the axis that is mounted upright; or one edge is made to cut both ways.",
         "Change M03 and M04, or the hand that the tool's shape says.",
     ),
     "wrong-side": Check(
@@ -231,3 +267,10 @@ PROGRAM_CHECKS: Mapping[str, Check] = {
     ),
 }
 """What is found without the stock: beside tool, collet, spindle, inputs and ways through the program."""
+
+
+def is_serious(found: Diagnostic) -> bool:
+    """Return whether a finding is an error, or would be one if what it assumes were stated."""
+    if found.severity is Severity.ERROR:
+        return True
+    return bool(found.assumed) and not found.silenced and CHECKS[found.check].severity is Severity.ERROR

@@ -4,23 +4,25 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import TYPE_CHECKING
+
+import numpy as np
 
 from core.interpreter.elementary_blocks import Kind
 from core.interpreter.modal_state import Modal
 from core.language.diagnostics import Diagnostic, Severity
 from core.part.bar_whirl import whirling_rpm
 from core.part.clamping import Clamping
-from core.part.cutter import Cutter
+from core.part.cutter import Cutter, Side
 from core.part.neighbours import Neighbours
 from core.part.stock import Stock
 from core.part.tool_shape import ToolKind, ToolShape
 from core.part.turned_part import NOTHING, Cut, Piece, TurnedPart
 from core.proving.air_checks import AirChecks
 from core.proving.edge_checks import EdgeChecks
-from core.proving.part_checks import CHECKS, Check
+from core.proving.part_checks import CHECKS, STOCK, Check
 from core.proving.thread_checks import Found, ThreadChecks
 from core.proving.tip_moves import TipMove
 from core.tool_edges import edge_name
@@ -38,6 +40,7 @@ _MOST = 100
 _CHUCK_STEP = 0.05  # mm
 _SLENDER = 5.0
 _STUB = (0.05, 1.0)  # mm of radius that a part-off leaves
+_SQUARE = 0.02  # mm of Z
 _SAFE = 0.5  # of the speed at which a bar begins to whirl
 
 
@@ -50,7 +53,7 @@ class PartFindings:
     clamping: Clamping | None = None
     neighbours: Neighbours | None = None
     threads: ThreadChecks = field(default_factory=ThreadChecks)
-    not_said: Callable[[Check], tuple[str, ...]] = lambda _check: ()
+    not_said: Callable[[tuple[str, ...]], tuple[str, ...]] = lambda _rests_on: ()
     silenced: Mapping[str, str] = field(default_factory=dict)  # why, by check
     parted_at: float | None = None  # Z of the deepest part-off
     _left: tuple[int, TipMove] | None = None  # T, and its part-off that has stopped before the axis
@@ -85,13 +88,16 @@ class PartFindings:
 
     def look(self, move: TipMove, cutter: Cutter, part: TurnedPart, tool: int) -> None:
         """Cut, and look at what was met."""
-        if move.quick and self._before is not None and self._before.kind is Kind.THREAD:
+        if self._leaves_thread(move, cutter):
             self._found_by(move, self.threads.look(move, NOTHING, part, self.shape(tool), tool))
             self._found_by(move, self._airs.rapid(move, NOTHING, tool))
-            self._before = move  # out of its groove, wherever round the part that ends
+            self._before = move
             return
         self.threads.before_cut(move, part)
-        met, struck = _executed(move, cutter, part)
+        self._edges.before_cut(move, self.shape(tool), part)
+        inside = move.quick and part.contains(move.points, RAPID)
+        cuts, struck = _executed(move, cutter, part)
+        met = _together(move, cuts)
         if struck:
             text = f"The holder of {edge_name(tool)} runs into metal, {_depth(struck, move)}."
             if move.quick:
@@ -108,16 +114,26 @@ class PartFindings:
                 f"{edge_name(other)} beside {edge_name(tool)} on the plate runs into the stock.",
             )
         if move.quick:
-            self._rapid(move, met)
+            self._rapid(move, met, certain=inside)
             self._found_by(move, self._airs.rapid(move, met, tool))
         else:
             shape = self.shape(tool)
             self._part_off(move, met, shape, tool)
             forward = shape.direction[0] if shape is not None else 0
             self._found_by(move, self._airs.feed(move, met, cutter, part, tool, forward))
-            self._found_by(move, self._edges.look(move, met, self.shape(tool), cutter, part, tool))
+            self._found_by(move, self._edges.look(move, cuts, met, self.shape(tool), cutter, part, tool))
         self._found_by(move, self.threads.look(move, met, part, self.shape(tool), tool))
         self._before = move
+
+    def _leaves_thread(self, move: TipMove, cutter: Cutter) -> bool:
+        """Whether a rapid leaves the groove that a pass has just cut: straight, and away from the material.
+
+        Where on the part the pass ends is not known, so what the edge meets on this move is in the groove.
+        """
+        if not move.quick or self._before is None or self._before.kind is not Kind.THREAD:
+            return False
+        (z0, r0), (z1, r1) = move.points[0], move.points[-1]
+        return abs(z1 - z0) <= _SQUARE and (abs(r1) < abs(r0)) is (cutter.side is Side.BORE)
 
     def _found_by(self, move: TipMove, found: Iterable[Found]) -> None:
         for check, text, at in found:
@@ -129,7 +145,9 @@ class PartFindings:
             return
         if met := _reached(self._chuck, move, cutter):
             self.into_clamping["into-chuck", move.line] = met
-            self._add("into-chuck", move, f"{edge_name(tool)} runs into the chuck, {_depth(met, move)}.")
+            text = f"{edge_name(tool)} runs into the chuck, {_depth(met, move)}."
+            certain = self._chuck is not None and self._chuck.contains(move.points, RAPID)
+            self._add("into-chuck", move, text, certain=certain)
         if met := _reached(self._tailstock, move, cutter):
             self.into_clamping["into-tailstock", move.line] = met
             self._add(
@@ -143,7 +161,8 @@ class PartFindings:
             text = f"The stock sticks out so far that it whirls at {self._whirls:.0f} rpm; it turns at"
             self._add("stock-whips", move, f"{text} {abs(move.rpm):.0f}.")
 
-    def _rapid(self, move: TipMove, met: Cut) -> None:
+    def _rapid(self, move: TipMove, met: Cut, *, certain: bool) -> None:
+        """A rapid that takes off material; ``certain``: the tip itself is in it, whatever tool it is."""
         if met.depth <= RAPID or met.width <= RAPID:
             return
         deep, fed = _depth(met, move), move.kind is not Kind.RAPID
@@ -156,7 +175,7 @@ class PartFindings:
             text = f"A feed as fast as a rapid goes into metal, {deep}."
         else:
             text = f"A rapid goes into metal, {deep}."
-        self._add("through-part" if behind_cut else "rapid-into-stock", move, text)
+        self._add("through-part" if behind_cut else "rapid-into-stock", move, text, certain=certain)
 
     def pause(self) -> None:
         """The program waits, or switches something."""
@@ -165,6 +184,12 @@ class PartFindings:
     def finish(self) -> None:
         """The program has ended."""
         self._tell_left()
+        for one, other in self.neighbours.in_one_place if self.neighbours is not None else ():
+            words = (
+                f"{edge_name(one)} and {edge_name(other)} have the same offset; "
+                "neither is checked as a neighbour of the other."
+            )
+            self._tell("tools-in-one-place", 0, 0, words)
         for line, n, tool in self._airs.never_milled:
             self._tell(
                 "unmade-cut", line, n, f"The live tool {edge_name(tool)} is fed, and never meets metal."
@@ -178,7 +203,7 @@ class PartFindings:
         self, move: MillMove, met: Taken, shape: ToolShape, modal: Modal, tool: int, *, touches: Touches
     ) -> None:
         """A live tool has moved; ``touches`` tells whether it has gone along metal where it has met none."""
-        if not move.axial and self._over_axis(move):
+        if not move.axial and not _drills_across(move) and self._over_axis(move):
             self._tell(
                 "through-part", move.line, move.n, f"{edge_name(tool)} goes over the axis, through the part."
             )
@@ -225,16 +250,34 @@ class PartFindings:
             text = f"What is parted off is {length / thick:.0f} times as long as it is thick."
             self._add("part-off-unsupported", move, text)
 
-    def _add(self, check: str, move: TipMove, text: str) -> None:
-        self._tell(check, move.line, move.n, text)
+    def _add(self, check: str, move: TipMove, text: str, *, certain: bool = False) -> None:
+        self._tell(check, move.line, move.n, text, certain=certain)
 
-    def _tell(self, check: str, line: int, n: int, text: str) -> None:
+    def _tell(self, check: str, line: int, n: int, text: str, *, certain: bool = False) -> None:
+        """Keep a finding; ``certain``: it is so with every tool, and rests on the stock alone."""
         if len(self._found) < _MOST and (check, line) not in self._found:
             entry, why = CHECKS[check], self.silenced.get(check, "")
-            weight = Severity.NOTE if why else entry.severity
+            rests_on = tuple(each for each in entry.rests_on if each == STOCK) if certain else entry.rests_on
+            assumed = self.not_said(rests_on)
             remedy = f"Silenced: {why}" if why else entry.remedy
-            found = Diagnostic(line, 0, weight, check, text, remedy, check=check, n=n, silenced=why)
-            self._found[check, line] = replace(found, assumed=self.not_said(entry))
+            if assumed and not why:
+                remedy = f"{remedy} Assumed: {', '.join(assumed)}."
+            self._found[check, line] = Diagnostic(
+                line, 0, _weight(entry, assumed, why), check, text, remedy,
+                check=check, n=n, assumed=assumed, silenced=why,
+            )  # fmt: skip
+
+
+def _drills_across(move: MillMove) -> bool:
+    """Whether a live tool goes straight along a radius, as for a hole through both walls."""
+    return float(np.ptp(move.path[:, 1:], axis=0).max(initial=0.0)) < _SQUARE
+
+
+def _weight(entry: Check, assumed: tuple[str, ...], silenced: str) -> Severity:
+    """Weight of a finding: what depends on an assumed value is a warning at most."""
+    if silenced:
+        return Severity.NOTE
+    return Severity.WARNING if assumed else entry.severity
 
 
 def _reached(body: TurnedPart | None, move: TipMove, cutter: Cutter) -> Cut:
@@ -246,18 +289,28 @@ def _reached(body: TurnedPart | None, move: TipMove, cutter: Cutter) -> Cut:
     return met
 
 
-def _executed(move: TipMove, cutter: Cutter, part: TurnedPart) -> tuple[Cut, Cut]:
-    """What the edges and what the body met on a move; both have been taken off."""
-    met = struck = NOTHING
+def _executed(move: TipMove, cutter: Cutter, part: TurnedPart) -> tuple[list[Cut], Cut]:
+    """What the edges met on each straight piece of a move, and the body on all; both have been taken off."""
+    cuts, struck = list[Cut](), NOTHING
     turns = 0.0
+    part.holds = True  # until the holder has been tried: what it hits must not have fallen off before
     for start, end in pairwise(move.points):
         if move.kind is Kind.THREAD and move.per_rev:
-            met = met.joined(cutter.thread(part, start, end, move.per_rev, turns))
+            cuts.append(cutter.thread(part, start, end, move.per_rev, turns))
             turns += abs(end[0] - start[0]) / move.per_rev
         else:
-            met = met.followed(cutter.cut(part, start, end))
+            cuts.append(cutter.cut(part, start, end))
         struck = struck.followed(cutter.strikes(part, start, end))
-    return met, struck
+    part.let_fall()
+    return cuts, struck
+
+
+def _together(move: TipMove, cuts: Iterable[Cut]) -> Cut:
+    """All that the edges met on a move; in a thread each turn deepens the cut, along a path none does."""
+    met = NOTHING
+    for cut in cuts:
+        met = met.joined(cut) if move.kind is Kind.THREAD else met.followed(cut)
+    return met
 
 
 def _depth(met: Cut, move: TipMove) -> str:

@@ -84,7 +84,9 @@ class PartHistory:
         self._numbers = np.array([_number(step) for step in self.steps], dtype=np.int64)
         self._tools = ProgramTools(self.steps, moves.setting)
         stock = moves.setting.stock or self._tools.assumed_stock()
-        self.stock = stock.stock(self._tools.back) if isinstance(stock, StockSpec) else stock
+        self.stock = (
+            stock.stock(self._tools.back, self._tools.unit) if isinstance(stock, StockSpec) else stock
+        )
         self._outlines: dict[int, ToolOutline | None] = {}
         self._hits: dict[tuple[str, int], Hit] = {}
         self._kept = PartCopies()

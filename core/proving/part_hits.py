@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from core.language.diagnostics import Diagnostic, Severity
+from core.language.diagnostics import Diagnostic
 from core.part.clamping import Clamping
 from core.part.polar_field import Taken
 from core.part.stock import Stock
 from core.part.swept_edge import FloatArray
 from core.part.turned_part import Cut, TurnedPart
+from core.proving.part_checks import is_serious
 from core.proving.part_instant import Hit
 from core.proving.part_making import PartMaking
 from core.proving.tip_moves import LiveStep, Step
@@ -33,7 +34,7 @@ def metal_of(part: TurnedPart | None) -> Metal | None:
 
 def hit_of(found: Diagnostic, step: Step, making: PartMaking, before: Metal | None) -> Hit | None:
     """What the block just seen has hit, for one of its findings; ``before`` is the metal before it."""
-    if found.severity is not Severity.ERROR:
+    if not is_serious(found):
         return None
     if found.check in _OF_CLAMPING:
         met = making.findings.into_clamping.get((found.check, found.line))

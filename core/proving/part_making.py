@@ -14,7 +14,7 @@ from core.part.neighbours import Neighbours
 from core.part.polar_field import NOTHING
 from core.part.stock import Stock
 from core.part.turned_part import Piece, TurnedPart
-from core.proving.part_checks import STOCK, TOOL, Check
+from core.proving.part_checks import HOLES, KIND, STOCK, TOOL
 from core.proving.part_findings import PartFindings
 from core.proving.part_report import PartReport
 from core.proving.part_setting import PartSetting
@@ -89,11 +89,15 @@ class PartMaking:
         turned = part.low.nbytes + part.high.nbytes if part is not None else 0
         return turned + (milling.nbytes if milling is not None else 0)
 
-    def _not_said(self, check: Check) -> tuple[str, ...]:
+    def _not_said(self, rests_on: tuple[str, ...]) -> tuple[str, ...]:
         """What a finding of this check rests on and nobody has described, at the tool in work."""
-        stock = (STOCK,) if STOCK in check.rests_on and not self._stock_said else ()
-        assumed = TOOL in check.rests_on and self._tool in self._tools.assumed
-        return (*stock, edge_name(self._tool)) if assumed else stock
+        names = [STOCK] if STOCK in rests_on and not self._stock_said else []
+        assumed = self._tools.assumed.get(self._tool)
+        if assumed is not None and (TOOL in rests_on or (KIND in rests_on and not assumed.named)):
+            names.append(edge_name(self._tool))
+        if HOLES in rests_on:
+            names += [edge_name(n) for n in self._tools.unsized_drills if n != self._tool]
+        return tuple(names)
 
     def copy(self) -> PartMaking:
         """The same once more, to be gone on with later; what never changes is shared."""
@@ -206,7 +210,7 @@ class PartMaking:
         else:  # a turning tool takes nothing where a live tool was before it
             self._removed += part.whole - self.milling.left - sum(piece.volume for piece in pieces)
         self._pieces += pieces
-        if part.removed or self.milling is not None:
+        if part.removed or self.milling is not None or self._last is None:
             self._last = pieces[-1] if pieces else part.rest()
         self.part = self.milling = None
 

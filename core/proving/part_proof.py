@@ -118,5 +118,5 @@ class PartProof:
         tools = ProgramTools(steps, self._setting)
         stock = self._setting.stock or tools.assumed_stock()
         if isinstance(stock, StockSpec):
-            stock = stock.stock(tools.back)
+            stock = stock.stock(tools.back, tools.unit)
         return PartMaking(tools, stock, self._setting), steps

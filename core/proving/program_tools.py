@@ -6,12 +6,13 @@ from collections.abc import Iterator, Sequence
 
 from core.interpreter.actions import AskInput, Collet, Output, ProgramStop, ToolChange, WaitInput
 from core.interpreter.elementary_blocks import Kind
+from core.interpreter.units import MM_PER_INCH
 from core.part.cutter import Cutter, Side
 from core.part.stock import Stock
 from core.part.tool_outline import outline
 from core.part.tool_shape import ToolKind, ToolShape
 from core.proving.assumed_stock import assumed_stock, zero_behind
-from core.proving.assumed_tools import GROOVERS, Assumed, ToolUse, assumed_tool, releases
+from core.proving.assumed_tools import GROOVERS, OPENS, Assumed, ToolUse, assumed_tool, releases
 from core.proving.part_setting import PartSetting
 from core.proving.tip_moves import QUICK, LiveStep, Step, TipMove
 from core.tool_edges import edge_name
@@ -87,6 +88,15 @@ class ProgramTools:
             return self.assumed[number].shape
         return self._setting.shapes.get(number)
 
+    @property
+    def unsized_drills(self) -> list[int]:
+        """The drills and reamers of the program whose diameter is assumed, by T."""
+        return [
+            n
+            for n, each in sorted(self.assumed.items())
+            if each.shape is not None and each.shape.kind in OPENS and each.sized
+        ]
+
     def described(self, number: int) -> bool:
         """Whether somebody has said what it looks like."""
         return number in self._setting.shapes
@@ -103,6 +113,12 @@ class ProgramTools:
         lines = outline(shape)
         body = lines.body if self.described(number) else ()
         return Cutter(lines.cutting, body, _side(shape), rear=shape.behind, drills=shape.turns_itself)
+
+    @property
+    def unit(self) -> float:
+        """Millimetres in a unit of length of the program, by its first move."""
+        metric = (use.metric for use in self.uses.values() if use.moves or use.live)
+        return 1.0 if next(metric, False) else MM_PER_INCH
 
     @property
     def back(self) -> float:

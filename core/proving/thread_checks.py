@@ -19,6 +19,7 @@ from core.tool_edges import edge_name
 _LATENCY = 0.08  # s before a drive follows a new command
 _POINT = 60.0  # degrees, of a thread that nobody has described
 _DEEPER = 1.02  # of a sharp V
+_SOLID = 1.0  # of a pitch in r: a thread is .6 deep, and holes for taps are never so small
 _OTHER_PITCH = 0.08  # of a pitch: 1/2-12 and 1/2-13; holders that give are fed a few hundredths slower
 _OTHER_FEED = 0.15  # of the feed in: how much faster or slower a tap may be drawn out
 _GIVES = 12.7  # mm by which a tap holder gives
@@ -178,6 +179,11 @@ class ThreadChecks:
                 self._entry = met.front
             self._fed = move
             yield from self._pitch(move, shape, tool)
+            pitch = shape.pitch or _per_turn(move)
+            if pitch and met.depth > _SOLID * pitch:
+                text = move.modal.length_text
+                words = f"{edge_name(tool)} takes off {text(met.depth)} in r; its pitch is {text(pitch)}."
+                yield Found("tap-no-hole", words)
         elif along > _NEAR and self._fed is not None and self._inside(move):
             fed = self._fed
             if move.points[-1][0] >= self._entry:

@@ -5,13 +5,14 @@ from __future__ import annotations
 import os
 import re
 import sqlite3
-from collections.abc import Sequence
+import time
+from collections.abc import Callable, Sequence
 from contextlib import ExitStack, closing, suppress
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 
-from core.file_lock import lock
+from core.file_lock import is_locked, lock, mark_locked
 from core.file_placing import put_in_place, write_in_place
 from core.store import row_sums
 from core.store.log_damage import lost_changes
@@ -24,6 +25,7 @@ _MIGRATIONS = Path(__file__).with_name("migrations")
 _MAGIC = b"SQLite format 3\0"
 _BUSY_SECONDS = 5.0
 _LOCK = "turndesk.lock"
+_TRIES, _BETWEEN = 10, 0.01  # tries of a writer for the lock, s between two
 _WRITTEN_HERE = set[Path]()  # folders whose store this process writes
 _NO_ROOM = frozenset({Cause.FULL, Cause.FORBIDDEN})
 
@@ -247,16 +249,20 @@ def companions(path: Path) -> tuple[Path, Path]:
 
 
 class WriterLock:
-    """The advisory lock beside the store, held from construction to close. Raises StoreError when taken."""
+    """The advisory lock beside the store, held from construction to close. Raises StoreError when taken.
 
-    def __init__(self, folder: Path) -> None:
+    A lock that another process has for an instant only, because it asks for its owner, is tried again for
+    0.1 s; ``pause`` waits between two tries.
+    """
+
+    def __init__(self, folder: Path, pause: Callable[[float], object] = time.sleep) -> None:
         self._path = folder / _LOCK
         try:
             self._file = os.open(self._path, os.O_RDWR | os.O_CREAT, 0o644)
         except OSError as error:
             raise why(self._path, error) from error
         try:
-            lock(self._file)
+            self._take(pause)
         except OSError as error:
             owner = os.read(self._file, 32).decode("ascii", "replace").strip()
             os.close(self._file)
@@ -266,11 +272,21 @@ class WriterLock:
                 "or enter it there",
                 "in-use",
             ) from error
+        mark_locked(self._file)
         self._folder = folder.resolve()
         with suppress(OSError):  # a courtesy to whoever finds it taken; a full disk has no room for it
             os.ftruncate(self._file, 0)
             os.lseek(self._file, 0, os.SEEK_SET)
             os.write(self._file, f"{os.getpid()}\n".encode("ascii"))
+
+    def _take(self, pause: Callable[[float], object]) -> None:
+        """Raises OSError when the lock stays taken."""
+        for _ in range(_TRIES):
+            with suppress(OSError):
+                lock(self._file)
+                return
+            pause(_BETWEEN)
+        lock(self._file)
 
     def opened(self) -> None:
         """From now on SQLite holds the store's file open in this process."""
@@ -285,18 +301,15 @@ class WriterLock:
 
 
 def in_use(folder: Path) -> bool:
-    """Whether a process writes the store of this folder now."""
+    """Whether a process writes the store of this folder now. Asks without taking the lock."""
     try:
         file = os.open(folder / _LOCK, os.O_RDONLY)
     except OSError:
         return False
     try:
-        lock(file)
-    except OSError:
-        return True
+        return is_locked(file)
     finally:
         os.close(file)
-    return False
 
 
 # --- Opening a store: nothing is written before the file has been found to be a whole one of ours.

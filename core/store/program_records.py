@@ -5,8 +5,8 @@ from __future__ import annotations
 import sqlite3
 from hashlib import sha256
 
-from core.store import row_sums
-from core.store.program_settings import notes_key, part_key, stock_key
+from core.store import program_texts, row_sums
+from core.store.program_settings import notes_key, part_key, stock_key, text_key
 from core.store.store_errors import StoreError
 from core.store.store_rows import ProgramRow, RunRow, VersionRow, utc_now
 
@@ -112,7 +112,7 @@ def _is_whole(text: object, digest: object) -> bool:
 
 def parts(connection: sqlite3.Connection, program: str) -> int:
     """Parts made since the count was last put to nought; a count that is not as it was saved is none."""
-    row = row_sums.whole_row(connection, "part_counts", program)
+    row = row_sums.whole_row(connection, "part_counts", program_texts.key_of(connection, program))
     return _count(row[1]) if row else 0
 
 
@@ -122,6 +122,7 @@ def _count(value: row_sums.Value) -> int:
 
 def add_parts(connection: sqlite3.Connection, program: str, by: int, last: str) -> None:
     """Parts made, added or taken away, never below nought."""
+    program = program_texts.key_of(connection, program)
     count = max(0, parts(connection, program) + by)
     connection.execute(
         "INSERT INTO part_counts VALUES (?1, ?2, ?3)"
@@ -132,16 +133,25 @@ def add_parts(connection: sqlite3.Connection, program: str, by: int, last: str) 
 
 def reset_parts(connection: sqlite3.Connection, program: str) -> None:
     """The count of one program to nought."""
-    connection.execute("DELETE FROM part_counts WHERE program = ?", (program,))
+    key = program_texts.key_of(connection, program)
+    connection.execute("DELETE FROM part_counts WHERE program = ?", (key,))
 
 
 def all_of(connection: sqlite3.Connection) -> tuple[RunRow, ...]:
-    """Every program that was run, proved or counted, by name; of what is not as it was saved nothing."""
+    """Return the record of every name, by name: that of the text that was last loaded under it.
+
+    Rows that are not as they were saved are left out.
+    """
+    records, names = by_text(connection), program_texts.names(connection)
+    names |= {key: key for key in records if not key.startswith(program_texts.PREFIX) and key not in names}
+    return tuple(records[key]._replace(program=name) for name, key in sorted(names.items()) if key in records)
+
+
+def by_text(connection: sqlite3.Connection) -> dict[str, RunRow]:
+    """Return the record of every text by its key, whatever it was called."""
     runs = row_sums.whole_rows(connection, "runs")
     counts = row_sums.whole_rows(connection, "part_counts")
-    return tuple(
-        _run(str(name), runs.get(name), counts.get(name)) for name in sorted(runs.keys() | counts.keys())
-    )
+    return {str(key): _run(str(key), runs.get(key), counts.get(key)) for key in runs.keys() | counts.keys()}
 
 
 def _run(program: str, run: row_sums.Row | None, count: row_sums.Row | None) -> RunRow:
@@ -151,14 +161,14 @@ def _run(program: str, run: row_sums.Row | None, count: row_sums.Row | None) -> 
 
 def started(connection: sqlite3.Connection, program: str, at: str) -> None:
     """A run began at this moment."""
-    _row(connection, program)
-    connection.execute("UPDATE runs SET started = ?, outcome = '' WHERE program = ?", (at, program))
+    key = _row(connection, program)
+    connection.execute("UPDATE runs SET started = ?, outcome = '' WHERE program = ?", (at, key))
 
 
 def ended(connection: sqlite3.Connection, program: str, outcome: str) -> None:
     """How the run ended."""
-    _row(connection, program)
-    connection.execute("UPDATE runs SET outcome = ? WHERE program = ?", (outcome, program))
+    key = _row(connection, program)
+    connection.execute("UPDATE runs SET outcome = ? WHERE program = ?", (outcome, key))
 
 
 def cut_off(connection: sqlite3.Connection, outcome: str) -> tuple[str, ...]:
@@ -168,26 +178,27 @@ def cut_off(connection: sqlite3.Connection, outcome: str) -> tuple[str, ...]:
         " RETURNING program",
         (outcome,),
     )
-    return tuple(sorted(program for (program,) in rows))
+    names = {key: name for name, key in program_texts.names(connection).items()}
+    return tuple(sorted(names.get(program, program) for (program,) in rows))
 
 
 def finished(connection: sqlite3.Connection, program: str, seconds: float, count: int, best: float) -> None:
     """Whole cycles: the time of the last one, and the best of all of them. None takes no time at all: older
     versions kept that of a part that a restart had finished."""
-    _row(connection, program)
+    key = _row(connection, program)
     connection.execute(
         "UPDATE runs SET cycles = cycles + ?3, latest = ?1, best = min(coalesce(nullif(best, 0.0), ?4), ?4)"
         " WHERE program = ?2",
-        (seconds, program, count, best),
+        (seconds, key, count, best),
     )
 
 
 def proved(connection: sqlite3.Connection, program: str, result: str, planned: float | None, at: str) -> None:
     """What proving found at this moment, and the cycle time that it reckons with; None: none."""
-    _row(connection, program)
+    key = _row(connection, program)
     connection.execute(
         "UPDATE runs SET proved = ?, proof = ?, planned = ? WHERE program = ?",
-        (at, result, planned, program),
+        (at, result, planned, key),
     )
 
 
@@ -212,10 +223,13 @@ def renamed(connection: sqlite3.Connection, old: str, new: str) -> None:
     for table in ("runs", "part_counts"):
         connection.execute(f"DELETE FROM {table} WHERE program = ?", (new,))
         connection.execute(f"UPDATE {table} SET program = ? WHERE program = ?", (new, old))
-    for key in (stock_key, part_key, notes_key):
+    for key in (stock_key, part_key, notes_key, text_key):
         connection.execute("DELETE FROM settings WHERE key = ?", (key(new),))
         connection.execute("UPDATE settings SET key = ? WHERE key = ?", (key(new), key(old)))
 
 
-def _row(connection: sqlite3.Connection, program: str) -> None:
-    connection.execute("INSERT INTO runs (program) VALUES (?) ON CONFLICT DO NOTHING", (program,))
+def _row(connection: sqlite3.Connection, program: str) -> str:
+    """Make sure that the program has a row; return its key."""
+    key = program_texts.key_of(connection, program)
+    connection.execute("INSERT INTO runs (program) VALUES (?) ON CONFLICT DO NOTHING", (key,))
+    return key

@@ -13,6 +13,11 @@ def notes_key(program: str) -> str:
     return f"notes:{program}"
 
 
+def text_key(program: str) -> str:
+    """Return the setting that states which text was last loaded under this name."""
+    return f"text:{program}"
+
+
 def part_key(program: str) -> str:
     """The setting that holds what else is kept of a program's part: stick-out and silenced checks."""
     return f"part:{program}"

@@ -10,7 +10,16 @@ from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Concatenate, ParamSpec, TypeVar
 
-from core.store import damaged_rows, event_log, job_queue, offset_tables, people, program_records, touch_off
+from core.store import (
+    damaged_rows,
+    event_log,
+    job_queue,
+    offset_tables,
+    people,
+    program_records,
+    program_texts,
+    touch_off,
+)
 from core.store.database import Opened, open_to_read, open_to_write
 from core.store.job_queue import JobRow
 from core.store.offset_tables import Reason
@@ -66,6 +75,7 @@ class Store:
             _repaired(opened.writer, opened.mended) if opened.writer else ()
         )  # what was damaged, in sentences
         self._writer = _writer(opened.writer, opened.path) if opened.writer else None
+        self._texts = dict[str, str]()  # record keys of the texts loaded in this session, by name
 
     @classmethod
     def open(cls, folder: Path, *, read_only: bool = False) -> Store:
@@ -77,9 +87,12 @@ class Store:
         return cls(open_to_read(folder) if read_only else open_to_write(folder))
 
     def close(self) -> None:
-        """Writes what is queued, then gives the store free. Calling it again does nothing."""
-        if self._writer:
-            self._writer.close()
+        """Write what is queued, then give the store free. Calling it again does nothing.
+
+        While the disk hangs the store stays open: its lock and connections end with the process.
+        """
+        if self._writer and not self._writer.close():
+            return
         with self._reading:
             self._opened.close()
 
@@ -197,6 +210,10 @@ class Store:
         """What each program has done."""
         return self._asked(program_records.all_of)
 
+    def runs_by_text(self) -> dict[str, RunRow]:
+        """Return what each program text has done, by its record key."""
+        return self._asked(program_records.by_text)
+
     def people(self) -> People:
         """Who works at the machine, where that is kept; else there are no levels."""
         return self._asked(people.people)
@@ -217,8 +234,11 @@ class Store:
     def parts(self, program: str) -> int:
         """Parts of this program that were counted, those that are still to be written too."""
         with self.read() as connection:
-            stored, held = program_records.parts(connection, program), self.backlog
-        reset, more = held.counts.get(program, (False, 0)) if held is not None else (False, 0)
+            key = program_texts.key_of(connection, self._key(program))
+            stored, held = program_records.parts(connection, key), self.backlog
+        reset, more = (False, 0)
+        if held is not None:
+            reset, more = held.counts.get(key) or held.counts.get(program, (False, 0))
         return max(0, (0 if reset else stored) + more)
 
     def jobs(self) -> tuple[JobRow, ...]:
@@ -297,14 +317,29 @@ class Store:
         return self.write(lambda c: program_records.save(c, name, text, why, who))
 
     def rename_program(self, old: str, new: str) -> Future[None]:
-        """Versions, part count and record go with a program that gets another name."""
+        """Versions and notes go with a program that gets another name; its record belongs to its text."""
+        key = self._texts.pop(old, None)
+        self._texts.pop(new, None)
+        if key is not None:
+            self._texts[new] = key
         return self.write(lambda c: program_records.renamed(c, old, new))
 
     # --- what must be kept, sooner or later: a disk that is full gets it when there is room again ----------
 
     def keep_program(self, name: str, text: bytes, why: str) -> Future[None]:
-        """A version that nobody waits for."""
-        return self._keep_latest("text", name, lambda c: program_records.save(c, name, text, why))
+        """Store a version that is about to run. From now on the record of this name is that of this text."""
+        key = program_texts.key_of_bytes(text)
+        self._texts[name] = key
+
+        def operation(connection: sqlite3.Connection) -> None:
+            job_queue.load_text(connection, name, key)
+            program_records.save(connection, name, text, why)
+
+        return self._keep_latest("text", name, operation)
+
+    def _key(self, program: str) -> str:
+        """Return the record key of the text loaded under this name; the name if this session loaded none."""
+        return self._texts.get(program, program)
 
     def log_event(self, kind: str, text: str, line: int = 0, record: str = "", who: str = "") -> Future[None]:
         """One line of the log, at this moment."""
@@ -326,20 +361,23 @@ class Store:
 
     def correct_parts(self, program: str, by: int) -> Future[None]:
         """Parts added or taken away by hand; there are never fewer than none."""
-        return self.keep(lambda unwritten: unwritten.count_parts(program, by))
+        key = self._key(program)
+        return self.keep(lambda unwritten: unwritten.count_parts(key, by))
 
     def reset_parts(self, program: str) -> Future[None]:
         """The part count of this program to nought."""
-        return self.keep(lambda unwritten: unwritten.reset_parts(program))
+        key = self._key(program)
+        return self.keep(lambda unwritten: unwritten.reset_parts(key))
 
     def run_started(self, program: str) -> Future[None]:
         """A run of this program begins now."""
-        at = utc_now()
-        return self._keep_latest("start", program, lambda c: program_records.started(c, program, at))
+        at, key = utc_now(), self._key(program)
+        return self._keep_latest("start", key, lambda c: program_records.started(c, key, at))
 
     def run_ended(self, program: str, outcome: str) -> Future[None]:
         """How it ended."""
-        return self._keep_latest("end", program, lambda c: program_records.ended(c, program, outcome))
+        key = self._key(program)
+        return self._keep_latest("end", key, lambda c: program_records.ended(c, key, outcome))
 
     def runs_cut_off(self, outcome: str, words: str) -> Future[None]:
         """How those ended whose end was never told; a warning for each, its name before ``words``."""
@@ -352,14 +390,18 @@ class Store:
 
     def cycle_finished(self, program: str, seconds: float) -> Future[None]:
         """One whole cycle of this program and its time."""
-        return self.keep(lambda unwritten: unwritten.cycle(program, seconds))
+        key = self._key(program)
+        return self.keep(lambda unwritten: unwritten.cycle(key, seconds))
 
-    def program_proved(self, program: str, result: str, planned: float | None) -> Future[None]:
-        """What proving found, and the cycle time it reckons with."""
-        at = utc_now()
-        return self._keep_latest(
-            "proof", program, lambda c: program_records.proved(c, program, result, planned, at)
-        )
+    def program_proved(
+        self, program: str, result: str, planned: float | None, text: str | None = None
+    ) -> Future[None]:
+        """Store what proving found in ``text``, and the calculated cycle time in seconds.
+
+        Without ``text`` it is that of the text loaded under this name.
+        """
+        at, key = utc_now(), self._key(program) if text is None else program_texts.key_of_text(text)
+        return self._keep_latest("proof", key, lambda c: program_records.proved(c, key, result, planned, at))
 
     def set_setting(self, key: str, value: object) -> Future[None]:
         """Keeps anything JSON can hold; None forgets it. Raises StoreError for what it cannot hold."""

@@ -33,6 +33,7 @@ class Cause(Enum):
     FORBIDDEN = "{path} may not be used so by this user ({error}); check its rights and those of its folder"
     GONE = "{path} is not there: look at the name, or put it back and start turndesk again"
     FAILING = "{path}: the disk fails ({error}); check that it is there and sound"
+    HANGS = "the disk does not respond: changes wait to be written to {path}; check the disk and its cable"
     DAMAGED = (
         "{path} is damaged ({error}); it is left as it is. Restore a backup: turndesk store restore FILE"
     )
@@ -56,6 +57,7 @@ _CODES = {
     Cause.FORBIDDEN: "forbidden",
     Cause.GONE: "not-found",
     Cause.FAILING: "disk-failing",
+    Cause.HANGS: "disk-hangs",
     Cause.DAMAGED: "damaged",
     Cause.OTHER: "unusable",
 }

@@ -5,11 +5,12 @@ from __future__ import annotations
 import queue
 import sqlite3
 import threading
+import time
 from collections import deque
 from collections.abc import Callable, Mapping
 from concurrent.futures import Future
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import NamedTuple, TypeVar
 
@@ -169,6 +170,8 @@ def _many(name: str, count: int) -> str:
 T = TypeVar("T")
 Operation = Callable[[sqlite3.Connection], T]
 Keeping = Callable[[Unwritten], None]
+HANGS = 2.0  # s; a change that is not stored for longer is reported
+ENDS = 10.0  # s that closing waits for the disk
 AGAIN = 2.0  # s after which what the disk did not take is tried again
 
 
@@ -179,11 +182,18 @@ class StoreWriter:
     when it is not; the store is then as before. What is given to ``keep`` nobody waits for: what the disk
     does not take stays in memory and is written as soon as it does. ``trouble`` is the sentence of the last
     write that failed, until one succeeds; ``held`` what waits, None while nothing has to.
+
+    A disk that hangs reports nothing, but the age of the oldest change that is not stored shows it. ``clock``
+    returns seconds.
     """
 
-    def __init__(self, connection: sqlite3.Connection, path: Path) -> None:
-        self.trouble = ""
-        self.backlog: Backlog | None = None
+    def __init__(
+        self, connection: sqlite3.Connection, path: Path, clock: Callable[[], float] = time.monotonic
+    ) -> None:
+        self._trouble = ""
+        self._backlog: Backlog | None = None
+        self._clock = clock
+        self._posted: deque[float] = deque()  # when what is queued or in hand was posted
         self._connection, self._path = connection, path
         self._unwritten = Unwritten()
         self._waiting: list[Future[None]] = []  # for what is not on the disk yet
@@ -192,6 +202,28 @@ class StoreWriter:
         self._closed = False
         self._thread = threading.Thread(target=self._work, name="store-writer", daemon=True)
         self._thread.start()
+
+    @property
+    def trouble(self) -> str:
+        """Why changes are not stored; empty while all is well."""
+        return self._trouble or self._hanging
+
+    @property
+    def backlog(self) -> Backlog | None:
+        """What waits in memory; None while nothing has to."""
+        why, waiting = self._hanging, len(self._posted)
+        if self._backlog is None:
+            return Backlog(why, others=waiting) if why else None
+        return replace(self._backlog, others=self._backlog.others + waiting) if why else self._backlog
+
+    @property
+    def _hanging(self) -> str:
+        """That the disk does not answer; empty while the oldest change is younger than ``HANGS``."""
+        try:
+            waited = self._clock() - self._posted[0]
+        except IndexError:
+            return ""
+        return str(Cause.HANGS.error(self._path, "")) if waited > HANGS else ""
 
     def post(self, operation: Operation[T]) -> Future[T]:
         """Queue ``operation``; it gets the connection inside a transaction. Raises StoreError once closed."""
@@ -219,15 +251,20 @@ class StoreWriter:
         with self._closing:
             if self._closed:
                 raise StoreError("the store is closed; nothing can be written any more", "closed")
+            self._posted.append(self._clock())
             self._queue.put(task)
 
-    def close(self) -> None:
-        """Writes what is queued, then ends the thread; ``held`` tells what could not be written."""
+    def close(self, limit: float = ENDS) -> bool:
+        """Write what is queued, then end the thread; ``backlog`` tells what could not be written.
+
+        Returns False when the disk takes longer than ``limit`` seconds: the thread still uses the connection.
+        """
         with self._closing:
             if not self._closed:
                 self._closed = True
                 self._queue.put(None)
-        self._thread.join()
+        self._thread.join(limit)
+        return not self._thread.is_alive()
 
     def _work(self) -> None:
         while True:
@@ -239,6 +276,7 @@ class StoreWriter:
             if task is None:
                 break
             task(self._unwritten)
+            self._posted.popleft()
         self._write_held()
 
     def _write_held(self) -> None:
@@ -249,11 +287,11 @@ class StoreWriter:
             self._in_transaction(self._unwritten.write)
         except Exception as error:  # noqa: BLE001 - whatever it is becomes the answer; the thread goes on
             told = self._failed(error)
-            self.backlog = self._unwritten.backlog(self.trouble or str(told))
+            self._backlog = self._unwritten.backlog(self._trouble or str(told))
             self._tell(lambda future: future.set_exception(told))
             return
         self._unwritten.clear()
-        self.trouble, self.backlog = "", None
+        self._trouble, self._backlog = "", None
         self._tell(lambda future: future.set_result(None))
 
     def _in_transaction(self, operation: Operation[T]) -> T:
@@ -277,7 +315,7 @@ class StoreWriter:
         except Exception as error:  # noqa: BLE001 - whatever it is becomes the answer; the thread goes on
             future.set_exception(self._failed(error))
             return
-        self.trouble = self.trouble if self._unwritten else ""
+        self._trouble = self._trouble if self._unwritten else ""
         future.set_result(answer)
 
     def _failed(self, error: Exception) -> Exception:
@@ -288,7 +326,7 @@ class StoreWriter:
             return error
         if isinstance(error, sqlite3.IntegrityError):
             return StoreError(f"nothing was stored ({error})", "constraint")  # nothing is wrong with the disk
-        self.trouble = str(why(self._path, error))
+        self._trouble = str(why(self._path, error))
         cause = cause_of(self._path, error)
-        told = StoreError(f"nothing was stored: {self.trouble}, then enter it again", cause.code)
-        return StoreError(self.trouble, cause.code) if cause is Cause.DAMAGED else told
+        told = StoreError(f"nothing was stored: {self._trouble}, then enter it again", cause.code)
+        return StoreError(self._trouble, cause.code) if cause is Cause.DAMAGED else told

@@ -25,6 +25,7 @@ _INVALID, _NO_REMOTE = 1 << 31, 1 << 30  # a PDO that is being mapped; one that 
 _NO_SUCH_OBJECT = frozenset((0x06020000, 0x06090011))  # abort codes of SDO: the object, its sub-index
 # It has the object, and nothing was ever put in, or something that is none of its values.
 _NO_VALUE = frozenset((0x060A0023, 0x08000024, 0x08000000))
+_READ_ONLY = frozenset((0x06010000, 0x06010002))  # abort codes: no access of this kind, read-only
 _MAPS = 0x200  # from the communication record of a PDO to its mapping
 _SYNCS_AWAY, _LEAST_AWAY = 5, 20  # SYNCs, and ms, that setpoints may be away before the node is to stop
 _NAMES = {1: "profile position", 3: "profile velocity", 6: "homing", 7: "interpolated position", 8: "CSP"}
@@ -58,13 +59,15 @@ class Setup:
         return self._number(index, sub, data)
 
     def write(self, index: int, sub: int, value: int) -> None:
-        """Write one object and read it back. Raises DriverError when the node keeps something else."""
+        """Write one object that has another value, and read it back. Raises DriverError when the node cannot
+        change it or keeps something else.
+        """
         variable = self.node.object_dictionary.get_variable(index, sub)
         blind = variable is not None and not variable.readable  # such as the order to empty a queue
-        size = self._size(index, sub, blind=blind)
+        there = None if blind else self._value(index, sub)
+        size = len(variable) // 8 if there is None and variable is not None else len(there or b"")
         data = (value % (1 << 8 * size)).to_bytes(size, "little")
-        self.write_bytes(index, sub, data)
-        if blind:
+        if not self._put(index, sub, data, there) or blind:
             return
         kept = self._upload(index, sub)
         if kept != data:
@@ -192,17 +195,37 @@ class Setup:
             return False
         return not variable.readable or not self._refused(index, sub)
 
-    def _size(self, index: int, sub: int, *, blind: bool) -> int:
-        """Bytes of an object: the node's own word, or its dictionary's where it tells nothing yet."""
+    def _value(self, index: int, sub: int) -> bytes | None:
+        """Return the value of an object; None where the node has it and has no value in it yet."""
         variable = self.node.object_dictionary.get_variable(index, sub)
         try:
-            if not blind:
-                return len(self._upload(index, sub))
+            return self._upload(index, sub)
         except DriverError as error:
             if variable is None or _abort(error) not in _NO_VALUE:
                 raise
-        assert variable is not None
-        return len(variable) // 8
+        return None
+
+    def _put(self, index: int, sub: int, data: bytes, there: bytes | None) -> bool:
+        """Write ``data`` unless it is already ``there``; whether it was written. Raises DriverError.
+
+        Every value that configures a node goes through here: many drives have read-only objects, or ones that
+        are locked in some states, which already have the value that is wanted.
+        """
+        if there == data:
+            return False
+        try:
+            self.write_bytes(index, sub, data)
+        except DriverError as error:
+            if there is None or _abort(error) not in _READ_ONLY:
+                raise
+            now, wanted = (self._number(index, sub, each) for each in (there, data))
+            raise DriverError(
+                f"{self._name}: node {self.node.id}, object {index:04X}:{sub} is read-only: it is {now}, and"
+                f" {wanted} is needed. Set it with the drive's own software, or correct [canopen.sdo]",
+                "drive-setup",
+                reason="read-only",
+            ) from error
+        return True
 
     def _refused(self, index: int, sub: int) -> bool:
         """Whether the node says that it has no such object."""
@@ -253,24 +276,28 @@ class Setup:
         pdo.cob_id, pdo.trans_type, pdo.enabled = cob, kind, True
         assert cob is not None
         cob |= self.read(base, 1) & _NO_REMOTE  # where it cannot be asked for, that bit cannot be changed
-        self._put(base, 1, cob | _INVALID, 4)
-        self._put(base, 2, kind, 1)
         wanted = [(index & 0xFFFF) << 16 | (index >> 16) << 8 | bits for index, bits in entries]
-        if self._mapped(base + _MAPS) != wanted:
-            self._put(base + _MAPS, 0, 0, 1)
-            for sub, entry in enumerate(wanted, 1):
-                self._put(base + _MAPS, sub, entry, 4)
-            self._put(base + _MAPS, 0, len(wanted), 1)
-        self._put(base, 1, cob, 4)
+        mapped = self._mapped(base + _MAPS) == wanted
+        if not mapped or self.read(base, 1) != cob or self.read(base, 2) != kind:
+            self._put_number(base, 1, cob | _INVALID, 4)
+            self._put_number(base, 2, kind, 1)
+            if not mapped:
+                self._map_entries(base + _MAPS, wanted)
+            self._put_number(base, 1, cob, 4)
         pdo.subscribe()
+
+    def _map_entries(self, index: int, wanted: list[int]) -> None:
+        self._put_number(index, 0, 0, 1)
+        for sub, entry in enumerate(wanted, 1):
+            self._put_number(index, sub, entry, 4)
+        self._put_number(index, 0, len(wanted), 1)
 
     def _mapped(self, index: int) -> list[int]:
         """What a PDO carries so far."""
         return [self.read(index, sub) for sub in range(1, self.read(index, 0) + 1)]
 
-    def _put(self, index: int, sub: int, value: int, size: int) -> None:
-        data = value.to_bytes(size, "little")
-        self._sdo(index, sub, lambda: self.node.sdo.download(index, sub, data))
+    def _put_number(self, index: int, sub: int, value: int, size: int) -> None:
+        self._put(index, sub, value.to_bytes(size, "little"), self._value(index, sub))
 
     def _number(self, index: int, sub: int, data: bytes) -> int:
         variable = self.node.object_dictionary.get_variable(index, sub)

@@ -14,6 +14,7 @@ from drivers.grblhal import grblhal_codes
 from drivers.grblhal.grblhal_config import GrblAxis, GrblConfig
 from drivers.grblhal.grblhal_dialogue import Ask, Runner, Script, Stream
 from drivers.grblhal.grblhal_report import Identity, Report, read_report
+from drivers.grblhal.grblhal_waits import longest_wait
 from drivers.grblhal.grblhal_wire import Wire, WireLostError
 from drivers.reopening import Opening
 
@@ -330,6 +331,10 @@ class Controller:
         """The controller's own greatest speed of an axis, mm/s; 0 where it does not tell."""
         return self.figure(110, letter) / 60.0
 
+    def wait_of(self, line: str) -> float:
+        """Return the seconds that the controller may wait for spindle or coolant in a line."""
+        return longest_wait(line, self.settings)
+
     @property
     def homing(self) -> int:
         """How the controller homes, its setting $22: bit 0 at all, bit 1 one axis alone."""
@@ -528,6 +533,6 @@ class Controller:
         if not (self.stream.unanswered and idle) or self.fault:
             return
         first = self.stream.unanswered[0]
-        patience = _INDEX if self.index_wait else _UNANSWERED
+        patience = _INDEX if self.index_wait else _UNANSWERED + self.wait_of(first.line)
         if self.listened - max(first.sent_at, self.answered_at) > patience:
             self.fail(f"no answer to {first.line!r}; the line may be disturbed", "controller-silent")

@@ -32,11 +32,12 @@ def full_report(c: Controller, within: float = ANSWER) -> Script:
 
 def fresh(c: Controller) -> Script:
     """An empty line ends half a line and a standing error; from ``$G`` on answers count again."""
+    slow = max((c.wait_of(ask.line) for ask in c.stream.unanswered), default=0.0)  # read before ``$G``
     for _ in range(_TRIES):
         c.stream.void()
         c.realtime(ord("\n"))
-        ask, by = c.send("$G"), c.clock.now() + ANSWER / _TRIES
-        yield _by(c, ask, by), ANSWER, ""
+        ask, by = c.send("$G"), c.clock.now() + ANSWER / _TRIES + slow
+        yield _by(c, ask, by), ANSWER + slow, ""
         if ask.done:
             return
     raise ScriptError("the controller does not answer '$G'")
@@ -54,7 +55,7 @@ def _by_time(c: Controller, ready: Callable[[], bool], by: float) -> Callable[[]
 def asked(c: Controller, line: str, within: float = ANSWER) -> Generator[Step, None, list[str]]:
     """Send a line and wait for its ``ok``; what was told before it."""
     ask = c.send(line)
-    yield lambda: ask.done, within, f"the controller does not answer {line!r}"
+    yield lambda: ask.done, within + c.wait_of(line), f"the controller does not answer {line!r}"
     if ask.error:
         raise ScriptError(grblhal_codes.error_text(ask.error, line))
     return ask.lines

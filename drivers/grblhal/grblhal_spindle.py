@@ -17,6 +17,7 @@ _OBEYS = 1.0  # s for a spindle that is stopped in a hold to be told as off
 _CLIPS = 2.0  # s in which report, override and S word may tell of different moments
 _HIGHEST = 30  # setting
 _OVER, _UNDER = MOST / 100.0, LEAST / 100.0  # of an S word, by its override
+_IN_WAIT = 0.3  # s without an answer to M3 or M4: the controller waits for the speed, and reads no line
 _STANDS = 30.0  # rpm, between two reports of a spindle that reverses
 
 
@@ -121,7 +122,7 @@ class GrblSpindle:
 
     def voided(self) -> None:
         """A stop or a reset has switched it off; nothing switches it on again but the program."""
-        self._wanted, self._runs, self._paused_at = 0.0, False, None
+        self._wanted, self._runs, self._paused_at, self._word = 0.0, False, None, None
 
     def pump(self) -> None:
         """Bring the controller to what is wanted."""
@@ -203,7 +204,7 @@ class GrblSpindle:
             self._blocks.overrides.want_spindle(min(max(share, LEAST), MOST))
 
     def _stop(self) -> None:
-        if not self._runs:
+        if not self._runs or self._ends_wait():
             return
         if self._blocks.listens:
             self._runs = False
@@ -211,9 +212,22 @@ class GrblSpindle:
         else:
             self._blocks.jog_stop()  # a line would be refused; M5 follows when the slide rests
 
+    def _ends_wait(self) -> bool:
+        """Return whether M3 or M4 is unanswered. In the firmware's wait for the speed M5 is not read and the
+        toggle of a hold has no effect: what stops the spindle is the end of everything, a reset.
+        """
+        word = self._word
+        if word is None or word.done:
+            return False
+        if self._c.listened - word.sent_at > _IN_WAIT:
+            self._blocks.abort()
+        return True
+
     def _in_hold(self) -> None:
         """A toggle: sent once, and looked at."""
         stops = self._runs and self._wanted == 0.0
+        if self._paused_at is None and stops and self._ends_wait():
+            return
         if self._paused_at is None and stops:
             self._paused_at = self._c.clock.now()
             self._c.realtime(grblhal_codes.SPINDLE_PAUSE)

@@ -93,7 +93,7 @@ class GrblInputs:
 _COOLANT = {"flood": "M8", "mist": "M7"}
 _MIST = "M"  # among the letters of its build
 LETTERS = {"flood": "F", "mist": "M"}  # among the accessories of its reports
-_OBEYS = 1.0  # s from a line to a report that has it: lines wait behind blocks
+_OBEYS = 1.0  # s from the answer to a line to a report that has it
 _COLLET = "collet"  # stays closed as it was found
 
 
@@ -107,7 +107,8 @@ class GrblIO:
         outputs = controller.config.outputs
         self._wanted = {name: name == _COLLET for name in outputs}
         self._sent: dict[str, bool] = {}  # what the controller has been told since it last forgot
-        self._said_at: dict[str, float] = {}
+        self._said_at: dict[str, float] = {}  # when the controller has carried it out
+        self._asks: dict[str, Ask] = {}  # lines that it has not carried out: they wait behind blocks and M3
 
     def inputs(self) -> Mapping[str, bool]:
         """By the names of the machine file."""
@@ -122,7 +123,7 @@ class GrblIO:
         for name, output in self._c.config.outputs.items():
             letter = LETTERS.get(output.terminal)
             said_at = self._said_at.get(name)
-            if letter is None or told is None or said_at is None:
+            if letter is None or told is None or said_at is None or name in self._asks:
                 continue
             if told[0] > said_at + _OBEYS and self._sent.get(name) == self._wanted[name]:
                 shown[name] = letter in told[1]
@@ -168,6 +169,7 @@ class GrblIO:
 
     def voided(self) -> None:
         """A stop or a reset switches coolant off; what auxiliary outputs do then nobody tells."""
+        self._asks.clear()
         for name, output in self._c.config.outputs.items():
             if output.terminal in _COOLANT:
                 self._wanted[name] = False
@@ -176,6 +178,9 @@ class GrblIO:
 
     def pump(self) -> None:
         """Say what could not be said while the controller was locked, jogged or held."""
+        for name in [name for name, ask in self._asks.items() if ask.done]:
+            del self._asks[name]
+            self._said_at[name] = self._c.clock.now()
         for name, on in self._wanted.items():
             if name in self._sent and self._sent[name] != on:
                 self._tell(name)
@@ -189,7 +194,7 @@ class GrblIO:
         terminal = self._c.config.outputs[name].terminal
         if terminal in _COOLANT:
             for line in [_COOLANT[terminal]] if on else self._coolant_off():
-                self._c.send(line)
+                self._asks[name] = self._c.send(line)
         else:
             self._c.send(f"M{64 if on else 65}P{terminal.removeprefix('out.')}")
 

@@ -46,6 +46,7 @@ class Attendant:
         self._obedience = Obedience()
         self._family: Family | None = None
         self._retry = 0.0
+        self._began = clock.now()  # the exchange that is under way
         self._reset = False
         self.grace = 0.0  # until then silence is no trouble
         self.seen: Seen | None = None
@@ -149,6 +150,7 @@ class Attendant:
         self._prepare()
 
     def _exchange(self) -> None:
+        self._began = self._clock.now()
         if self._reset:
             self._clear_now()
         self._tell()
@@ -194,7 +196,7 @@ class Attendant:
             return  # a look from before the operator's word
         if look.trip:
             self._latch(f"the inverter has tripped: {look.trip}", "spindle")
-        elif why := self._obedience.judge(now, look):
+        elif why := self._obedience.judge(now, look, now - self._began):
             self._latch(f"the inverter does not obey: {why}", "ignores-stop")
 
     def _let_go(self, why: str) -> None:

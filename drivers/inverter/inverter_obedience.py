@@ -13,11 +13,16 @@ PRESS = "PRESS E-STOP"
 
 
 class Obedience:
-    """``judge`` each look; ``told`` when a command goes out that is another kind than the one before."""
+    """``judge`` each look; ``command`` when another command goes out.
+
+    A look on a slow line is as old as its exchange is long: the second that an inverter has begins behind it,
+    and what must fall is compared with the first look behind the command, never with one before it.
+    """
 
     def __init__(self) -> None:
         self._since: float | None = None  # when it last did what it was told; None: it does
         self._lowest: float = 0.0  # Hz, on the way down
+        self._unseen = False  # no look has come since the command
         self._asked = 0.0
 
     def command(self, now: float, asked: float, seen: Look | None) -> None:
@@ -26,12 +31,18 @@ class Obedience:
             return
         if seen is not None and (asked == 0.0 or asked * self._asked < 0.0 or abs(asked) < abs(self._asked)):
             self._lowest = seen.output
+            self._unseen = True
         self._asked = asked
         if self._since is None:
             self._since = now
 
-    def judge(self, now: float, look: Look) -> str:
-        """A sentence when it has not obeyed for a second; empty while all is well or may become so."""
+    def judge(self, now: float, look: Look, took: float = 0.0) -> str:
+        """Return why it has not obeyed for a second and ``took``, the seconds of one exchange.
+
+        Empty while all is well or may become so.
+        """
+        if self._unseen:  # it may have been getting faster when the command came
+            self._lowest, self._unseen = max(self._lowest, look.output), False
         wrong = self._wrong(look)
         if self._falls(look):
             self._lowest = look.output
@@ -40,7 +51,7 @@ class Obedience:
             return ""
         if self._since is None:
             self._since = now
-        return wrong if now - self._since > OBEYS_WITHIN else ""
+        return wrong if now - self._since > OBEYS_WITHIN + took else ""
 
     def _wrong(self, look: Look) -> str:
         why = self._standing(look) if self._asked == 0.0 else self._understood(look) or self._turning(look)

@@ -82,7 +82,7 @@ def _override(m: Firmware, byte: int) -> None:
         m.spindle_percent = 100
     elif byte - 9 in _STEPS:
         m.spindle_percent = min(max(m.spindle_percent + _STEPS[byte - 9], 10), 200)
-    elif byte == 0x9E and m.hold and m.rpm and not m.quirks.toggle_broken:
+    elif byte == 0x9E and m.hold and m.rpm and not (m.quirks.toggle_broken or m.program.wait):
         m.paused = not m.paused
     m.turn(m.rpm)
 

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 import re
 from dataclasses import dataclass
 from typing import Protocol
 
 from drivers.lookalikes.grblhal_settings import Quirks, Registers
 from drivers.lookalikes.grblhal_slides import Place, PlannedBlock, Shape, Slides, circle, straight
+from drivers.lookalikes.grblhal_waits import Wait, coolant_wait, spindle_wait
 from drivers.lookalikes.spindle_motor import TurnedSpindle
 
 
@@ -28,6 +30,11 @@ class Controller(Protocol):
     read: int | None
     rpm: float
     spindle_percent: int
+    k: float
+    hold: bool
+
+    @property
+    def commanded(self) -> float: ...
 
     @property
     def state(self) -> str: ...
@@ -46,6 +53,8 @@ class Controller(Protocol):
     def answer(self, error: int = 0) -> None: ...
 
     def turn(self, rpm: float) -> None: ...
+
+    def raise_alarm(self, number: int) -> None: ...
 
 
 # --- The look-alike's modal state, and the words that change it.
@@ -201,6 +210,7 @@ class Program:
         self._f = 0.0
         self._waits: str | None = None  # a line that waits for a standstill
         self._cuts = False  # a thread, whose answer comes at its end
+        self.wait: Wait | None = None  # inside a function, whose answer comes at its end
 
     def told(self) -> str:
         """As ``$G`` says it."""
@@ -210,10 +220,13 @@ class Program:
     def drop(self) -> None:
         """A stop or a reset."""
         self._waits, self._cuts, self.error, self.end = None, False, 0, self._m.slides.place
+        self.wait = None
 
     def pump(self) -> None:
         """Carry out what has come in."""
         machine = self._m
+        if self.wait is not None and not self._end_wait(self.wait):
+            return
         if (self._waits is not None or self._cuts) and (machine.slides.queue or machine.alarm):
             return
         if self._cuts:
@@ -222,11 +235,27 @@ class Program:
         if self._waits is not None:
             line, self._waits = self._waits, None
             self._carry_out(line)
-        while self._waits is None and not self._cuts and machine.reads and machine.slides.free > 0:
+        while self._reads_on and machine.reads and machine.slides.free > 0:
             line_ = machine.next_line()
             if line_ is None:
                 return
             self._line(line_)
+
+    @property
+    def _reads_on(self) -> bool:
+        """Whether the line before is done."""
+        return self._waits is None and not self._cuts and self.wait is None
+
+    def _end_wait(self, wait: Wait) -> bool:
+        """Acknowledge the function once its wait is over; a spindle that stays slow is ALARM:14."""
+        if not wait.is_over(self._m):
+            return False
+        self.wait = None
+        if wait.failed:
+            self._m.turn(0.0)
+            self._m.raise_alarm(14)
+        self._m.answer()
+        return True
 
     def _line(self, line: str) -> None:
         machine = self._m
@@ -276,7 +305,7 @@ class Program:
         self.error = 27 if words.get("N", 0) > _MOST_LINES else self._obey(codes, words)
         if not self.error:
             self.executed.append(line)
-        if self.error or not self._cuts:
+        if self.error or not (self._cuts or self.wait is not None):
             self._m.answer(self.error)
 
     def _obey(self, codes: list[str], words: dict[str, float]) -> int:
@@ -301,12 +330,11 @@ class Program:
     def _function(self, code: str, words: dict[str, float]) -> int:
         machine = self._m
         port = int(words.get("P", -1))
-        if code in {"M3", "M4"}:
-            machine.turn(words.get("S", abs(machine.rpm)) * (1.0 if code == "M3" else -1.0))
-        elif code == "M5":
-            machine.turn(0.0)
+        if code in {"M3", "M4", "M5"}:
+            self._turn(code, words.get("S", abs(machine.rpm)))
         elif code in {"M7", "M8"}:
             machine.outputs["mist" if code == "M7" else "flood"] = True
+            self.wait = coolant_wait(machine)
         elif code == "M9":
             machine.outputs.update(mist=False, flood=False)
         elif code == "M53":
@@ -320,6 +348,15 @@ class Program:
         else:
             return 20
         return 0
+
+    def _turn(self, code: str, rpm: float) -> None:
+        """Another speed in the same direction is not waited for."""
+        machine = self._m
+        before = math.copysign(1.0, machine.rpm) if machine.rpm else 0.0
+        way = {"M3": 1.0, "M4": -1.0, "M5": 0.0}[code]
+        machine.turn(way * rpm)
+        if way != before:
+            self.wait = spindle_wait(machine, on=code != "M5")
 
     def _target(self, words: dict[str, float]) -> Place:
         scale = 0.5 if self.modes.radius == "G7" else 1.0

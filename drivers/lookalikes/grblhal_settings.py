@@ -34,12 +34,13 @@ class Quirks:
 
 _NUMBER = re.compile(r"-?(\d+\.?\d*|\.\d+)")
 _MODE, _LATHE = 32, 2
-_DECIMALS = {11: 3, 12: 3, 24: 1, 25: 1, 27: 3, 30: 3, 31: 3}
+_DECIMALS = {11: 3, 12: 3, 24: 1, 25: 1, 27: 3, 30: 3, 31: 3, **dict.fromkeys((340, 394, 539, 673), 1)}
 _AXES = {100: 5, 110: 3, 120: 3, 130: 3}  # first number of three, decimals
 # Travel is that of the machine file; rates and accelerations too, so that programs take their proved time.
 _THERE = {
     **{10: 511.0, 11: 0.01, 12: 0.002, 13: 0.0, 20: 0.0, 22: 0.0, 24: 25.0, 25: 500.0, 27: 1.0},
     **{30: 3500.0, 31: 0.0, 32: 2.0, 40: 0.0, 60: 0.0, 63: 3.0},
+    **dict.fromkeys((340, 394, 539, 673), 0.0),  # waits for the spindle and for coolant
     **{100 + i: 800.0 for i in range(3)},
     **{110 + i: 7620.0 for i in range(3)},
     **{120 + i: 3000.0 for i in range(3)},
@@ -90,4 +91,4 @@ class Registers:
         return f"{self._values[number]:.{decimals}f}"
 
     def _decimals(self, number: int) -> int:
-        return _AXES.get(number // 10 * 10, 0) if number >= 100 else _DECIMALS.get(number, 0)
+        return _DECIMALS.get(number, _AXES.get(number // 10 * 10, 0) if number >= 100 else 0)

@@ -19,6 +19,7 @@ from drivers.mtconnect.shdr_lines import AgentsState, Report, stamp
 LOOK = 0.1  # s between two looks at the machine
 MOST = 8  # agents at a time
 _AT_DOOR = 4  # that may wait for the place of one who never pinged
+ENDS = 2.0  # s that closing waits for the thread
 _log = logging.getLogger(__name__)
 
 
@@ -203,7 +204,7 @@ class AdapterThread:
         """Hang up, and end the thread; within a tenth of a second."""
         self._closing.set()
         if self._thread.is_alive():
-            self._thread.join()
+            self._thread.join(ENDS)
 
     def _keep(self) -> None:
         try:

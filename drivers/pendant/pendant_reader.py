@@ -17,6 +17,7 @@ from drivers.pendant.pendant_buttons import AxisRange, PendantButtons
 _LISTEN = 0.05  # s that one look at the device lasts
 _AGAIN = 0.5  # s between two looks for one that is away
 _SILENT = 0.3  # s without a look of its thread after which nothing counts as held
+ENDS = 1.0  # s that closing waits for the thread
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,7 +80,7 @@ class Pendant:
         """Let the device go."""
         self._ending.set()
         if self._thread is not None:
-            self._thread.join()
+            self._thread.join(ENDS)
         self._drop("the pendant is no longer read")
 
     def _run(self) -> None:

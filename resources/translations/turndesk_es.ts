@@ -450,11 +450,6 @@
     </message>
     <message>
       <location filename="" />
-      <source>A dwell of %1 s is out of range: 0.1 s to an hour.</source>
-      <translation>Una espera de %1 s está fuera de rango: de 0.1 s a una hora.</translation>
-    </message>
-    <message>
-      <location filename="" />
       <source>A groove with square flanks from the point SPD (a diameter), SPL: WIDG wide, DIAG deep; VARI 5 towards minus Z, 1 towards plus, 7 and 3 inside. Its width is the way from D to _DN, or to D+1.</source>
       <translation>Ranura de flancos rectos desde el punto SPD (diámetro), SPL: ancho WIDG, profundidad DIAG; VARI 5 hacia Z negativo, 1 hacia positivo, 7 y 3 por dentro. Su ancho es la distancia de D a _DN, o a D+1.</translation>
     </message>
@@ -1672,6 +1667,11 @@
       <location filename="" />
       <source>G04 does not say how long.</source>
       <translation>G04 no dice cuánto.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>G04F%1: the shortest dwell is 0.1 s.</source>
+      <translation>G04F%1: la pausa más corta es de 0,1 s.</translation>
     </message>
     <message>
       <location filename="" />
@@ -4715,8 +4715,8 @@
     </message>
     <message>
       <location filename="" />
-      <source>seconds: 0.1 … 3600</source>
-      <translation>segundos: 0.1 … 3600</translation>
+      <source>seconds</source>
+      <translation>segundos</translation>
     </message>
     <message>
       <location filename="" />
@@ -5230,6 +5230,16 @@
     </message>
     <message>
       <location filename="app/compose/screen_desk.py" />
+      <source>THE WATCHDOG OVER THE CONTROL</source>
+      <translation>LA VIGILANCIA DEL CONTROL</translation>
+    </message>
+    <message>
+      <location filename="app/compose/screen_desk.py" />
+      <source>THE WEB HOOK</source>
+      <translation>EL WEBHOOK</translation>
+    </message>
+    <message>
+      <location filename="app/compose/screen_desk.py" />
       <source>WHAT KEEPS OFFSETS AND COUNTS</source>
       <translation>LO QUE GUARDA CORRECTORES Y CUENTAS</translation>
     </message>
@@ -5242,6 +5252,11 @@
       <location filename="app/compose/screen_desk.py" />
       <source>WHAT TALKS TO THE INVERTER</source>
       <translation>LO QUE HABLA CON EL VARIADOR</translation>
+    </message>
+    <message>
+      <location filename="app/compose/screen_desk.py" />
+      <source>WHAT TALKS TO THE MQTT BROKER</source>
+      <translation>LA CONEXIÓN CON EL BROKER MQTT</translation>
     </message>
     <message>
       <location filename="app/compose/screen_desk.py" />
@@ -5510,13 +5525,13 @@
     </message>
     <message>
       <location filename="app/desk/desk.py" />
-      <source>LOOK: {what}; H HOLDS THE FEED</source>
-      <translation>MIRE: {what}; H RETIENE EL AVANCE</translation>
+      <source>LOOK: {what}; PAUSE HOLDS THE FEED</source>
+      <translation type="unfinished" />
     </message>
     <message>
       <location filename="app/desk/desk.py" />
-      <source>NOT KEPT, AND LOST BY CLOSING: {what}; MAKE ROOM, OR PRESS Y TO CLOSE, ESC TO STAY</source>
-      <translation>SIN GUARDAR, Y SE PIERDE AL CERRAR: {what}; HAGA ESPACIO, U PULSE Y PARA CERRAR, ESC PARA SEGUIR</translation>
+      <source>NOT KEPT, AND LOST BY CLOSING: {what}; MAKE ROOM, OR PRESS Y TO CLOSE, N TO STAY</source>
+      <translation>SIN GUARDAR, Y SE PIERDE AL CERRAR: {what}; HAGA ESPACIO, U PULSE Y PARA CERRAR, N PARA SEGUIR</translation>
     </message>
     <message>
       <location filename="app/desk/desk.py" />
@@ -5595,8 +5610,8 @@
     </message>
     <message>
       <location filename="app/desk/desk.py" />
-      <source>THE MACHINE IS MOVING: PRESS H FOR FEED HOLD FIRST</source>
-      <translation>LA MÁQUINA SE MUEVE: PULSE PRIMERO H, RETENCIÓN DE AVANCE</translation>
+      <source>THE MACHINE IS MOVING: PRESS PAUSE FOR FEED HOLD FIRST</source>
+      <translation type="unfinished" />
     </message>
     <message>
       <location filename="app/desk/desk.py" />
@@ -5630,8 +5645,8 @@
     </message>
     <message>
       <location filename="app/desk/first_job.py" />
-      <source>F10, 7 SHOWS THIS CARD AGAIN</source>
-      <translation>F10, 7 MUESTRA ESTA TARJETA OTRA VEZ</translation>
+      <source>F10, 7, RETURN SHOWS THIS CARD AGAIN</source>
+      <translation type="unfinished" />
     </message>
     <message>
       <location filename="app/desk/first_job.py" />
@@ -5750,8 +5765,8 @@
     </message>
     <message>
       <location filename="app/desk/interrupted_notice.py" />
-      <source>T{tool} MAY STAND IN THE PART OF {program} LINE {line}: Y GIVES THAT JOB UP FOR {name}, ESC KEEPS IT</source>
-      <translation>T{tool} PUEDE ESTAR EN LA PIEZA DE {program} LÍNEA {line}: LA TECLA Y ABANDONA ESE TRABAJO POR {name}, ESC LO CONSERVA</translation>
+      <source>T{tool} MAY STAND IN THE PART OF {program} LINE {line}: Y GIVES THAT JOB UP FOR {name}, N KEEPS IT</source>
+      <translation>T{tool} PUEDE ESTAR EN LA PIEZA DE {program} LÍNEA {line}: LA TECLA Y ABANDONA ESE TRABAJO POR {name}, N LO CONSERVA</translation>
     </message>
     <message>
       <location filename="app/desk/machine_file_changes.py" />
@@ -6030,18 +6045,18 @@
     </message>
     <message>
       <location filename="app/desk/program_folder.py" />
-      <source>{name} HAS CHANGED ON THE DISK: F2 READS IT ANEW, THE START RUNS WHAT IS SHOWN</source>
-      <translation>{name} CAMBIÓ EN EL DISCO: F2 LO LEE DE NUEVO, EL ARRANQUE CORRE LO QUE SE MUESTRA</translation>
+      <source>{name} CANNOT BE READ: CHECK THE PROGRAM FOLDER. CYCLE START RUNS THE LOADED TEXT</source>
+      <translation>NO SE PUEDE LEER {name}: REVISE LA CARPETA DE PROGRAMAS. EL INICIO DE CICLO EJECUTA EL TEXTO CARGADO</translation>
     </message>
     <message>
       <location filename="app/desk/program_folder.py" />
-      <source>{name} IS NOT ON THE DISK ANY MORE: WHAT IS SHOWN IS WHAT RUNS</source>
-      <translation>{name} YA NO ESTÁ EN EL DISCO: LO QUE SE MUESTRA ES LO QUE CORRE</translation>
+      <source>{name} IS NOT ON THE DISK. CYCLE START RUNS THE LOADED TEXT</source>
+      <translation>{name} NO ESTÁ EN EL DISCO. EL INICIO DE CICLO EJECUTA EL TEXTO CARGADO</translation>
     </message>
     <message>
-      <location filename="app/desk/program_loading.py" />
-      <source>%1 Assumed: %2.</source>
-      <translation>%1 Supuesto: %2.</translation>
+      <location filename="app/desk/program_folder.py" />
+      <source>{name} ON THE DISK IS NOT THE LOADED TEXT. CYCLE START RUNS THE LOADED TEXT. F2: RELOAD</source>
+      <translation>{name} EN EL DISCO NO ES EL TEXTO CARGADO. EL INICIO DE CICLO EJECUTA EL TEXTO CARGADO. F2: VOLVER A CARGAR</translation>
     </message>
     <message>
       <location filename="app/desk/program_loading.py" />
@@ -6200,8 +6215,8 @@
     </message>
     <message>
       <location filename="app/desk/prompt_line.py" />
-      <source>PRESS BOTH PALMS WITHIN HALF A SECOND; FOR ONE HAND: F10 7, PALM BUTTONS ON THE SCREEN</source>
-      <translation>PRESIONE LOS DOS PULSADORES EN MEDIO SEGUNDO; CON UNA MANO: F10 7, PULSADORES EN PANTALLA</translation>
+      <source>PRESS BOTH PALMS WITHIN HALF A SECOND; FOR ONE HAND: F10, 7, RETURN, PALM BUTTONS ON THE SCREEN</source>
+      <translation type="unfinished" />
     </message>
     <message>
       <location filename="app/desk/prompt_line.py" />
@@ -6210,13 +6225,13 @@
     </message>
     <message>
       <location filename="app/desk/prompt_line.py" />
-      <source>PRESS Y TO GIVE THE PROGRAM UP, ESC TO KEEP IT</source>
-      <translation>PULSE Y PARA ABANDONAR EL PROGRAMA, ESC PARA CONSERVARLO</translation>
+      <source>PRESS Y TO GIVE THE PROGRAM UP, N TO KEEP IT</source>
+      <translation>PULSE Y PARA ABANDONAR EL PROGRAMA, N PARA CONSERVARLO</translation>
     </message>
     <message>
       <location filename="app/desk/prompt_line.py" />
-      <source>PRESS Y TO TWIST THE E-STOP OUT, ESC TO LEAVE IT IN</source>
-      <translation>PULSE Y PARA SOLTAR EL PARO DE EMERGENCIA, ESC PARA DEJARLO PULSADO</translation>
+      <source>PRESS Y TO TWIST THE E-STOP OUT, N TO LEAVE IT IN</source>
+      <translation>PULSE Y PARA SOLTAR EL PARO DE EMERGENCIA, N PARA DEJARLO PULSADO</translation>
     </message>
     <message>
       <location filename="app/desk/prompt_line.py" />
@@ -6257,6 +6272,11 @@
       <location filename="app/desk/prompt_line.py" />
       <source>TO START %1</source>
       <translation>PARA ARRANCAR %1</translation>
+    </message>
+    <message>
+      <location filename="app/desk/prompt_line.py" />
+      <source>TYPE A NAME OR MARK A PROGRAM WITH THE ARROWS, THEN PRESS RETURN; ESC CLOSES THE LIST</source>
+      <translation>ESCRIBA UN NOMBRE O MARQUE UN PROGRAMA CON LAS FLECHAS Y PULSE INTRO; ESC CIERRA LA LISTA</translation>
     </message>
     <message>
       <location filename="app/desk/prompt_line.py" />
@@ -6327,6 +6347,16 @@
       <location filename="app/desk/readouts.py" />
       <source>COLLET OPEN</source>
       <translation>PINZA ABIERTA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/readouts.py" />
+      <source>CONTROL IN G72 Ø</source>
+      <translation>CONTROL EN G72 Ø</translation>
+    </message>
+    <message>
+      <location filename="app/desk/readouts.py" />
+      <source>CONTROL IN G73 R</source>
+      <translation>CONTROL EN G73 R</translation>
     </message>
     <message>
       <location filename="app/desk/readouts.py" />
@@ -6625,8 +6655,8 @@
     </message>
     <message>
       <location filename="app/desk/waiting.py" />
-      <source>F10, 3, F4 SWITCHES THE SIMULATED INPUTS</source>
-      <translation>F10, 3, F4 CONMUTA LAS ENTRADAS SIMULADAS</translation>
+      <source>F10, 3, RETURN, F4 SWITCHES THE SIMULATED INPUTS</source>
+      <translation type="unfinished" />
     </message>
     <message>
       <location filename="app/desk/waiting.py" />
@@ -6860,13 +6890,13 @@
     </message>
     <message>
       <location filename="app/editor/editor_messages.py" />
-      <source>F3 SAVES AND PUTS WHAT WAS WRITTEN ON THE DESK; F1 SAVES AND LEAVES THE DESK AS IT IS</source>
-      <translation>F3 GUARDA Y CARGA LO ESCRITO; F1 GUARDA Y DEJA CARGADO LO QUE HAY</translation>
+      <source>F3 SAVE AND LOAD    F1 SAVE ONLY</source>
+      <translation>F3 GUARDAR Y CARGAR    F1 SOLO GUARDAR</translation>
     </message>
     <message>
       <location filename="app/editor/editor_messages.py" />
-      <source>F6 LEAVES WITHOUT SAVING, F3 SAVES AND LEAVES, ESC GOES ON</source>
-      <translation>F6 SALE SIN GUARDAR, F3 GUARDA Y SALE, ESC SIGUE</translation>
+      <source>F6 LEAVE WITHOUT SAVING    F3 SAVE AND LOAD    ESC CONTINUE EDITING</source>
+      <translation>F6 SALIR SIN GUARDAR    F3 GUARDAR Y CARGAR    ESC SEGUIR EDITANDO</translation>
     </message>
     <message>
       <location filename="app/editor/editor_messages.py" />
@@ -6875,8 +6905,8 @@
     </message>
     <message>
       <location filename="app/editor/editor_messages.py" />
-      <source>NOT SAVED YET: F3 SAVES AND LEAVES, F10 LEAVES WITHOUT SAVING</source>
-      <translation>AÚN SIN GUARDAR: F3 GUARDA Y SALE, F10 SALE SIN GUARDAR</translation>
+      <source>NOT SAVED YET. F3 SAVE AND LOAD    F1 SAVE ONLY    F10 NO SAVE</source>
+      <translation>SIN GUARDAR. F3 GUARDAR Y CARGAR    F1 SOLO GUARDAR    F10 NO GUARDAR</translation>
     </message>
     <message>
       <location filename="app/editor/editor_messages.py" />
@@ -6960,18 +6990,23 @@
     </message>
     <message>
       <location filename="app/editor/editor_messages.py" />
-      <source>{name} IS SAVED; F2 PUTS IT ON THE DESK</source>
-      <translation>{name} ESTÁ GUARDADO; F2 LO CARGA</translation>
+      <source>{name} IS SAVED, NOT LOADED. CYCLE START RUNS THE OLD TEXT. PRESS F2 TO LOAD IT</source>
+      <translation>{name} ESTÁ GUARDADO, NO CARGADO. EL INICIO DE CICLO EJECUTA EL TEXTO ANTERIOR. PULSE F2 PARA CARGARLO</translation>
     </message>
     <message>
       <location filename="app/editor/editor_messages.py" />
-      <source>{name} IS SAVED; {other} STAYS ON THE DESK</source>
-      <translation>{name} ESTÁ GUARDADO; {other} SIGUE CARGADO</translation>
+      <source>{name} IS SAVED, NOT LOADED. PRESS F2 TO LOAD IT</source>
+      <translation>{name} ESTÁ GUARDADO, NO CARGADO. PULSE F2 PARA CARGARLO</translation>
     </message>
     <message>
       <location filename="app/editor/editor_messages.py" />
-      <source>{name} WAS ONLY LOOKED AT: {other} STAYS ON THE DESK</source>
-      <translation>{name} SÓLO SE MIRÓ: {other} SIGUE CARGADO</translation>
+      <source>{name} IS SAVED. {other} IS STILL LOADED</source>
+      <translation>{name} ESTÁ GUARDADO. SIGUE CARGADO {other}</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_messages.py" />
+      <source>{name} WAS NOT CHANGED. {other} IS STILL LOADED</source>
+      <translation>{name} NO HA CAMBIADO. SIGUE CARGADO {other}</translation>
     </message>
     <message>
       <location filename="app/editor/editor_messages.py" />
@@ -7042,6 +7077,11 @@
       <location filename="app/editor/editor_view.py" />
       <source>LINE %1: %2 %3</source>
       <translation>LÍNEA %1: %2 %3</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_view.py" />
+      <source>LOAD</source>
+      <translation>CARGA</translation>
     </message>
     <message>
       <location filename="app/editor/editor_view.py" />
@@ -7390,13 +7430,13 @@
     </message>
     <message>
       <location filename="app/jobs/jobs_model.py" />
-      <source>PRESS Y TO TAKE {count} JOBS THAT ARE DONE OUT OF THE QUEUE, ESC TO KEEP THEM</source>
-      <translation>PULSE Y PARA QUITAR {count} TRABAJOS HECHOS DE LA COLA, ESC PARA DEJARLOS</translation>
+      <source>PRESS Y TO TAKE {count} JOBS THAT ARE DONE OUT OF THE QUEUE, N TO KEEP THEM</source>
+      <translation>PULSE Y PARA QUITAR {count} TRABAJOS HECHOS DE LA COLA, N PARA DEJARLOS</translation>
     </message>
     <message>
       <location filename="app/jobs/jobs_model.py" />
-      <source>PRESS Y TO TAKE {program} OUT OF THE QUEUE, {made} OF {wanted} MADE; ESC KEEPS IT</source>
-      <translation>PULSE Y PARA QUITAR {program} DE LA COLA, {made} DE {wanted} HECHAS; ESC LO DEJA</translation>
+      <source>PRESS Y TO TAKE {program} OUT OF THE QUEUE, {made} OF {wanted} MADE; N KEEPS IT</source>
+      <translation>PULSE Y PARA QUITAR {program} DE LA COLA, {made} DE {wanted} HECHAS; N LO DEJA</translation>
     </message>
     <message>
       <location filename="app/jobs/jobs_model.py" />
@@ -7477,11 +7517,6 @@
       <location filename="app/jobs/jobs_model.py" />
       <source>jobs: those that are done are cleared</source>
       <translation>trabajos: se quitan los hechos</translation>
-    </message>
-    <message>
-      <location filename="app/jobs/jobs_view.py" />
-      <source>LOAD</source>
-      <translation>CARGA</translation>
     </message>
     <message>
       <location filename="app/jobs/jobs_watch.py" />
@@ -8515,13 +8550,23 @@
     </message>
     <message>
       <location filename="app/jog/tool_setting_view.py" />
-      <source>ITS TIP IS NOW AT</source>
-      <translation>SU PUNTA ESTÁ AHORA EN</translation>
+      <source>THIS ONE</source>
+      <translation>ÉSTA</translation>
     </message>
     <message>
       <location filename="app/jog/tool_setting_view.py" />
-      <source>THIS ONE</source>
-      <translation>ÉSTA</translation>
+      <source>TIP FROM PART ZERO</source>
+      <translation>PUNTA DESDE EL CERO PIEZA</translation>
+    </message>
+    <message>
+      <location filename="app/jog/tool_setting_view.py" />
+      <source>TIP FROM PART ZERO, INCH</source>
+      <translation>PUNTA DESDE EL CERO PIEZA, PULGADAS</translation>
+    </message>
+    <message>
+      <location filename="app/jog/tool_setting_view.py" />
+      <source>TIP FROM PART ZERO, MM</source>
+      <translation>PUNTA DESDE EL CERO PIEZA, MM</translation>
     </message>
     <message>
       <location filename="app/jog/tool_setting_view.py" />
@@ -9129,6 +9174,11 @@
       <translation>Todavía no se cambia ningún corrector.</translation>
     </message>
     <message>
+      <location filename="app/offsets/offsets_view.py" />
+      <source>VALUES ARE TYPED INTO THE TABLE: PRESS ESC TO SHOW IT</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
       <location filename="app/offsets/part_effect.py" />
       <source>AFTER</source>
       <translation>DESPUÉS</translation>
@@ -9275,8 +9325,8 @@
     </message>
     <message>
       <location filename="app/offsets/secondary_offsets.py" />
-      <source>PRESS Y TO CLEAR ALL 32 SECONDARY OFFSETS, ESC TO KEEP THEM</source>
-      <translation>PULSE Y PARA BORRAR LOS 32 CORRECTORES SECUNDARIOS, ESC PARA CONSERVARLOS</translation>
+      <source>PRESS Y TO CLEAR ALL 32 SECONDARY OFFSETS, N TO KEEP THEM</source>
+      <translation>PULSE Y PARA BORRAR LOS 32 CORRECTORES SECUNDARIOS, N PARA CONSERVARLOS</translation>
     </message>
     <message>
       <location filename="app/offsets/secondary_offsets.py" />
@@ -9445,8 +9495,8 @@
     </message>
     <message>
       <location filename="app/offsets/tool_shapes.py" />
-      <source>PRESS Y TO FORGET THE SHAPE OF T{number}, ESC TO KEEP IT</source>
-      <translation>PULSE Y PARA OLVIDAR LA FORMA DE T{number}, ESC PARA CONSERVARLA</translation>
+      <source>PRESS Y TO FORGET THE SHAPE OF T{number}, N TO KEEP IT</source>
+      <translation>PULSE Y PARA OLVIDAR LA FORMA DE T{number}, N PARA CONSERVARLA</translation>
     </message>
     <message>
       <location filename="app/offsets/tool_shapes.py" />
@@ -9520,8 +9570,8 @@
     </message>
     <message>
       <location filename="app/offsets/zero_offsets.py" />
-      <source>PRESS Y TO CLEAR G54 TO G59, ESC TO KEEP THEM</source>
-      <translation>PULSE Y PARA BORRAR G54 A G59, ESC PARA CONSERVARLOS</translation>
+      <source>PRESS Y TO CLEAR G54 TO G59, N TO KEEP THEM</source>
+      <translation>PULSE Y PARA BORRAR G54 A G59, N PARA CONSERVARLOS</translation>
     </message>
     <message>
       <location filename="app/offsets/zero_offsets.py" />
@@ -10005,8 +10055,8 @@
     </message>
     <message>
       <location filename="app/programs/copy_rename_delete.py" />
-      <source>PRESS Y TO DELETE {name} (ITS VERSIONS ARE KEPT), ESC TO LEAVE IT</source>
-      <translation>PULSE Y PARA BORRAR {name} (SUS VERSIONES SE GUARDAN), ESC PARA DEJARLO</translation>
+      <source>PRESS Y TO DELETE {name} (ITS VERSIONS ARE KEPT), N TO LEAVE IT</source>
+      <translation>PULSE Y PARA BORRAR {name} (SUS VERSIONES SE GUARDAN), N PARA DEJARLO</translation>
     </message>
     <message>
       <location filename="app/programs/copy_rename_delete.py" />
@@ -10190,8 +10240,8 @@
     </message>
     <message>
       <location filename="app/programs/import_export.py" />
-      <source>{names}: THERE ALREADY WITH ANOTHER TEXT. PRESS Y TO REPLACE, ESC TO KEEP</source>
-      <translation>{names}: YA EXISTE CON OTRO TEXTO. PULSE Y PARA REEMPLAZAR, ESC PARA CONSERVAR</translation>
+      <source>{names}: THERE ALREADY WITH ANOTHER TEXT. PRESS Y TO REPLACE, N TO KEEP</source>
+      <translation>{names}: YA EXISTE CON OTRO TEXTO. PULSE Y PARA REEMPLAZAR, N PARA CONSERVAR</translation>
     </message>
     <message>
       <location filename="app/programs/preview.py" />
@@ -10295,18 +10345,8 @@
     </message>
     <message>
       <location filename="app/programs/program_list.py" />
-      <source>TAB: A NAME TO LOOK FOR OR TO BEGIN; F3 OPENS THE MARKED PROGRAM IN THE EDITOR; H HOLDS</source>
-      <translation>TAB: UN NOMBRE QUE BUSCAR O EMPEZAR; F3 ABRE EL PROGRAMA MARCADO EN EL EDITOR; H RETIENE</translation>
-    </message>
-    <message>
-      <location filename="app/programs/program_list.py" />
-      <source>TAB: FIND OR NEW NAME</source>
-      <translation>TAB: BUSCAR O NOMBRE NUEVO</translation>
-    </message>
-    <message>
-      <location filename="app/programs/program_list.py" />
-      <source>TYPE A NAME AND PRESS RETURN; ESC KEEPS EVERYTHING AS IT IS</source>
-      <translation>ESCRIBA UN NOMBRE Y PULSE RETURN; ESC DEJA TODO COMO ESTÁ</translation>
+      <source>TYPE A NAME, OR PRESS BACKSPACE TO EDIT THIS ONE. RETURN: ACCEPT    ESC: CANCEL</source>
+      <translation>ESCRIBA UN NOMBRE, O PULSE RETROCESO PARA EDITAR ESTE. INTRO: ACEPTAR    ESC: CANCELAR</translation>
     </message>
     <message>
       <location filename="app/programs/program_list.py" />
@@ -10315,8 +10355,8 @@
     </message>
     <message>
       <location filename="app/programs/program_list.py" />
-      <source>TYPE A PART OF A NAME; F3 OPENS IT IN THE EDITOR; TAB: LETTERS ARE KEYS AGAIN; ESC HOLDS</source>
-      <translation>ESCRIBA PARTE DE UN NOMBRE; F3 LO ABRE EN EL EDITOR; TAB: LAS LETRAS SON TECLAS OTRA VEZ; ESC RETIENE</translation>
+      <source>TYPE A PART OF A NAME; F3 OPENS IT IN THE EDITOR; PAUSE HOLDS THE FEED; ESC FOR AUTOMATIC</source>
+      <translation type="unfinished" />
     </message>
     <message>
       <location filename="app/programs/program_list.py" />
@@ -10650,8 +10690,8 @@
     </message>
     <message>
       <location filename="app/quality/features_section.py" />
-      <source>PRESS Y TO MEASURE {name} NO MORE (ITS READINGS STAY IN THE STORE), ESC TO KEEP IT</source>
-      <translation>PULSE Y PARA NO MEDIR MÁS {name} (SUS LECTURAS SE CONSERVAN), ESC PARA DEJARLA</translation>
+      <source>PRESS Y TO MEASURE {name} NO MORE (ITS READINGS STAY IN THE STORE), N TO KEEP IT</source>
+      <translation>PULSE Y PARA NO MEDIR MÁS {name} (SUS LECTURAS SE CONSERVAN), N PARA DEJARLA</translation>
     </message>
     <message>
       <location filename="app/quality/features_section.py" />
@@ -10885,8 +10925,8 @@
     </message>
     <message>
       <location filename="app/quality/readings_section.py" />
-      <source>PRESS Y TO TAKE {size} OF PART {part} OUT, ESC TO KEEP IT</source>
-      <translation>PULSE Y PARA QUITAR {size} DE LA PIEZA {part}, ESC PARA DEJARLA</translation>
+      <source>PRESS Y TO TAKE {size} OF PART {part} OUT, N TO KEEP IT</source>
+      <translation>PULSE Y PARA QUITAR {size} DE LA PIEZA {part}, N PARA DEJARLA</translation>
     </message>
     <message>
       <location filename="app/quality/readings_section.py" />
@@ -10950,13 +10990,13 @@
     </message>
     <message>
       <location filename="app/quality/readings_section.py" />
-      <source>{name} {size} IS FAR OFF: PRESS Y TO KEEP IT ALL THE SAME, ESC TO MEASURE AGAIN</source>
-      <translation>{name} {size} ESTÁ MUY LEJOS: PULSE Y PARA GUARDARLA AUN ASÍ, ESC PARA MEDIR DE NUEVO</translation>
+      <source>{name} {size} IS FAR OFF: PRESS Y TO KEEP IT ALL THE SAME, N TO MEASURE AGAIN</source>
+      <translation>{name} {size} ESTÁ MUY LEJOS: PULSE Y PARA GUARDARLA AUN ASÍ, N PARA MEDIR DE NUEVO</translation>
     </message>
     <message>
       <location filename="app/quality/readings_section.py" />
-      <source>{words}: PRESS Y TO TAKE IT OVER, ESC TO LEAVE IT</source>
-      <translation>{words}: PULSE Y PARA TOMARLA, ESC PARA DEJARLA</translation>
+      <source>{words}: PRESS Y TO TAKE IT OVER, N TO LEAVE IT</source>
+      <translation>{words}: PULSE Y PARA TOMARLA, N PARA DEJARLA</translation>
     </message>
     <message>
       <location filename="app/quality/readings_section.py" />
@@ -11290,8 +11330,8 @@
     </message>
     <message>
       <location filename="app/quality/tool_life_section.py" />
-      <source>PRESS Y WHEN T{number} HAS A FRESH INSERT ({words} ARE ON THE OLD ONE), ESC IF NOT</source>
-      <translation>PULSE Y CUANDO T{number} TENGA INSERTO NUEVO (EL VIEJO LLEVA {words}), ESC SI NO</translation>
+      <source>PRESS Y WHEN T{number} HAS A FRESH INSERT ({words} ARE ON THE OLD ONE), N IF NOT</source>
+      <translation>PULSE Y CUANDO T{number} TENGA INSERTO NUEVO (EL VIEJO LLEVA {words}), N SI NO</translation>
     </message>
     <message>
       <location filename="app/quality/tool_life_section.py" />
@@ -12020,8 +12060,8 @@
     </message>
     <message>
       <location filename="app/scope/scope_model.py" />
-      <source>PRESS Y TO DELETE {path}, ESC TO KEEP IT</source>
-      <translation>PULSE Y PARA BORRAR {path}, ESC PARA CONSERVARLO</translation>
+      <source>PRESS Y TO DELETE {path}, N TO KEEP IT</source>
+      <translation>PULSE Y PARA BORRAR {path}, N PARA CONSERVARLO</translation>
     </message>
     <message>
       <location filename="app/scope/scope_model.py" />
@@ -12575,18 +12615,23 @@
     </message>
     <message>
       <location filename="app/screen/main_window.py" />
+      <source>NOT RESPONDING FOR {seconds} S: KEYS WERE DROPPED. WAIT A SECOND, THEN PRESS AGAIN</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
+      <location filename="app/screen/main_window.py" />
       <source>THE DESK WAS STARTED AS A KIOSK: IT ENDS WITH THE COMPUTER OR BY SIGTERM</source>
       <translation>EL PUESTO SE ARRANCÓ COMO QUIOSCO: TERMINA CON LA COMPUTADORA O POR SIGTERM</translation>
     </message>
     <message>
       <location filename="app/screen/main_window.py" />
-      <source>THE SCREEN STOOD STILL FOR {seconds} S: WHAT WAS PRESSED MEANWHILE WAS FORGOTTEN</source>
-      <translation>LA PANTALLA ESTUVO DETENIDA {seconds} S: LO PULSADO MIENTRAS TANTO SE OLVIDÓ</translation>
+      <source>{key} HAS NO FUNCTION ON THIS PAGE</source>
+      <translation>{key} NO TIENE FUNCIÓN EN ESTA PÁGINA</translation>
     </message>
     <message>
       <location filename="app/screen/main_window.py" />
-      <source>{key} HAS NO FUNCTION ON THIS PAGE</source>
-      <translation>{key} NO TIENE FUNCIÓN EN ESTA PÁGINA</translation>
+      <source>{key} IS A KEY OF THE AUTOMATIC PAGE: PRESS F1, THEN F2</source>
+      <translation type="unfinished" />
     </message>
     <message>
       <location filename="app/screen/page_table.py" />
@@ -12875,8 +12920,8 @@
     </message>
     <message>
       <location filename="app/screen/window_frame.py" />
-      <source>HELD IN MEMORY, WRITTEN WHEN THERE IS ROOM: {what}</source>
-      <translation>EN MEMORIA, SE ESCRIBE CUANDO HAYA ESPACIO: {what}</translation>
+      <source>IN MEMORY UNTIL THE STORE CAN BE WRITTEN: {what}</source>
+      <translation>EN MEMORIA HASTA QUE SE PUEDA ESCRIBIR EN EL ALMACÉN: {what}</translation>
     </message>
     <message>
       <location filename="app/screen/window_frame.py" />
@@ -13655,13 +13700,13 @@
     </message>
     <message>
       <location filename="app/sharing/sharing_model.py" />
-      <source>PRESS Y TO KEEP {name} AS IT IS HERE (THE OTHERS STAY VERSIONS), ESC TO LEAVE IT</source>
-      <translation>PULSE Y PARA CONSERVAR {name} COMO ESTÁ AQUÍ (LAS OTRAS QUEDAN COMO VERSIONES), ESC PARA DEJARLO</translation>
+      <source>PRESS Y TO KEEP {name} AS IT IS HERE (THE OTHERS STAY VERSIONS), N TO LEAVE IT</source>
+      <translation>PULSE Y PARA CONSERVAR {name} COMO ESTÁ AQUÍ (LAS OTRAS QUEDAN COMO VERSIONES), N PARA DEJARLO</translation>
     </message>
     <message>
       <location filename="app/sharing/sharing_model.py" />
-      <source>PRESS Y TO TAKE {name} AS {desk} HAS IT (WHAT IS HERE STAYS A VERSION), ESC TO LEAVE IT</source>
-      <translation>PULSE Y PARA TOMAR {name} COMO LO TIENE {desk} (LO DE AQUÍ QUEDA COMO VERSIÓN), ESC PARA DEJARLO</translation>
+      <source>PRESS Y TO TAKE {name} AS {desk} HAS IT (WHAT IS HERE STAYS A VERSION), N TO LEAVE IT</source>
+      <translation>PULSE Y PARA TOMAR {name} COMO LO TIENE {desk} (LO DE AQUÍ QUEDA COMO VERSIÓN), N PARA DEJARLO</translation>
     </message>
     <message>
       <location filename="app/sharing/sharing_model.py" />
@@ -13875,13 +13920,13 @@
     </message>
     <message>
       <location filename="app/special/access_levels.py" />
-      <source>PRESS Y TO TAKE ALL PINS AWAY IN 10 MINUTES; IT IS LOGGED; ESC TO KEEP THEM</source>
-      <translation>PULSE Y PARA BORRAR TODOS LOS PIN EN 10 MINUTOS; QUEDA ANOTADO; ESC LOS DEJA</translation>
+      <source>PRESS Y TO TAKE ALL PINS AWAY IN 10 MINUTES; IT IS LOGGED; N TO KEEP THEM</source>
+      <translation>PULSE Y PARA BORRAR TODOS LOS PIN EN 10 MINUTOS; QUEDA ANOTADO; N LOS DEJA</translation>
     </message>
     <message>
       <location filename="app/special/access_levels.py" />
-      <source>PRESS Y TO TAKE {name} AWAY, ESC TO KEEP THE PIN</source>
-      <translation>PULSE Y PARA QUITAR A {name}, ESC PARA DEJAR EL PIN</translation>
+      <source>PRESS Y TO TAKE {name} AWAY, N TO KEEP THE PIN</source>
+      <translation>PULSE Y PARA QUITAR A {name}, N PARA DEJAR EL PIN</translation>
     </message>
     <message>
       <location filename="app/special/access_levels.py" />
@@ -14010,8 +14055,8 @@
     </message>
     <message>
       <location filename="app/special/backup_and_restore.py" />
-      <source>PRESS Y TO RESTORE {name} OVER EVERYTHING KEPT NOW ({what}), ESC TO LEAVE IT</source>
-      <translation>PULSE Y PARA RESTAURAR {name} SOBRE TODO LO GUARDADO ({what}), ESC PARA DEJARLO</translation>
+      <source>PRESS Y TO RESTORE {name} OVER EVERYTHING KEPT NOW ({what}), N TO LEAVE IT</source>
+      <translation>PULSE Y PARA RESTAURAR {name} SOBRE TODO LO GUARDADO ({what}), N PARA DEJARLO</translation>
     </message>
     <message>
       <location filename="app/special/backup_and_restore.py" />
@@ -14190,13 +14235,13 @@
     </message>
     <message>
       <location filename="app/special/inputs_outputs.py" />
-      <source>PRESS Y TO SWITCH {name} OFF, ESC TO LEAVE IT ON</source>
-      <translation>PULSE Y PARA APAGAR {name}, ESC PARA DEJARLA ENCENDIDA</translation>
+      <source>PRESS Y TO SWITCH {name} OFF, N TO LEAVE IT ON</source>
+      <translation>PULSE Y PARA APAGAR {name}, N PARA DEJARLA ENCENDIDA</translation>
     </message>
     <message>
       <location filename="app/special/inputs_outputs.py" />
-      <source>PRESS Y TO SWITCH {name} ON, ESC TO LEAVE IT OFF</source>
-      <translation>PULSE Y PARA ENCENDER {name}, ESC PARA DEJARLA APAGADA</translation>
+      <source>PRESS Y TO SWITCH {name} ON, N TO LEAVE IT OFF</source>
+      <translation>PULSE Y PARA ENCENDER {name}, N PARA DEJARLA APAGADA</translation>
     </message>
     <message>
       <location filename="app/special/inputs_outputs.py" />
@@ -14445,8 +14490,8 @@
     </message>
     <message>
       <location filename="app/special/machine_file_acceptance.py" />
-      <source>PRESS Y TO ACCEPT THE MACHINE FILE AS IT IS NOW, ESC TO LEAVE IT</source>
-      <translation>PULSE Y PARA ACEPTAR EL ARCHIVO DE MÁQUINA COMO ESTÁ, ESC PARA DEJARLO</translation>
+      <source>PRESS Y TO ACCEPT THE MACHINE FILE AS IT IS NOW, N TO LEAVE IT</source>
+      <translation>PULSE Y PARA ACEPTAR EL ARCHIVO DE MÁQUINA COMO ESTÁ, N PARA DEJARLO</translation>
     </message>
     <message>
       <location filename="app/special/machine_file_acceptance.py" />
@@ -14555,8 +14600,8 @@
     </message>
     <message>
       <location filename="app/special/parts_counter.py" />
-      <source>PRESS Y TO PUT THE COUNT TO NOUGHT, ESC TO KEEP IT</source>
-      <translation>PULSE Y PARA PONER LA CUENTA EN CERO, ESC PARA CONSERVARLA</translation>
+      <source>PRESS Y TO PUT THE COUNT TO NOUGHT, N TO KEEP IT</source>
+      <translation>PULSE Y PARA PONER LA CUENTA EN CERO, N PARA CONSERVARLA</translation>
     </message>
     <message>
       <location filename="app/special/parts_counter.py" />
@@ -14855,8 +14900,8 @@
     </message>
     <message>
       <location filename="app/special/setup_sheet_function.py" />
-      <source>PRESS Y TO THROW THIS NOTE AWAY, ESC TO KEEP IT</source>
-      <translation>PULSE Y PARA BORRAR ESTA NOTA, ESC PARA CONSERVARLA</translation>
+      <source>PRESS Y TO THROW THIS NOTE AWAY, N TO KEEP IT</source>
+      <translation>PULSE Y PARA BORRAR ESTA NOTA, N PARA CONSERVARLA</translation>
     </message>
     <message>
       <location filename="app/special/setup_sheet_function.py" />
@@ -14990,13 +15035,18 @@
     </message>
     <message>
       <location filename="app/special/special_functions.py" />
-      <source>A FINGER OPENS A FUNCTION; ARROWS OR A FIGURE CHOOSE, RETURN OPENS IT; ESC FOR AUTOMATIC</source>
-      <translation>UN DEDO ABRE UNA FUNCIÓN; FLECHAS O UNA CIFRA ELIGEN, RETURN LA ABRE; ESC A AUTOMÁTICO</translation>
+      <source>A FINGER OPENS A FUNCTION; ARROWS OR ITS NUMBER CHOOSE, RETURN OPENS IT; ESC FOR AUTOMATIC</source>
+      <translation type="unfinished" />
     </message>
     <message>
       <location filename="app/special/special_functions.py" />
       <source>ESC GOES BACK TO THE LIST</source>
       <translation>ESC REGRESA A LA LISTA</translation>
+    </message>
+    <message>
+      <location filename="app/special/special_functions.py" />
+      <source>FUNCTION {number} DOES NOT EXIST: TYPE 1 TO {last}</source>
+      <translation type="unfinished" />
     </message>
     <message>
       <location filename="app/special/spindle_limit.py" />
@@ -15050,8 +15100,8 @@
     </message>
     <message>
       <location filename="app/special/spindle_limit.py" />
-      <source>PRESS Y TO LIFT THE LIMIT, ESC TO KEEP IT</source>
-      <translation>PULSE Y PARA QUITAR EL TOPE, ESC PARA CONSERVARLO</translation>
+      <source>PRESS Y TO LIFT THE LIMIT, N TO KEEP IT</source>
+      <translation>PULSE Y PARA QUITAR EL TOPE, N PARA CONSERVARLO</translation>
     </message>
     <message>
       <location filename="app/special/spindle_limit.py" />
@@ -15137,11 +15187,6 @@
       <location filename="app/transfer/serial_transfer.py" />
       <source>7 BITS, EVEN PARITY, FOUND OUT</source>
       <translation>7 BITS, PARIDAD PAR, DETECTADO</translation>
-    </message>
-    <message>
-      <location filename="app/transfer/serial_transfer.py" />
-      <source>A PROGRAM IS UNDER WAY: RETURN STORES IT AS IT IS NAMED; ANOTHER NAME CAN BE TYPED AT REST</source>
-      <translation>HAY UN PROGRAMA EN CURSO: RETURN LO GUARDA CON ESE NOMBRE; OTRO SE ESCRIBE EN REPOSO</translation>
     </message>
     <message>
       <location filename="app/transfer/serial_transfer.py" />
@@ -15260,8 +15305,8 @@
     </message>
     <message>
       <location filename="app/transfer/serial_transfer.py" />
-      <source>PRESS Y TO THROW THE RECEIVED PROGRAM AWAY, ESC TO KEEP IT</source>
-      <translation>PULSE Y PARA DESECHAR EL PROGRAMA RECIBIDO, ESC PARA CONSERVARLO</translation>
+      <source>PRESS Y TO THROW THE RECEIVED PROGRAM AWAY, N TO KEEP IT</source>
+      <translation>PULSE Y PARA DESECHAR EL PROGRAMA RECIBIDO, N PARA CONSERVARLO</translation>
     </message>
     <message>
       <location filename="app/transfer/serial_transfer.py" />
@@ -16180,8 +16225,8 @@
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
-      <source>PRESS E-STOP: what is shown is not of now; save the log, end TurnDesk and start it again</source>
-      <translation>PULSE EL PARO DE EMERGENCIA: lo que se ve no es de ahora; guarde la bitácora, cierre TurnDesk y ábralo otra vez</translation>
+      <source>PRESS E-STOP: the display is out of date; close other programs and stop backups and updates, save the log, end TurnDesk and start it again</source>
+      <translation>PULSE LA PARADA DE EMERGENCIA: la pantalla no está actualizada; cierre otros programas y detenga copias de seguridad y actualizaciones, guarde el registro, cierre TurnDesk y ábralo de nuevo</translation>
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
@@ -16190,13 +16235,18 @@
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
-      <source>a driver does not come back: its wire, its adapter, the computer's disk or network</source>
-      <translation>un controlador de equipo no regresa: su cable, su adaptador, el disco o la red de la computadora</translation>
+      <source>a driver does not do what a stop asks of it: a wire is off, or it has failed</source>
+      <translation>un controlador de equipo no hace lo que pide un paro: un cable suelto, o se averió</translation>
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
-      <source>a driver does not do what a stop asks of it: a wire is off, or it has failed</source>
-      <translation>un controlador de equipo no hace lo que pide un paro: un cable suelto, o se averió</translation>
+      <source>a driver does not respond: its cable, its adapter, the computer's disk or network</source>
+      <translation>un controlador no responde: su cable, su adaptador, el disco o la red del ordenador</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
+      <source>a fault in TurnDesk; see the log</source>
+      <translation>un fallo de TurnDesk; vea el registro</translation>
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
@@ -16280,6 +16330,11 @@
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
+      <source>the computer is overloaded: another program, a backup or an update uses the processor</source>
+      <translation>el ordenador está sobrecargado: otro programa, una copia de seguridad o una actualización ocupa el procesador</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
       <source>the computer is too slow or too hot, or its disk hangs</source>
       <translation>la computadora es muy lenta o está muy caliente, o su disco se traba</translation>
     </message>
@@ -16290,13 +16345,13 @@
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
-      <source>the control has failed</source>
-      <translation>el control falló</translation>
+      <source>the control does not respond</source>
+      <translation>el control no responde</translation>
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
-      <source>the control's thread is stuck or dead</source>
-      <translation>el hilo del control está atorado o muerto</translation>
+      <source>the control has failed</source>
+      <translation>el control falló</translation>
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
@@ -20665,8 +20720,8 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/arc_moves.py" />
-      <source>R is %1, and the ends are so far apart that it takes %2 at least.</source>
-      <translation>R es %1, y los extremos están tan separados que necesita al menos %2.</translation>
+      <source>R is %1; an arc between these points needs a radius of %2 or more.</source>
+      <translation>R es %1; un arco entre estos puntos necesita un radio de %2 o más.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/arc_moves.py" />
@@ -20682,6 +20737,11 @@
       <location filename="core/interpreter/omniturn/arc_moves.py" />
       <source>The centre of the arc is its start point.</source>
       <translation>El centro del arco es su punto de inicio.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/arc_moves.py" />
+      <source>X is a radius here (G73). If the X words are diameters, write G72 before them.</source>
+      <translation>X es un radio aquí (G73). Si las palabras X son diámetros, escriba G72 antes de ellas.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/c_axis.py" />
@@ -21122,6 +21182,11 @@
       <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
       <source>This line stands after the end of the program and is in no subroutine.</source>
       <translation>Esta línea está después del final del programa y en ninguna subrutina.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
+      <source>Write M30 at the end of the program, or delete the line.</source>
+      <translation>Escriba M30 al final del programa o borre la línea.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
@@ -21900,6 +21965,16 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/threading_cycles.py" />
+      <source>%1: the first pass would be deeper than the lead.</source>
+      <translation>%1: la primera pasada sería más profunda que el paso.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
+      <source>%1: the least lead is %2.</source>
+      <translation>%1: el paso mínimo es %2.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
       <source>A larger I takes fewer; look at I and at the X where the tool starts.</source>
       <translation>Una I mayor hace menos; vea I y la X en que empieza la herramienta.</translation>
     </message>
@@ -21907,6 +21982,11 @@
       <location filename="core/interpreter/omniturn/threading_cycles.py" />
       <source>At %1 rpm this lead is %2; %3 is the most.</source>
       <translation>A %1 rpm este paso es %2; lo más es %3.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
+      <source>Correct I, the depth of the first pass, or K.</source>
+      <translation>Corrija I, la profundidad de la primera pasada, o K.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/threading_cycles.py" />
@@ -21990,6 +22070,11 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/tools_and_offsets.py" />
+      <source>G92 presets the position here; no thread is cut. A thread is G33.</source>
+      <translation>G92 preselecciona la posición aquí; no se corta ninguna rosca. Una rosca es G33.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/tools_and_offsets.py" />
       <source>G96 is active at a tool change: the spindle drive has to follow every jump of X.</source>
       <translation>G96 está activo en un cambio de herramienta: el husillo tiene que seguir cada salto de X.</translation>
     </message>
@@ -22012,6 +22097,11 @@
       <location filename="core/interpreter/omniturn/tools_and_offsets.py" />
       <source>Set their offsets.</source>
       <translation>Ponga sus correctores.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/tools_and_offsets.py" />
+      <source>Write G33XnZnInKn.</source>
+      <translation>Escriba G33XnZnInKn.</translation>
     </message>
     <message>
       <location filename="core/interpreter/restart/loop_passes.py" />
@@ -26979,6 +27069,156 @@
       <translation>Escríbalas detrás de la fila: 6/"X,Y".</translation>
     </message>
     <message>
+      <location filename="core/language/omniturn/foreign_program.py" />
+      <source>Rewrite it with the codes of this control; each finding below names the code to use.</source>
+      <translation>Reescríbalo con los códigos de este control; cada aviso siguiente indica el código que debe usar.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/foreign_program.py" />
+      <source>This program was written for a %1 control. TurnDesk runs OmniTurn programs.</source>
+      <translation>Este programa se escribió para un control %1. TurnDesk ejecuta programas OmniTurn.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/intended_code.py" />
+      <source>Delete the line: G75 ends with a pass along the contour.</source>
+      <translation>Borre la línea: G75 termina con una pasada a lo largo del contorno.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/intended_code.py" />
+      <source>Fractions are not read.</source>
+      <translation>Las fracciones no se leen.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/intended_code.py" />
+      <source>G04 takes seconds as F.</source>
+      <translation>G04 toma los segundos como F.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/intended_code.py" />
+      <source>G7 and G8 of LinuxCNC are G72 (diameters) and G73 (radii) here.</source>
+      <translation>G7 y G8 de LinuxCNC son aquí G72 (diámetros) y G73 (radios).</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/intended_code.py" />
+      <source>G70 selects inch here; finishing a contour is the last pass of G75.</source>
+      <translation>G70 selecciona pulgadas aquí; el acabado de un contorno es la última pasada de G75.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/intended_code.py" />
+      <source>G71 selects metric here; roughing to a contour is G75.</source>
+      <translation>G71 selecciona milímetros aquí; el desbaste de un contorno es G75.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/intended_code.py" />
+      <source>G72 selects diameters here; roughing to a contour is G75.</source>
+      <translation>G72 selecciona diámetros aquí; el desbaste de un contorno es G75.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/intended_code.py" />
+      <source>G73 selects radii here; roughing to a contour is G75.</source>
+      <translation>G73 selecciona radios aquí; el desbaste de un contorno es G75.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/intended_code.py" />
+      <source>G74 roughs a box here; peck drilling is G83.</source>
+      <translation>G74 desbasta un rectángulo aquí; el taladrado con picoteo es G83.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/intended_code.py" />
+      <source>G75 roughs a contour here; it does not cut grooves in pecks.</source>
+      <translation>G75 desbasta un contorno aquí; no ranura con picoteo.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/intended_code.py" />
+      <source>G76 is the minimum rpm for constant surface speed here; threads are G33.</source>
+      <translation>G76 es aquí la velocidad mínima (rpm) con velocidad de corte constante; las roscas son G33.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/intended_code.py" />
+      <source>G92 presets the position here; the maximum rpm for constant surface speed is G77.</source>
+      <translation>G92 preselecciona la posición aquí; la velocidad máxima (rpm) con velocidad de corte constante es G77.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/intended_code.py" />
+      <source>M98 has no repeat count.</source>
+      <translation>M98 no tiene número de repeticiones.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/intended_code.py" />
+      <source>O words of LinuxCNC are not read; a subroutine is }n … M99 here, and its call M98Pn.</source>
+      <translation>Las palabras O de LinuxCNC no se leen; aquí una subrutina es }n … M99, y su llamada M98Pn.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/intended_code.py" />
+      <source>Put LS%1 before the call and LF after it.</source>
+      <translation>Ponga LS%1 antes de la llamada y LF después.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/intended_code.py" />
+      <source>The peck depth is K here.</source>
+      <translation>La profundidad de picoteo es K aquí.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/intended_code.py" />
+      <source>Variables are not read.</source>
+      <translation>Las variables no se leen.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/intended_code.py" />
+      <source>Write %1%2.</source>
+      <translation>Escriba %1%2.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/intended_code.py" />
+      <source>Write G04F%1.</source>
+      <translation>Escriba G04F%1.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/intended_code.py" />
+      <source>Write G75InUnFn, then the contour and RF.</source>
+      <translation>Escriba G75InUnFn, después el contorno y RF.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/intended_code.py" />
+      <source>Write G77%1.</source>
+      <translation>Escriba G77%1.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/intended_code.py" />
+      <source>Write G83ZnKnFn.</source>
+      <translation>Escriba G83ZnKnFn.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/intended_code.py" />
+      <source>Write K%1 in G83.</source>
+      <translation>Escriba K%1 en G83.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/intended_code.py" />
+      <source>Write the moves of the groove, or G74.</source>
+      <translation>Escriba los movimientos de la ranura, o G74.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/intended_code.py" />
+      <source>Write the number where it is used.</source>
+      <translation>Escriba el número donde se usa.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/intended_code.py" />
+      <source>Write }n, M99 and M98Pn.</source>
+      <translation>Escriba }n, M99 y M98Pn.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/omniturn_lexer.py" />
+      <source>%1: letter l in a number.</source>
+      <translation>%1: letra l en un número.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/other_controls.py" />
+      <source>% marks the ends of a transfer.</source>
+      <translation>% marca los extremos de una transferencia.</translation>
+    </message>
+    <message>
       <location filename="core/language/omniturn/other_controls.py" />
       <source>%1 numbers a program elsewhere; here the file has a name.</source>
       <translation>%1 numera un programa en otros controles; aquí el archivo tiene nombre.</translation>
@@ -26997,11 +27237,6 @@
       <location filename="core/language/omniturn/other_controls.py" />
       <source>A feed is F here, and the lead of a thread K.</source>
       <translation>Aquí un avance es F, y el paso de una rosca K.</translation>
-    </message>
-    <message>
-      <location filename="core/language/omniturn/other_controls.py" />
-      <source>A line of % stands round a program that is transferred, not in it.</source>
-      <translation>Una línea de % va alrededor de un programa que se transfiere, no dentro de él.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/other_controls.py" />
@@ -27032,6 +27267,16 @@
       <location filename="core/language/omniturn/other_controls.py" />
       <source>Cycles act on their own line here, and nothing has to end them.</source>
       <translation>Aquí los ciclos actúan en su propia línea, y nada tiene que terminarlos.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/other_controls.py" />
+      <source>Delete it.</source>
+      <translation>Bórrelo.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/other_controls.py" />
+      <source>Delete the line.</source>
+      <translation>Borre la línea.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/other_controls.py" />
@@ -27195,11 +27440,6 @@
     </message>
     <message>
       <location filename="core/language/omniturn/other_controls.py" />
-      <source>Write G33XnZnInKn.</source>
-      <translation>Escriba G33XnZnInKn.</translation>
-    </message>
-    <message>
-      <location filename="core/language/omniturn/other_controls.py" />
       <source>Write G77Sn or G92.</source>
       <translation>Escriba G77Sn o G92.</translation>
     </message>
@@ -27290,8 +27530,8 @@
     </message>
     <message>
       <location filename="core/language/omniturn/other_controls.py" />
-      <source>what a transfer puts round a program, and no line of it</source>
-      <translation>lo que una transferencia pone alrededor de un programa, y no es línea suya</translation>
+      <source>the mark at the ends of a transfer</source>
+      <translation>la marca de los extremos de una transferencia</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/plane_switching_lines.py" />
@@ -27435,13 +27675,23 @@
     </message>
     <message>
       <location filename="core/language/omniturn/word_faults.py" />
+      <source>%1: a feed rate cannot be negative.</source>
+      <translation>%1: un avance no puede ser negativo.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/word_faults.py" />
+      <source>%1: letter O in a number.</source>
+      <translation>%1: letra O en un número.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/word_faults.py" />
       <source>%1: offsets go from 1 to 32.</source>
       <translation>%1: los correctores van de 1 a 32.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/word_faults.py" />
-      <source>%1: tools go from 1 to 32.</source>
-      <translation>%1: las herramientas van de 1 a 32.</translation>
+      <source>%1: tools are T1 to T32.</source>
+      <translation>%1: las herramientas van de T1 a T32.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/word_faults.py" />
@@ -27470,6 +27720,11 @@
     </message>
     <message>
       <location filename="core/language/omniturn/word_faults.py" />
+      <source>A comment is inside another comment.</source>
+      <translation>Un comentario está dentro de otro comentario.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/word_faults.py" />
       <source>A number stands without a letter.</source>
       <translation>Hay un número sin letra.</translation>
     </message>
@@ -27492,6 +27747,11 @@
       <location filename="core/language/omniturn/word_faults.py" />
       <source>Correct the count.</source>
       <translation>Corrija la cuenta.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/word_faults.py" />
+      <source>Correct the tool number; T0 cancels the tool.</source>
+      <translation>Corrija el número de herramienta; T0 cancela la herramienta.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/word_faults.py" />
@@ -27520,6 +27780,16 @@
     </message>
     <message>
       <location filename="core/language/omniturn/word_faults.py" />
+      <source>Remove the inner parentheses.</source>
+      <translation>Quite los paréntesis interiores.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/word_faults.py" />
+      <source>Remove the sign.</source>
+      <translation>Quite el signo.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/word_faults.py" />
       <source>Round it.</source>
       <translation>Redondéelo.</translation>
     </message>
@@ -27527,11 +27797,6 @@
       <location filename="core/language/omniturn/word_faults.py" />
       <source>Split it into two words.</source>
       <translation>Divídalo en dos palabras.</translation>
-    </message>
-    <message>
-      <location filename="core/language/omniturn/word_faults.py" />
-      <source>T0 cancels the tool.</source>
-      <translation>T0 cancela la herramienta.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/word_faults.py" />
@@ -27545,18 +27810,8 @@
     </message>
     <message>
       <location filename="core/language/omniturn/word_faults.py" />
-      <source>The letter O stands where a zero belongs.</source>
-      <translation>Hay una letra O donde va un cero.</translation>
-    </message>
-    <message>
-      <location filename="core/language/omniturn/word_faults.py" />
       <source>The number has two decimal points.</source>
       <translation>El número tiene dos puntos decimales.</translation>
-    </message>
-    <message>
-      <location filename="core/language/omniturn/word_faults.py" />
-      <source>Write %1%2.</source>
-      <translation>Escriba %1%2.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/word_faults.py" />
@@ -29035,6 +29290,11 @@
     </message>
     <message>
       <location filename="core/proving/cutting_checks.py" />
+      <source>S sets a speed, but nothing starts the spindle before this cut.</source>
+      <translation>S fija una velocidad, pero nada arranca el husillo antes de este corte.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/cutting_checks.py" />
       <source>Start it with M03 or M04 before it.</source>
       <translation>Arránquelo antes con M03 o M04.</translation>
     </message>
@@ -29070,11 +29330,6 @@
     </message>
     <message>
       <location filename="core/proving/cutting_checks.py" />
-      <source>This move cuts after the program has stopped the spindle, and no live tool is on.</source>
-      <translation>Este movimiento corta después de que el programa paró el husillo, y no hay herramienta motorizada encendida.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/cutting_checks.py" />
       <source>This move cuts with no tool: its numbers count from the machine's home.</source>
       <translation>Este movimiento corta sin herramienta: sus números cuentan desde la referencia de la máquina.</translation>
     </message>
@@ -29087,6 +29342,11 @@
       <location filename="core/proving/cutting_checks.py" />
       <source>This move cuts with the spindle held as C, and no live tool is on.</source>
       <translation>Este movimiento corta con el husillo sostenido como C, y no hay herramienta motorizada encendida.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/cutting_checks.py" />
+      <source>This move cuts with the spindle stopped, and no live tool is on.</source>
+      <translation>Este movimiento corta con el husillo parado y ninguna herramienta motorizada está conectada.</translation>
     </message>
     <message>
       <location filename="core/proving/cutting_checks.py" />
@@ -29115,8 +29375,8 @@
     </message>
     <message>
       <location filename="core/proving/edge_checks.py" />
-      <source>%1 cuts %2 beyond the axis</source>
-      <translation>%1 corta %2 más allá del eje</translation>
+      <source>%1 cuts %2 beyond the axis, on the side where it is not mounted.</source>
+      <translation>%1 corta %2 más allá del eje, en el lado donde no está montada.</translation>
     </message>
     <message>
       <location filename="core/proving/edge_checks.py" />
@@ -29127,6 +29387,11 @@
       <location filename="core/proving/edge_checks.py" />
       <source>%1 cuts %2 deep; its edge reaches %3.</source>
       <translation>%1 corta %2 de profundidad; su filo llega a %3.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/edge_checks.py" />
+      <source>%1 cuts %2 off the spindle axis.</source>
+      <translation>%1 corta a %2 del eje del husillo.</translation>
     </message>
     <message>
       <location filename="core/proving/edge_checks.py" />
@@ -29161,12 +29426,22 @@
     <message>
       <location filename="core/proving/edge_checks.py" />
       <source>%1 goes in at %2°, and the back of its insert clears %3°.</source>
-      <translation>%1 entra a %2°, y la parte trasera de su inserto libra %3°.</translation>
+      <translation>%1 entra a %2°, y el dorso de su plaquita libra %3°.</translation>
     </message>
     <message>
       <location filename="core/proving/edge_checks.py" />
-      <source>%1, on the side where it does not stand.</source>
-      <translation>%1, en el lado donde no está.</translation>
+      <source>%1 is fed %2 into solid material.</source>
+      <translation>%1 avanza %2 en material macizo.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/edge_checks.py" />
+      <source>%1 is fed to Z %2; the stock ends at %3.</source>
+      <translation>%1 avanza hasta Z %2; el material termina en %3.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/edge_checks.py" />
+      <source>%1, a %2-hand tool in front of the axis, cuts with %3.</source>
+      <translation>%1, una herramienta de mano %2 delante del eje, corta con %3.</translation>
     </message>
     <message>
       <location filename="core/proving/edge_checks.py" />
@@ -29205,8 +29480,18 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
+      <source>A boring tool enters solid material.</source>
+      <translation>Una herramienta de mandrinar entra en material macizo.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
       <source>A commanded speed over max_rpm under [clamping] of the machine file.</source>
       <translation>Una velocidad mandada por encima de max_rpm en [clamping] del archivo de máquina.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>A cut ends more than .1 in, and a drill more than .1 in and its diameter, beyond the stated stock.</source>
+      <translation>Un corte termina más de .1 in, y una broca más de .1 in y su diámetro, más allá del material indicado.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29232,6 +29517,11 @@
       <location filename="core/proving/part_checks.py" />
       <source>A drill goes deeper than its flutes are long.</source>
       <translation>Una broca entra más que la longitud de sus canales.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>A drill, reamer or tap cuts beside the spindle axis.</source>
+      <translation>Una broca, un escariador o un macho corta fuera del eje del husillo.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29290,6 +29580,11 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
+      <source>A tap cuts more than its thread: it has no hole, or goes beyond the bottom of the hole.</source>
+      <translation>Un macho corta más que su rosca: no tiene agujero o pasa del fondo del agujero.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
       <source>A tap is drawn out of its thread and not turned out.</source>
       <translation>Un macho se saca de su rosca sin girarlo.</translation>
     </message>
@@ -29307,6 +29602,16 @@
       <location filename="core/proving/part_checks.py" />
       <source>A thread does not fit its lead.</source>
       <translation>Una rosca no corresponde a su paso.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>A tool is fed beyond the far end of the stock.</source>
+      <translation>Una herramienta avanza más allá del extremo del material.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>A tool that works in a bore is fed .04 in and more into material that has no bore yet.</source>
+      <translation>Una herramienta de interiores avanza .04 in o más en material que aún no tiene agujero.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29375,6 +29680,11 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
+      <source>Check Z, the length of the stock and how far it sticks out of the chuck.</source>
+      <translation>Compruebe Z, la longitud del material y cuánto sobresale del plato.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
       <source>Check the stock, and X as a radius or a diameter.</source>
       <translation>Compruebe el material, y X como radio o como diámetro.</translation>
     </message>
@@ -29387,6 +29697,16 @@
       <location filename="core/proving/part_checks.py" />
       <source>Correct the number, or name it under [io.in].</source>
       <translation>Corrija el número o nómbrelo en [io.in].</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>Drill the bore first, or check the bore of the stock.</source>
+      <translation>Taladre antes el agujero o compruebe el agujero del material.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>Drill the hole for the tap, deep enough for its chamfer.</source>
+      <translation>Taladre el agujero para el macho, con profundidad suficiente para su chaflán.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29432,6 +29752,16 @@
       <location filename="core/proving/part_checks.py" />
       <source>It leaves by a rapid, with the spindle stopped or not reversed, by another feed, or the spindle needs more than .5 in to stand. Not asked of a holder that reverses by itself, as its comment says.</source>
       <translation>Sale en rápido, con el husillo parado o sin invertir, con otro avance, o el husillo necesita más de .5 in para pararse. No se pide a un portamachos que invierte por sí mismo, según su comentario.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>It takes off material more than .01 in off the axis while the spindle turns.</source>
+      <translation>Quita material a más de .01 in del eje mientras gira el husillo.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>It takes off more than its pitch in r.</source>
+      <translation>Quita más que su paso en r.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29485,8 +29815,8 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>M04 with a right-hand drill, reamer or tap, M03 with a left-hand one; or one edge is made to cut both ways.</source>
-      <translation>M04 con broca, escariador o macho a derechas, M03 con uno a izquierdas; o un mismo filo tiene que cortar en ambos sentidos.</translation>
+      <source>M04 with a right-hand drill, reamer or tap, M03 with a left-hand one; M04 with a turning or boring tool in front of the axis that is mounted upright; or one edge is made to cut both ways.</source>
+      <translation>M04 con una broca, un escariador o un macho a derechas, M03 con uno a izquierdas; M04 con una herramienta de tornear o mandrinar delante del eje y montada derecha; o un filo que debe cortar en ambos sentidos.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29510,6 +29840,11 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
+      <source>Move to X0 before drilling, and check the X offset of the tool.</source>
+      <translation>Vaya a X0 antes de taladrar y compruebe el corrector X de la herramienta.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
       <source>One stays more than .08 in from all metal for 5 s and .2 in, or several in a row for 20 s.</source>
       <translation>Uno queda a más de .08 in de todo metal durante 5 s y .2 in, o varios seguidos durante 20 s.</translation>
     </message>
@@ -29517,6 +29852,11 @@
       <location filename="core/proving/part_checks.py" />
       <source>Over .8 of the nose radius; .25 of the width of a groover; .1 of the diameter of a drill.</source>
       <translation>Más de .8 del radio de punta; .25 del ancho de una ranuradora; .1 del diámetro de una broca.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>Remove the offset of the tool that is not mounted.</source>
+      <translation>Borre el corrector de la herramienta que no está montada.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29600,6 +29940,11 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
+      <source>The offsets of two described tools are less than .04 in apart.</source>
+      <translation>Los correctores de dos herramientas descritas distan menos de .04 in.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
       <source>The part is larger than its stock: a contour is cut in the air outside the bar.</source>
       <translation>La pieza es mayor que su material: se corta un contorno en el aire, fuera de la barra.</translation>
     </message>
@@ -29622,6 +29967,11 @@
       <location filename="core/proving/part_checks.py" />
       <source>The tool retracts through the part.</source>
       <translation>La herramienta se retira a través de la pieza.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>Two tools have the same offset.</source>
+      <translation>Dos herramientas tienen el mismo corrector.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29657,6 +30007,26 @@
       <location filename="core/proving/part_checks.py" />
       <source>Write F as the pitch: 1 divided by the threads per inch.</source>
       <translation>Escriba F como el paso: 1 dividido por los hilos por pulgada.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>earlier holes</source>
+      <translation>agujeros anteriores</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>kind of tool</source>
+      <translation>tipo de herramienta</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_findings.py" />
+      <source>%1 Assumed: %2.</source>
+      <translation>%1 Supuesto: %2.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_findings.py" />
+      <source>%1 and %2 have the same offset; neither is checked as a neighbour of the other.</source>
+      <translation>%1 y %2 tienen el mismo corrector; ninguna se comprueba como vecina de la otra.</translation>
     </message>
     <message>
       <location filename="core/proving/part_findings.py" />
@@ -29862,6 +30232,11 @@
       <location filename="core/proving/thread_checks.py" />
       <source>%1 is torn out of its thread by a rapid.</source>
       <translation>%1 se arranca de su rosca en rápido.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/thread_checks.py" />
+      <source>%1 takes off %2 in r; its pitch is %3.</source>
+      <translation>%1 quita %2 en r; su paso es %3.</translation>
     </message>
     <message>
       <location filename="core/proving/thread_checks.py" />
@@ -31972,6 +32347,11 @@
       <location filename="core/store/store_errors.py" />
       <source>Could not decode to UTF-8</source>
       <translation>no se pudo leer como UTF-8</translation>
+    </message>
+    <message>
+      <location filename="core/store/store_errors.py" />
+      <source>the disk does not respond: changes wait to be written to {path}; check the disk and its cable</source>
+      <translation>el disco no responde: hay cambios pendientes de escribir en {path}; compruebe el disco y su cable</translation>
     </message>
     <message>
       <location filename="core/store/store_errors.py" />

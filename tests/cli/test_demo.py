@@ -13,6 +13,8 @@ from app.compose.journal import Journal
 from app.compose.machine_setup import read_machine, setup_for
 from app.compose.stored_offsets import book_of, stored_offsets
 from app.desk.command_errors import CommandError
+from app.desk.desk import LAST_PROGRAM
+from app.desk.first_job import FirstJob
 from core.coded_error import CodedError
 from core.language.diagnostics import Severity
 from core.language.source import load_source
@@ -81,3 +83,24 @@ def test_its_program_is_one_that_the_machine_runs(machine: str | None) -> None:
     report = prove(source, setup_for(found, tools={}, secondary={}), found)
     assert [each for each in report.diagnostics if each.severity is Severity.ERROR] == []
     assert str(source.dialect) == found.language
+
+
+def test_it_comes_back_with_the_program_and_the_step_of_the_first_job(
+    home: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    open_demo(None)
+    own = home / "demo" / "mine.nc"
+    own.write_text("M30\n")
+    journal = Journal.at_home()
+    card = FirstJob(3)
+    card.save(journal)
+    journal.save_setting(LAST_PROGRAM, str(own))
+    journal.close()
+    monkeypatch.setenv("TURNDESK_HOME", str(home))  # the next start
+    open_demo(None)
+    assert demo_program(None) == str(own)
+    journal = Journal.at_home()
+    assert FirstJob.stored(journal).at == 3
+    journal.close()
+    own.unlink()
+    assert Path(demo_program(None)).name == "bushing.nc"

@@ -51,9 +51,13 @@ def test_without_a_word_the_bar_is_assumed_and_told(
 def test_a_finding_of_the_part_refuses_the_program(turndesk: Turndesk, tmp_path: Path, offsets: Path) -> None:
     path = written(tmp_path, PART.replace("G95F.004Z-.5", "G00Z-.5"))
     told = turndesk("prove", path, "--offsets", offsets, "--json")
+    assert told.status == 0
+    (found,) = [each for each in told.lines[0]["diagnostics"] if each["check"] == "rapid-into-stock"]
+    assert (found["line"], found["severity"], found["assumed"]) == (9, "warning", ["stock"])
+    told = turndesk("prove", path, "--offsets", offsets, "--stock", "bar:1.0:2+.02", "--json")
     assert told.status == 1
     (found,) = [each for each in told.lines[0]["diagnostics"] if each["check"] == "rapid-into-stock"]
-    assert (found["line"], found["severity"], found["n"] > 0) == (9, "error", True)
+    assert (found["line"], found["severity"], found["n"] > 0, found["assumed"]) == (9, "error", True, [])
 
 
 def test_a_second_program_works_on_what_the_first_leaves(
@@ -62,6 +66,29 @@ def test_a_second_program_works_on_what_the_first_leaves(
     first = written(tmp_path, PART, "first.nc")
     again = ("prove", first, "--offsets", offsets, "--json", "--stock", f"after:{first}")
     assert turndesk(*again).lines[0]["stock"]["removed_volume"] == pytest.approx(0.0, abs=1e-5)
+
+
+def test_a_second_program_that_cuts_nothing_has_the_bore_that_the_first_leaves(
+    turndesk: Turndesk, tmp_path: Path, offsets: Path
+) -> None:
+    first = written(
+        tmp_path, "G90G94F300\nM03S900\nT2(.25 DRILL)\nX0Z.1\nG95F.004Z-.5\nG94F300Z1\nM30\n", "first.nc"
+    )
+    second = written(tmp_path, "G90G94F300\nM03S900\nT1\nX1.1Z.1\nG94F5Z-.5\nF300Z1\nM30\n", "second.nc")
+    told = turndesk("prove", second, "--offsets", offsets, "--json", "--stock", f"after:{first}")
+    bore = told.lines[0]["stock"]["bore"]
+    assert bore[0] == pytest.approx([0.0, 0.125], abs=1e-3)
+
+
+def test_an_offsets_file_without_shapes_leaves_those_of_the_store(
+    turndesk: Turndesk, tmp_path: Path, offsets: Path, home: Path
+) -> None:
+    """The store says that T1 is a drill; on the axis it takes off pi/4 x .5² x .5 = .0982 in³."""
+    path = written(tmp_path, "G90G94F300\nM03S900\nT1\nX0Z.1\nG95F.004Z-.5\nG94F300Z1\nM30\n")
+    assert turndesk("offsets", "set", "T1", "kind=drill", "diameter=.5", "point=180").status == 0
+    told = turndesk("prove", path, "--offsets", offsets, "--stock", "bar:1:2", "--json")
+    assert told.lines[0]["stock"]["removed_volume"] == pytest.approx(0.0982, abs=2e-3)
+    assert told.lines[0]["stock"]["assumed"] == []
 
 
 def test_a_blank_by_its_points(turndesk: Turndesk, tmp_path: Path, offsets: Path) -> None:
@@ -234,7 +261,7 @@ def test_a_silenced_check_is_a_note_and_counted(turndesk: Turndesk, tmp_path: Pa
     assert told.status == 1
     assert told.lines[0]["silenced"] == 0
     check = found[0]["check"]
-    assert found[0]["assumed"] == ["T1"]
+    assert found[0]["assumed"] == []
     machine = written(
         tmp_path, resources.machine_file("gt75.toml") + f'\n[checks]\nsilenced = ["{check}"]\n', "quiet.toml"
     )

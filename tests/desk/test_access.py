@@ -93,6 +93,7 @@ NO_CHANGE = {
     "compose/run_log.py": "old files of the machine's own log",
     "compose/thumbnails.py": "pictures that can be made again",
     "desk/daily_backup.py": "the machine's own backups",
+    "desk/first_job.py": "how far the first job has come",
     "editor/drafts.py": "what is typed and not saved",
     "jog/hand_functions.py": "coolant off: it brings to rest",
     "mdi/mdi_line.py": "the lines that were typed",

@@ -219,13 +219,22 @@ def test_what_the_executor_refuses_is_said(desk: Desk, machine: FakeMachine) -> 
     assert desk.notice == text("screen.refused", why=text("desk.slides-at-rest"))
 
 
-def test_an_answer_is_gone_with_the_next_state(desk: Desk, machine: FakeMachine) -> None:
+def test_an_answer_outlives_the_state_and_never_covers_it(desk: Desk, machine: FakeMachine) -> None:
     desk.say("AN ANSWER")
-    snapshot, _view, loaded = desk.look()
-    assert desk.prompt(snapshot, loaded) == "AN ANSWER"
     at(machine, State.DISABLED)
     snapshot, _view, loaded = desk.look()
     assert desk.prompt(snapshot, loaded) == text("screen.drives-off")
+    assert desk.answers.answer == "AN ANSWER"
+
+
+def test_n_takes_a_question_back_and_does_nothing_else(desk: Desk, machine: FakeMachine) -> None:
+    at(machine, State.HOLD)
+    desk.reset()
+    assert desk.asked == "Y"
+    posted = len(machine.posted)
+    desk.no()
+    assert desk.asked == ""
+    assert len(machine.posted) == posted
 
 
 def test_the_override_key_turns_the_stations_pot(machine: FakeMachine) -> None:

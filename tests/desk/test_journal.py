@@ -122,7 +122,7 @@ def away(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Journal]:
 
 
 def raising(error: StoreError) -> Callable[[object], NoReturn]:
-    def refuse(_asked: object) -> NoReturn:
+    def refuse(_asked: object, *_args: object) -> NoReturn:
         raise error
 
     return refuse
@@ -227,3 +227,21 @@ def test_a_store_too_damaged_to_be_read_is_left_to_a_restore(
     assert not journal.waiting  # no try will read it
     Store.open(tmp_path / "home").close()  # the command that restores finds it free
     journal.close()
+
+
+def test_a_second_instance_shows_the_offsets_of_the_first(tmp_path: Path) -> None:
+    """It showed every tool as not set."""
+    first = Journal(tmp_path / "home")
+    first.opened().set_tool(3, "test", x=-12.5).result(60)
+    second = Journal(tmp_path / "home")
+    book = second.book()
+    assert second.trouble
+    assert book.locked
+    assert book.tools[3].x == -12.5
+    assert book.change(Kind.TOOL, 3, {"x": 1.0}, "test") == book.locked
+    first.opened().set_tool(3, "test", x=-13.0).result(60)
+    second._open_again()  # as its thread does every few seconds
+    book.poll()
+    assert (book.tools[3].x, book.changes) == (-13.0, 1)
+    second.close()
+    first.close()

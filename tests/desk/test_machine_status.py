@@ -9,6 +9,7 @@ import pytest
 
 from app.desk.machine_status import Tone, status_of
 from app.desk.readouts import Lamp, Readout, coordinates, drives_lamp
+from core.alarms import CATALOGUE
 from core.executor.raised_alarm import make_alarm
 from core.executor.snapshot import Alarm, Snapshot, State
 from core.interpreter.modal_state import Modal
@@ -256,3 +257,24 @@ def test_only_the_part_that_is_silent_is_unknown() -> None:
 def test_a_hold_that_waits_for_a_tap_is_in_the_title() -> None:
     held = replace(AT, state=State.RUN, waiting_for="FEED HOLD BEHIND THE TAP")
     assert status_of(held, Readout.POSITION, True).state == text("desk.hold-after-tap")
+
+
+def test_a_metric_feed_has_its_prefix_and_an_inch_feed_has_none() -> None:
+    metric = replace(Snapshot(), modal=Modal(metric=True), feed=5.0)
+    assert status_of(metric, Readout.POSITION, with_c=True).feed.prefix == "MM"
+    assert status_of(Snapshot(), Readout.POSITION, with_c=True).feed.prefix == ""
+
+
+def test_the_readout_is_doubled_exactly_where_it_is_marked() -> None:
+    """The mode that remains after a program is that of the value, of the mark and of the words."""
+    left = replace(Snapshot(), actual=(12.7, 0.0, 0.0), x_diameter=True)
+    view = status_of(left, Readout.POSITION, with_c=True)
+    x = view.position.axes[0]
+    assert (x.mark, x.value) == ("Ø", "1.00000")
+    assert "G73" in view.position.x_words  # what a typed program begins with
+
+
+def test_an_overloaded_computer_is_the_first_cause_of_a_silent_control() -> None:
+    entry = CATALOGUE["control-silent"]
+    assert entry.number == 908
+    assert "overloaded" in entry.causes[0]

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import errno
 import os
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
+from app.desk import program_folder
 from app.desk.program_folder import ProgramFile, ProgramFolders
 from app.desk.program_loading import Loaded, Phase
 from core.language.source import load_source
+from drivers.clocks import StepClock
 from tests.texts import begins
 
 
@@ -131,4 +134,67 @@ def test_a_subprogram_that_is_called_counts_as_well(tmp_path: Path) -> None:
 def test_without_a_program_there_is_nothing_to_compare() -> None:
     file = ProgramFile(Loaded)
     file.look()
+    assert file.differs == ""
+
+
+# --- A disk that cannot be read: the watch goes on, and says so.
+
+
+@pytest.mark.parametrize("number", [errno.EACCES, errno.EIO, errno.ESTALE])
+def test_a_folder_that_cannot_be_read_is_shown_and_watched_on(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, number: int
+) -> None:
+    path = tmp_path / "part.nc"
+    path.write_text(TEXT)
+    loaded = on_the_desk(path)
+    file = ProgramFile(lambda: loaded)
+
+    def broken(*_args: object, **_named: object) -> object:
+        raise OSError(number, os.strerror(number))
+
+    with monkeypatch.context() as patch:
+        for name in ("stat", "open"):
+            patch.setattr(Path, name, broken)
+        file.look()
+        assert begins(file.differs, "programs.unreadable", name="part.nc")
+    file.look()
+    assert file.differs == ""
+    touched(path, TEXT.replace("X.5", "X1.5"))
+    file.look()
+    assert begins(file.differs, "programs.changed-on-disk", name="part.nc")
+
+
+def test_the_watch_survives_any_failure_of_a_look(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "part.nc"
+    path.write_text(TEXT)
+    loaded = on_the_desk(path)
+    file = ProgramFile(lambda: loaded)
+
+    def broken(_path: Path) -> object:
+        raise RuntimeError("a network file system")
+
+    with monkeypatch.context() as patch:
+        patch.setattr(program_folder, "load_source", broken)
+        file.watch_once()
+        assert begins(file.differs, "programs.unreadable", name="part.nc")
+    file.watch_once()
+    assert file.differs == ""
+
+
+def test_a_look_that_hangs_is_shown_while_it_hangs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "part.nc"
+    path.write_text(TEXT)
+    loaded, clock, seen = on_the_desk(path), StepClock(), list[str]()
+    file = ProgramFile(lambda: loaded, clock.now)
+
+    def slow(_path: Path) -> object:
+        seen.append(file.differs)
+        clock.sleep_until(clock.now() + program_folder.HANGS + 1.0)
+        seen.append(file.differs)
+        return loaded.source
+
+    monkeypatch.setattr(program_folder, "load_source", slow)
+    file.look()
+    assert seen[0] == ""
+    assert begins(seen[1], "programs.unreadable", name="part.nc")
     assert file.differs == ""

@@ -4,13 +4,18 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 
+import pytest
+
 from app.desk.run_without_screen import HeadlessRun, Outcome
 from core.executor.commands import Command, EnableDrives, Home
 from core.executor.job import Proof, make_job
+from core.executor.raised_alarm import make_alarm
 from core.executor.snapshot import Snapshot, State
 from core.interpreter.job_setup import Setup
 from core.language.source import Source
 from drivers.clocks import StepClock
+
+ESTOP = make_alarm("estop", "", 0, 0.0)
 
 
 @dataclass
@@ -38,6 +43,26 @@ def outcome(executor: Idle, said: list[str]) -> Outcome:
     job = make_job(Source("part.nc", "G90G94F300\nM30\n"), Setup())
     run = HeadlessRun(executor, StepClock(), said.append, lambda _t: None, lambda: said.append("palms"))
     return run.run(job, Proof(job.digest, ()))
+
+
+@dataclass
+class Stopped(Idle):
+    """An executor with a bus machine whose E-stop is pressed as soon as the drives are on."""
+
+    released: bool = False
+
+    def tick(self) -> None:
+        super().tick()
+        if self.snapshot.state is State.IDLE:
+            state = State.DISABLED if self.released else State.ESTOP
+            self.snapshot = replace(self.snapshot, state=state, stop=ESTOP)
+
+
+@pytest.mark.parametrize("released", [False, True])
+def test_an_estop_is_an_alarm_with_its_name_and_no_refusal(released: bool) -> None:
+    ended = outcome(Stopped(snapshot=Snapshot(state=State.DISABLED), released=released), [])
+    assert ended.state == "alarm"
+    assert ended.why.startswith(ESTOP.text)
 
 
 def test_palms_that_nobody_presses_are_waited_for_and_then_it_is_said() -> None:

@@ -31,7 +31,7 @@ def sheet_of(text: str, stock: Stock | None = None, shapes: dict[int, ToolShape]
     return setup_sheet(ReadProgram(Source("P", text)), setup, machine, PartSetting(stock, shapes or {}))
 
 
-@pytest.mark.parametrize(("stock", "shapes"), [(None, {}), (ROD, {}), (None, {1: TOOL})])
+@pytest.mark.parametrize(("stock", "shapes"), [(None, {}), (None, {1: TOOL})])
 def test_what_rests_on_something_assumed_is_a_warning_as_on_the_desk(
     stock: Stock | None, shapes: dict[int, ToolShape]
 ) -> None:

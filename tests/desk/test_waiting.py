@@ -69,21 +69,41 @@ def test_success_question_and_refusal_are_told_apart() -> None:
     assert answers.sort is Sort.ANSWER
 
 
-@pytest.mark.parametrize(
-    ("said_in", "state", "over"),
-    [
-        (State.JOG, State.IDLE, False),  # the slide comes to rest: nobody has read it yet
-        (State.HOLDING, State.HOLD, False),
-        (State.JOG, State.ESTOP, True),
-        (State.IDLE, State.JOG, True),
-        (State.RUN, State.IDLE, True),
-    ],
-)
-def test_an_answer_outlives_coming_to_rest_alone(said_in: State, state: State, over: bool) -> None:
-    now = [replace(Snapshot(), state=said_in)]
-    answers = PromptAnswers(lambda: now[0], str, lambda: 0.0)
+def test_an_answer_outlives_every_state_and_ends_after_four_seconds() -> None:
+    now, clock = [replace(Snapshot(), state=State.RUN)], [0.0]
+    answers = PromptAnswers(lambda: now[0], str, lambda: clock[0])
     answers.say("TOUCH OFF WITH THE MACHINE AT REST AND READY")
-    assert not answers.outlived(now[0])
-    assert answers.outlived(replace(Snapshot(), state=state)) is over
-    answers.ask("PRESS Y", lambda: None)  # a question is answered in its own state or never
-    assert answers.outlived(replace(Snapshot(), state=state))
+    for clock[0], state in ((0.1, State.HOLDING), (0.4, State.HOLD), (3.9, State.ESTOP)):
+        answers.expire(replace(Snapshot(), state=state))
+        assert answers.answer
+    clock[0] = 4.0
+    answers.expire(replace(Snapshot(), state=State.ESTOP))
+    assert answers.answer == ""
+
+
+def test_a_question_belongs_to_its_state_and_an_answer_does_not_replace_it() -> None:
+    done: list[str] = []
+    now = [replace(Snapshot(), state=State.HOLD)]
+    answers = PromptAnswers(lambda: now[0], str, lambda: 0.0)
+    answers.ask("PRESS Y", lambda: done.append("yes"))
+    answers.say("REFUSED: NO")
+    assert (answers.question, answers.answer) == ("PRESS Y", "REFUSED: NO")
+    answers.expire(now[0])
+    assert answers.asked is not None
+    answers.expire(replace(Snapshot(), state=State.ESTOP))
+    answers.yes(9.0)
+    assert not done
+
+
+def test_a_lasting_answer_remains_for_its_four_seconds_whatever_is_pressed() -> None:
+    clock = [0.0]
+    answers = PromptAnswers(Snapshot, str, lambda: clock[0])
+    answers.say("DROPPED", lasting=True)
+    answers.next_key()
+    answers.take_back()
+    answers.say("THE DRIVES ARE ON")
+    assert answers.answer == "DROPPED"
+    clock[0] = 4.0
+    answers.say("THE DRIVES ARE ON")
+    answers.next_key()
+    assert answers.answer == ""

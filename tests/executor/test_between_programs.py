@@ -9,13 +9,14 @@ from core.executor.commands import (
     CycleStart,
     FeedHold,
     ForceOutput,
+    Prepare,
     Reset,
     SpindleLimit,
     SpindleStop,
     UseOffsets,
 )
 from core.executor.control_status import modal_given_up
-from core.executor.snapshot import State
+from core.executor.snapshot import Starts, State
 from core.interpreter.job_setup import SecondaryOffset, ToolOffset
 from core.interpreter.modal_state import Modal
 from tests.executor.rig import INCH, Rig
@@ -197,3 +198,48 @@ def test_a_program_begins_with_x_as_its_language_counts_it(
     rig.until(State.IDLE)
     assert rig.shot.parts == 1
     assert set(shown) == {diameter}
+
+
+G72 = "G90G94F300G72\nX.85Z.1\nM30\n"
+
+
+def test_the_readout_remains_a_diameter_after_end_reset_and_estop() -> None:
+    rig = Rig()
+    rig.start(G72)
+    rig.until(State.IDLE)
+    assert rig.shot.reads_diameter
+    assert not rig.shot.modal.diameter
+    rig.start(G72.replace("M30", "X.9\nM00\nM30"))
+    rig.until(State.PROGRAM_STOP)
+    rig.post(Reset())
+    rig.until(State.IDLE)
+    assert rig.shot.reads_diameter
+    rig.start(G72.replace("M30", "X.9\nM00\nM30"))
+    rig.until(State.PROGRAM_STOP)
+    rig.sim.machine.press_estop()
+    rig.until(State.ESTOP)
+    assert rig.shot.reads_diameter
+
+
+def test_another_program_and_mdi_bring_the_mode_of_the_control() -> None:
+    rig = Rig()
+    rig.start(G72)
+    rig.until(State.IDLE)
+    rig.post(Prepare(Starts.LINE))
+    assert not rig.shot.reads_diameter  # a typed X counts as a radius now
+    rig = Rig()
+    rig.start(G72)
+    rig.until(State.IDLE)
+    rig.load("G90G94F300\nX1\nM30\n", name="OTHER")
+    rig.tick()
+    assert not rig.shot.reads_diameter
+
+
+def test_a_comment_goes_with_its_program() -> None:
+    rig = Rig()
+    rig.start("(FIRST PART)\nG90G94F300\nX.5\nM30\n")
+    rig.until(State.IDLE)
+    assert rig.shot.comment == "FIRST PART"
+    rig.load("G90G94F300\nX1\nM30\n", name="OTHER")
+    rig.tick()
+    assert rig.shot.comment == ""

@@ -6,7 +6,18 @@ import math
 
 import pytest
 
-from core.executor.commands import CycleStart, EnableDrives, FeedHold, Home, Jog, JogStep, JogStop, Reset
+from core.executor.commands import (
+    Command,
+    CycleStart,
+    EnableDrives,
+    FeedHold,
+    Home,
+    Jog,
+    JogStep,
+    JogStop,
+    Reset,
+    WheelOff,
+)
 from core.executor.snapshot import State
 from tests.executor.rig import INCH, TICK, Rig, unhomed_machine
 from tests.texts import text
@@ -247,3 +258,38 @@ def test_a_slide_beyond_its_travel_is_jogged_back_and_no_further_out(side: float
         rig.run(1.0)
     assert not rig.shot.alarms
     assert rig.sim.machine.true_position()[0] == pytest.approx(edge - side * 2.5, abs=0.01)
+
+
+@pytest.mark.parametrize("release", [JogStop(), WheelOff()], ids=["jog", "wheel"])
+@pytest.mark.parametrize("stop", ["estop", "fault", "mistake"])
+def test_a_release_that_comes_after_a_stop_and_in_a_cut_breaks_nothing(stop: str, release: Command) -> None:
+    """The jog was ended by the stop, and its release was lost until a program cuts."""
+    rig = ready()
+    rig.post(Jog("X", FAST, 1.0))
+    rig.run(0.1)
+    match stop:
+        case "estop":
+            rig.sim.machine.press_estop()
+            rig.run(0.5)
+            rig.sim.machine.release_estop()
+        case "fault":
+            rig.sim.machine.spindle_fault("overvoltage")
+            rig.run(0.5)
+            rig.sim.machine.spindle_fault("")
+        case _:
+            rig.executor.failed(ValueError("a mistake"))
+    rig.run(1.0)
+    for _ in range(2):
+        rig.post(Reset())
+        rig.run(0.5)
+    if rig.state is State.DISABLED:
+        rig.ready()
+    rig.start("G90G94F300\nX1Z1\nG01X.5Z-1F30\nM30\n")
+    rig.until_true(lambda shot: shot.state is State.RUN and not shot.rapid and shot.velocity > 1.0)
+    for _ in range(3):
+        rig.post(release)
+        rig.run(0.1)
+    assert rig.state is State.RUN
+    rig.until(State.IDLE)
+    assert rig.shot.alarms == ()
+    assert rig.shot.parts == 1

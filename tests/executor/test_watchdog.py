@@ -11,7 +11,17 @@ import pytest
 from core.executor.commands import EnableDrives
 from core.executor.executor import Executor
 from core.executor.snapshot import State
-from core.executor.watchdog import AGAIN, PATIENT, STUCK, ExecutorThread, Watchdog, running
+from core.executor.watchdog import (
+    AGAIN,
+    OTHERS,
+    PATIENT,
+    STUCK,
+    WATCHDOG,
+    ExecutorThread,
+    Watchdog,
+    WatchdogWatch,
+    running,
+)
 from drivers.grblhal import grblhal_codes
 from tests.drivers.contract.control import Control
 from tests.drivers.contract.grbl import Grblhal
@@ -241,15 +251,120 @@ def test_another_thread_that_ends_is_told_once() -> None:
     other.start()
     told: list[str] = []
     dog = Watchdog(Ticked(rig.executor), None, (name, "never-there"), told.append)  # type: ignore[arg-type]
-    dog.start()
-    dog.close()
+    dog.look()
     assert told == []
     ending.set()
     other.join()
     assert not running(name)
-    dog.look()
-    dog.look()
+    for _ in range(3 * OTHERS):
+        dog.look()
     assert told == [name]
+
+
+def test_a_thread_that_starts_after_the_watchdog_is_supervised() -> None:
+    """In whatever order they are started; one that is announced also when it ends before the next look."""
+    rig, ending, told = Simulated(), threading.Event(), list[str]()
+    dog = Watchdog(Ticked(rig.executor), None, ("late-in-this-test",), told.append)  # type: ignore[arg-type]
+    for _ in range(OTHERS):
+        dog.look()
+    late = threading.Thread(target=ending.wait, name="late-in-this-test", daemon=True)
+    late.start()
+    for _ in range(OTHERS):
+        dog.look()
+    ending.set()
+    late.join()
+    dog.watch("gone-before-the-next-look")
+    for _ in range(OTHERS):
+        dog.look()
+    assert sorted(told) == ["gone-before-the-next-look", "late-in-this-test"]
+
+
+def test_drivers_that_block_while_they_are_halted_keep_no_alarm_back() -> None:
+    rig, control = cutting("simulated")
+    released, calls = threading.Event(), list[int]()
+
+    def blocks() -> None:
+        calls.append(1)
+        released.wait()
+
+    dog, thread = watched(control.executor, blocks)
+    thread.alive = False
+
+    def look() -> None:
+        for _ in range(3 * AGAIN):
+            dog.look()
+
+    looking = threading.Thread(target=look, daemon=True)
+    looking.start()
+    looking.join(10.0)
+    returned, alarms = not looking.is_alive(), control.shot.alarms
+    released.set()
+    assert returned
+    assert [alarm.code for alarm in alarms] == ["control-silent"]
+    assert len(calls) == 1  # another call of drivers that block would block as well
+    rig.close()
+
+
+@pytest.mark.parametrize("looks", [True, False], ids=["looks", "hangs"])
+def test_the_executor_reports_a_watchdog_that_looks_no_more(looks: bool) -> None:
+    rig, told = Simulated(), list[str]()
+    dog, _ = watched(rig.executor, None)
+    watch = WatchdogWatch(dog, told.append)
+    for tick in range(1000):
+        if looks and tick % 10 == 0:
+            dog.look()
+        watch.look(tick * TICK)
+    assert told == ([] if looks else [WATCHDOG])
+
+
+def test_a_computer_that_was_late_is_no_dead_watchdog() -> None:
+    rig, told = Simulated(), list[str]()
+    dog, _ = watched(rig.executor, None)
+    watch = WatchdogWatch(dog, told.append)
+    for minute in range(10):
+        watch.look(minute * 60.0)
+    assert told == []
+
+
+def test_closing_waits_for_no_executor_that_hangs_and_halts_the_machine() -> None:
+    """The thread hangs in a driver: it is left, and the drivers stop the machine in their own way."""
+    rig, hangs, released = Simulated(), threading.Event(), threading.Event()
+
+    def hang() -> None:
+        hangs.set()
+        released.wait()
+
+    rig.start(CUT)
+    rig.until_true(lambda shot: shot.actual[1] < -3.0)
+    thread = ExecutorThread(rig.executor, Waiting(rig), tick=0.01)
+    rig.executor.tick = hang  # type: ignore[method-assign]
+    thread.start()
+    assert hangs.wait(60.0)
+    thread.close(limit=0.0)
+    rig.clock.advance(3.0)
+    alive, rpm = thread.alive, rig.sim.machine.spindle_rpm()
+    released.set()
+    assert alive
+    assert rpm == 0.0
+    assert not rig.sim.ports.axes.sample().enabled
+
+
+def test_closing_waits_for_no_watchdog_that_hangs() -> None:
+    rig, released, hangs = Simulated(), threading.Event(), threading.Event()
+
+    def hang(_name: str) -> None:
+        hangs.set()
+        released.wait()
+
+    dog = Watchdog(Ticked(rig.executor), None, (), hang)  # type: ignore[arg-type]
+    dog.watch("not-there")
+    dog.start()
+    assert hangs.wait(60.0)
+    dog.end()
+    dog.close(limit=0.0)
+    alive = dog.alive
+    released.set()
+    assert alive
 
 
 def test_a_watchdog_whose_driver_breaks_still_says_so() -> None:

@@ -54,8 +54,14 @@ def test_a_flood_of_warnings_hides_no_error() -> None:
 
 
 def test_a_flood_of_errors_is_cut_too() -> None:
-    program = read_program(Source("A", lines("G90F300", *["G2X1"] * 300, "M30")))
-    assert [found.code for found in program.diagnostics] == ["g-digits"] * 100
+    program = read_program(Source("A", lines("G90F300", *["X1Z"] * 300, "M30")))
+    assert [found.code for found in program.diagnostics] == ["number-missing"] * 100
+
+
+@pytest.mark.parametrize(("times", "found"), [(4, [1, 1, 1, 1]), (5, [5]), (300, [300])])
+def test_a_habit_that_repeats_is_one_error_with_its_count(times: int, found: list[int]) -> None:
+    program = read_program(Source("A", lines("G90F300", *["G2X1"] * times, "M30")))
+    assert [each.count for each in program.diagnostics if each.code == "g-digits"] == found
 
 
 def test_what_repeats_in_every_line_is_told_once_with_its_count() -> None:

@@ -29,7 +29,7 @@ IN_BODY: list[tuple[tuple[str, ...], tuple[int, int, str]]] = [
     (("X1Z1X2",), (3, 5, "word-twice")),
     (("G76S1G77S2",), (3, 9, "word-twice")),
     (("X1I.5",), (3, 3, "word-unused")),
-    (("G04X1F2",), (3, 4, "word-unused")),
+    (("G04X1F2",), (3, 1, "other-control")),
     (("X1U1",), (3, 3, "word-unused")),
     (("X1A.1",), (3, 3, "word-unused")),
     (("X1L3",), (3, 3, "word-unused")),
@@ -57,7 +57,6 @@ IN_BODY: list[tuple[tuple[str, ...], tuple[int, int, str]]] = [
     # dwell
     (("G04",), (3, 1, "word-missing")),
     (("G04F.05",), (3, 4, "dwell-range")),
-    (("G04F4000",), (3, 4, "dwell-range")),
     # arcs
     (("G02X1",), (3, 1, "arc-centre-missing")),
     (("G02X1R1I1",), (3, 8, "arc-both")),
@@ -80,7 +79,7 @@ IN_BODY: list[tuple[tuple[str, ...], tuple[int, int, str]]] = [
     (("T1", "G02X1R1"), (4, 0, "tool-first-move")),
     (("T1", "G10X0Z0", "Z1"), (5, 0, "tool-first-move")),
     (("G10",), (3, 1, "word-missing")),
-    (("G92S500",), (3, 1, "word-missing")),
+    (("G92S500",), (3, 1, "other-control")),
     # spindle
     (("S3501",), (3, 1, "speed-range")),
     (("S-5",), (3, 1, "speed-sign")),

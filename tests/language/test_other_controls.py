@@ -65,7 +65,7 @@ HEAD = ("G90G94F300", "T1", "X.5Z.1")
     ("G98", "g-unknown", "minute is G94"), ("G99", "g-unknown", "revolution is G95"),
     ("G28", "g-unknown", "reference point"), ("G50S2000", "g-unknown", "G77Sn"),
     ("G32X.2Z-.5F.05", "g-unknown", "G33"), ("G80", "g-unknown", "their own line"),
-    ("%", "transfer-line", "transferred"), ("O1234", "program-number", "the file has a name"),
+    ("%", "transfer-line", "transfer"), ("O1234", "program-number", "the file has a name"),
     (":1234", "program-number", "the file has a name"),
     ("X.4U.1", "word-unused", "G91"), ("W.2", "unknown-letter", "G91"), ("X.4H1", "unknown-letter", "T here"),
     ("N10X.4", "n-word", "no numbers"), ("X\u2212.5", "character", "no minus sign"),

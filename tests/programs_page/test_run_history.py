@@ -12,6 +12,7 @@ from app.desk.program_loading import Loaded, Phase
 from app.programs.run_history import RunHistory
 from core.executor.job import Proof
 from core.executor.snapshot import Alarm, Snapshot, State
+from core.language.source import Source
 from core.store.store_errors import StoreError
 
 READY = Snapshot(state=State.IDLE, program="/programs/pin.nc")
@@ -34,8 +35,8 @@ class Kept(Persistence):
     def cycle_finished(self, program: str, seconds: float) -> None:
         self.told.append(("cycle", program, seconds))
 
-    def program_proved(self, program: str, result: str, planned: float | None) -> None:
-        self.told.append(("proved", program, result, planned))
+    def program_proved(self, program: str, result: str, planned: float | None, text: str) -> None:
+        self.told.append(("proved", program, result, planned, text))
 
 
 def told(*snapshots: Snapshot) -> list[tuple[object, ...]]:
@@ -107,11 +108,11 @@ def test_a_proof_is_kept_once() -> None:
     keep = Kept()
     record = RunHistory(keep)
     proof = Proof(digest="x", errors=(), blocks=3, cycle_time=9.5, tools=())
-    loaded = Loaded(Phase.READY, Path("pin.nc"), proof=proof)
+    loaded = Loaded(Phase.READY, Path("pin.nc"), source=Source("pin.nc", "M30\n"), proof=proof)
     for _ in range(3):
         record.see(READY, loaded)
-    record.see(READY, replace(loaded, phase=Phase.UNREADABLE, trouble="gone"))
-    assert keep.told == [("proved", "pin.nc", "PROVED", 9.5), ("proved", "pin.nc", "UNREADABLE", None)]
+    record.see(READY, Loaded(Phase.UNREADABLE, Path("pin.nc"), trouble="gone"))  # has no text to belong to
+    assert keep.told == [("proved", "pin.nc", "PROVED", 9.5, "M30\n")]
 
 
 def test_a_store_that_fails_stops_nobody() -> None:

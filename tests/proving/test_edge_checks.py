@@ -32,12 +32,16 @@ PIPE = tube(38.1, 20.0, 0.0, -60.0)
 
 
 def part_of(
-    program: str, stock: Stock = ROD, shapes: dict[int, ToolShape] = SHAPES, clamping: Clamping | None = None
+    program: str,
+    stock: Stock = ROD,
+    shapes: dict[int, ToolShape] = SHAPES,
+    clamping: Clamping | None = None,
+    gang: dict[int, tuple[float, float]] | None = None,
 ) -> PartReport:
     machine = load_machine(None)
     tools = {n: ToolOffset(-12.7, -50.8) for n in range(1, 12)}
     setup = setup_for(machine, tools=tools, secondary={})
-    setting = PartSetting(stock, shapes, clamping=clamping)
+    setting = PartSetting(stock, shapes, clamping=clamping, gang=gang or {})
     _, part = prove_with_part(Source("P", program), setup, machine, setting)
     assert part is not None
     return part

@@ -64,8 +64,7 @@ def made(day: Day) -> str:
 def target(day: Day, sum_: str) -> None:
     """F10, 2: stop at so many."""
     day.key(Key.Key_F10)
-    day.type("2")
-    day.enter(sum_)
+    day.enter("2", sum_)
     back_to_automatic(day)
 
 

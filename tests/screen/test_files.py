@@ -87,39 +87,37 @@ def test_a_name_is_found_by_typing_and_loaded_by_return(shop: Shop) -> None:
     assert shop.frame.page is shop.page
     shop.sees(lambda: shop.prompt().startswith(wording("screen.to-start")))
     assert any(isinstance(command, LoadJob) for command in shop.machine.posted)
-    shop.sees(lambda: shop.journal is not None and any(row.proof for row in shop.journal.runs()))
+    shop.sees(
+        lambda: shop.journal is not None and any(row.proof for row in shop.journal.runs_by_text().values())
+    )
     shop.open_list()
     shop.sees(
         lambda: shop.programs.model.program is not None and shop.programs.model.program.run.proof == "PROVED"
     )
 
 
-def test_no_other_program_while_one_is_under_way_and_h_holds(shop: Shop) -> None:
+def test_no_other_program_while_one_is_under_way(shop: Shop) -> None:
     shop.open_list()
     shop.machine.now = replace(shop.machine.now, state=State.HOLD)
-    assert not shop.programs.takes("h")
     shop.key(Key.Key_Return)
     assert shows(shop.desk.notice, "screen.program-runs-no-other")
     assert shop.programs.model.find.text == ""
 
 
-def test_a_name_is_typed_in_a_cycle_after_tab_and_no_letter_is_a_switch(shop: Shop) -> None:
-    """Letters are switches until Tab says that a name is typed; Esc holds, and F3 begins the new program."""
+def test_a_name_is_typed_in_a_cycle_and_no_letter_is_a_switch(shop: Shop) -> None:
     shop.open_list()
     shop.machine.now = replace(shop.machine.now, state=State.RUN)
-    shop.sees(lambda: "TAB" in shop.prompt())
-    shop.key(Key.Key_Tab)
-    shop.type("pc")
-    assert shop.programs.model.find.text == "pc"
+    shop.type("cap")
+    assert shop.programs.model.find.text == "cap"
     assert not shop.machine.now.cycle_repeat
     assert not shop.machine.now.no_count
+    assert shop.machine.now.spindle_auto
+    shop.type("bevel")
+    assert not shop.desk.hands.estop_pressed
     shop.key(Key.Key_Escape)
-    assert any(isinstance(command, FeedHold) for command in shop.machine.posted)
-    assert shop.programs.model.find.text == "pc"
-    shop.key(Key.Key_Tab)
-    shop.type("c")
-    assert shop.programs.model.find.text == "pc"
-    assert shop.machine.now.cycle_repeat
+    assert not any(isinstance(command, FeedHold) for command in shop.machine.posted)
+    assert shop.programs.model.find.text == ""
+    shop.type("capbevel")
     shop.key(Key.Key_F3)
     assert shop.frame.title.page == page_table.EDITOR
 

@@ -235,8 +235,7 @@ def test_the_counter_leaves_the_number_to_the_job(day: Day) -> None:
     added(day, "peg.nc", "3")
     loaded(day, "peg.nc")
     day.key(Key.Key_F10)
-    day.type("2")
-    day.enter("7")
+    day.enter("2", "7")
     assert day.prompt == wording("screen.job-has-own-count")
     assert day.desk.counter.aim == 3
 
@@ -270,7 +269,7 @@ def test_a_job_whose_program_is_not_on_the_desk_is_proved_and_loaded_like_any_ot
     opened(day)
     day.sees(lambda: model(day).sheet(day.shot).rows[0].cells[4] == wording("screen.tool-complete"))
     loaded(day, "peg.nc")
-    assert day.desk.counter.words == "0/3"
+    day.sees(lambda: day.desk.counter.words == "0/3")
 
 
 def test_an_empty_queue_says_how_a_job_is_added(day: Day) -> None:

@@ -14,7 +14,7 @@ from app.special.backup_and_restore import BARRED, BackupAndRestore
 from app.special.inputs_outputs import NOT_NOW
 from app.special.special_view import SpecialPage
 from core.access.pins import hashed
-from core.executor.commands import ForceOutput, SetSwitch, SpindleLimit
+from core.executor.commands import FeedHold, ForceOutput, SetSwitch, SpindleLimit
 from core.executor.snapshot import Alarm, Event, State
 from core.store.people import PersonRow
 from tests.screen.desks import desk_on
@@ -33,6 +33,7 @@ def desk(machine: FakeMachine, journal: Journal) -> Desk:
 def open_function(hands: Hands, number: int) -> SpecialPage:
     hands.key(Key.Key_F10)
     hands.type(str(number))
+    hands.key(Key.Key_Return)
     page = hands.frame.page
     assert isinstance(page, SpecialPage)
     hands.sees(lambda: page.model.inside and page.table.sheet is not None)
@@ -352,7 +353,10 @@ def test_the_station_is_not_hidden_with_its_estop_pressed(hands: Hands) -> None:
 def test_hold_and_estop_work_in_the_middle_of_an_entry(hands: Hands) -> None:
     open_function(hands, 1)
     hands.type("12")
-    hands.key(Key.Key_E)
+    hands.machine.now = replace(hands.machine.now, state=State.RUN)
+    hands.window.hold()
+    assert FeedHold() in hands.machine.posted
+    hands.window.estop()
     hands.sees_state(State.ESTOP)
 
 
@@ -409,8 +413,8 @@ def test_the_list_has_rows_of_a_fingertip_and_leafs(hands: Hands) -> None:
     assert not page.model.inside
     items.leaf_by(-99)
     assert items.top == 0
-    hands.type("0")
-    assert page.model.inside
+    hands.type("10")
+    assert not page.model.inside
     assert page.model.at == 9
     items.grab()  # drawn: the tenth is in sight
     assert items.top <= 9 < items.top + items.rows
@@ -471,3 +475,43 @@ def test_the_shift_report_is_made_and_written_to_the_control(hands: Hands) -> No
     hands.sees(lambda: shows(hands.prompt(), "screen.file-is-whole"))
     (written,) = (data_folder() / "sheets").glob("shift-*.html")
     assert wording("screen.no-part-begun") in written.read_text()
+
+
+@pytest.mark.parametrize("number", range(1, 17))
+def test_every_function_is_chosen_by_its_number_and_return(hands: Hands, number: int) -> None:
+    hands.key(Key.Key_F10)
+    page = hands.frame.page
+    assert isinstance(page, SpecialPage)
+    if number > len(page.model.functions):
+        pytest.skip("this desk has fewer functions")
+    hands.type(str(number))
+    assert (page.model.at, page.model.inside) == (number - 1, False)
+    assert not page.has_field()
+
+
+def test_no_digit_of_a_number_falls_into_a_field(hands: Hands) -> None:
+    hands.key(Key.Key_F10)
+    page = hands.frame.page
+    assert isinstance(page, SpecialPage)
+    for digit in "14" * 3 + "25":
+        hands.type(digit)
+        assert page.table.sheet.text == ""
+    assert not page.model.inside
+    hands.key(Key.Key_Down)
+    hands.type("0")
+    assert shows(hands.desk.notice, "screen.no-such-function", number="0", last=len(page.model.functions))
+
+
+def test_the_next_digit_replaces_a_refused_speed(hands: Hands) -> None:
+    page = open_function(hands, 1)
+    hands.type("199999999999")
+    hands.key(Key.Key_Return)
+    assert page.table.sheet.refused or page.model.current.sheet(hands.machine.now).refused
+    hands.type("2")
+    assert page.model.current.sheet(hands.machine.now).text == "2"
+    hands.key(Key.Key_Delete)
+    hands.type("199999999999")
+    hands.key(Key.Key_Return)
+    hands.key(Key.Key_Backspace)  # corrects it instead
+    hands.type("2")
+    assert page.model.current.sheet(hands.machine.now).text == "199999999992"

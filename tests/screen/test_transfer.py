@@ -109,6 +109,7 @@ def hands(
         made = Hands(qtbot, window, desk, machine)
         made.key(Key.Key_F10)
         made.type("9")
+        made.key(Key.Key_Return)
         made.sees(lambda: page(made).model.inside and section.ports != ())
         yield made
 
@@ -252,10 +253,11 @@ def test_it_goes_on_behind_other_pages(hands: Hands, lines: FakeLines) -> None:
     lines.job.go.set()
     hands.key(Key.Key_F10)
     hands.type("9")
+    hands.key(Key.Key_Return)
     hands.sees(lambda: page(hands).table.sheet.question != "")
 
 
-def test_while_a_program_runs_letters_keep_their_meaning(
+def test_while_a_program_runs_letters_are_the_name_of_what_was_received(
     hands: Hands, lines: FakeLines, tmp_path: Path
 ) -> None:
     hands.key(Key.Key_F5)
@@ -263,8 +265,9 @@ def test_while_a_program_runs_letters_keep_their_meaning(
     lines.job.go.set()
     hands.sees(lambda: page(hands).table.sheet.question != "")
     hands.machine.now = replace(hands.machine.now, state=State.WAIT)
-    hands.sees(lambda: shows(page(hands).prompt(), "screen.name-as-it-is"))
-    hands.key(Key.Key_H)
-    hands.sees(lambda: FeedHold() in hands.machine.posted)
-    assert page(hands).table.sheet.text == "O77.nc"
+    hands.type("hec")
+    assert FeedHold() not in hands.machine.posted
+    assert not hands.desk.hands.estop_pressed
+    assert not hands.machine.now.cycle_repeat
+    assert page(hands).table.sheet.text == "O77.nchec"
     hands.machine.idle()

@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 from core.store import backup, database
-from core.store.database import in_use
+from core.store.database import WriterLock, in_use
 from core.store.store import Store, StoreError
 from core.store.store_errors import Cause
 from core.store.store_file import FILE_NAME
@@ -297,3 +297,51 @@ def test_another_program_that_reads_an_open_store_leaves_its_log(folder: Path, t
         log = (folder / f"{FILE_NAME}-wal").stat().st_ino
         subprocess.run([sys.executable, "-c", look, str(folder / FILE_NAME)], check=True)
         assert (folder / f"{FILE_NAME}-wal").stat().st_ino == log
+
+
+def test_who_asks_for_the_owner_keeps_no_writer_from_its_lock(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """At the instant at which another process asks, the lock can be taken."""
+    WriterLock(tmp_path).close()
+    took: list[bool] = []
+    close = os.close
+
+    def closing_(file: int) -> None:
+        if not took:
+            took.append(False)
+            WriterLock(tmp_path).close()
+            took[0] = True
+        close(file)
+
+    monkeypatch.setattr(os, "close", closing_)
+    assert not in_use(tmp_path)
+    assert took == [True]
+
+
+def test_a_store_with_a_writer_is_in_use_and_one_without_is_not(tmp_path: Path) -> None:
+    assert not in_use(tmp_path)
+    lock = WriterLock(tmp_path)
+    assert in_use(tmp_path)
+    lock.close()
+    assert not in_use(tmp_path)
+
+
+def test_a_writer_tries_again_for_a_lock_that_is_taken_for_an_instant(tmp_path: Path) -> None:
+    first, pauses = WriterLock(tmp_path), list[float]()
+
+    def pause(seconds: float) -> None:
+        pauses.append(seconds)
+        if len(pauses) == 3:
+            first.close()
+
+    WriterLock(tmp_path, pause).close()
+    assert len(pauses) == 3
+
+
+def test_a_writer_is_refused_after_a_tenth_of_a_second(tmp_path: Path) -> None:
+    first, pauses = WriterLock(tmp_path), list[float]()
+    with raises_code(StoreError, "in-use"):
+        WriterLock(tmp_path, pauses.append)
+    first.close()
+    assert sum(pauses) == pytest.approx(0.1)

@@ -60,8 +60,8 @@ PLACES = {
     "SEARCHTO": ("F6",),
     "the editor": ("F3",),
     "find in the editor": ("F3", "F4"),
-    "the speed limit": ("F10", "1"),
-    "the parts counter": ("F10", "2"),
+    "the speed limit": ("F10", "1", "Return"),
+    "the parts counter": ("F10", "2", "Return"),
     "a tool's number": ("F1", "F5", "t"),
 }
 

@@ -60,7 +60,7 @@ def test_a_program_is_made_of_shapes(story: Story, way: str) -> None:
     hand.shapes()
     operator.until(lambda: operator.shows("FROM DIAMETER") and operator.shows(".55"), "the form again")
     hand.function("F10", "BACK")
-    hand.function("F3", "LEAVE")
+    hand.function("F3", "SAV+LOAD")
     operator.opens("AUTOMATIC")
     lines = kept(story, operator, "zq.nc")
     assert lines[0].startswith("G90G94F300G72(HEAD")
@@ -104,7 +104,7 @@ def test_a_program_is_made_of_a_drawing(story: Story, way: str) -> None:
     hand.function("F2", "WRITE")
     operator.sees(LIST)
     hand.function("F10", "BACK")
-    hand.function("F3", "LEAVE")
+    hand.function("F3", "SAV+LOAD")
     operator.opens("AUTOMATIC")
     lines = kept(story, operator, "axle.nc")
     assert lines[-1] == "M30"

@@ -123,7 +123,7 @@ def jogs_through(operator: Operator) -> bool:
 
 def test_return_held_switches_no_output(story: Story) -> None:
     operator = ready(story)
-    operator.keys("F10", "3")
+    operator.keys("F10", "3", "Return")
     operator.sees("TERMINAL")
     before = operator.machine["outputs"]
     operator.holds("Return", HELD)

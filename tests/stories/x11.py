@@ -17,6 +17,7 @@ from PySide6.QtGui import QImage
 from tests.stories.patience import until
 
 SIZE = (1280, 800)
+_OBEYS = 20.0  # s
 NEEDED = ("Xvfb", "openbox", "xdotool", "setxkbmap")
 BUTTONS = {"left": 1, "middle": 2, "right": 3, "wheel up": 4, "wheel down": 5}
 MODIFIERS = {
@@ -101,8 +102,7 @@ class Server:
         self.let_go()
         self._x.XCloseDisplay(self._display)
         for each in reversed(self._running):
-            each.terminate()
-            each.wait()
+            _end(each)
 
     # --- keys ----------------------------------------------------------------------------------------
 
@@ -230,6 +230,16 @@ def another_client(server: Server, what: str) -> Iterator[None]:
         yield
     finally:
         x.XCloseDisplay(display)
+
+
+def _end(process: subprocess.Popen[bytes]) -> None:
+    """End a process; one that does not obey is killed, because the next test needs its display and memory."""
+    process.terminate()
+    try:
+        process.wait(_OBEYS)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        process.wait()
 
 
 @contextmanager

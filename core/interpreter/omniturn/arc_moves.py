@@ -49,8 +49,12 @@ def _centre_by_radius(state: State, statement: Statement, start: Point, *, clock
         raise statement.refuse("R", "arc-no-chord", text, "A full circle takes I and K.")
     if chord > 2 * radius + _TOLERANCE:
         shown, half = state.modal.length_text(radius), state.modal.length_text(chord / 2)
-        text = f"R is {shown}, and the ends are so far apart that it takes {half} at least."
-        raise statement.refuse("R", "arc-radius", text, "Correct R or the end point.")
+        text = f"R is {shown}; an arc between these points needs a radius of {half} or more."
+        hint = "Correct R or the end point."
+        halved = dist((start[0] / 2, start[1]), (state.x / 2, state.z))
+        if not state.modal.diameter and halved <= 2 * radius + _TOLERANCE:
+            hint = "X is a radius here (G73). If the X words are diameters, write G72 before them."
+        raise statement.refuse("R", "arc-radius", text, hint)
     return centre_from_radius(start, (state.x, state.z), radius, clockwise=clockwise)
 
 

@@ -258,10 +258,10 @@ CHAPTERS: tuple[tuple[str, tuple[Code, ...]], ...] = (
         Code("G04", "G04Fn", "Dwell n seconds, .1 at least.", "G04F.5",
             acts=Acts.MOTION, handler="dwell.dwell", words=names("F S T D"), f=FWord.SECONDS,
             rules={"F": WordRule(
-                "seconds", least=0.1, most=3600.0,
+                "seconds", least=0.1,
                 missing=Refusal("word-missing", "G04 does not say how long.", "Write G04Fn, n in seconds."),
                 wrong=Refusal(
-                    "dwell-range", "A dwell of {value} s is out of range: 0.1 s to an hour.", "Correct F."))},
+                    "dwell-range", "G04F{value}: the shortest dwell is 0.1 s.", "Correct F."))},
             least_blocks=1, under_nose=True, before_corner=True, in_contour=True,
             further=names("dwell-too-short")),
         Code("F", "Fn", "Feed: in/min under G94, in/rev under G95.", "Z0F.002",
@@ -299,7 +299,8 @@ CHAPTERS: tuple[tuple[str, tuple[Code, ...]], ...] = (
             handler="straight_moves.geometry_modes", group="distance", further=names("first-line")),
         Code("G92", "G92XnZn", "The current point gets these coordinates; nothing moves.", "G92X.6Z.2",
             acts=Acts.FRAME, handler="tools_and_offsets.preset", words=names("X Z F S T D"), f=FWord.FEED,
-            one_of=_PLACE, least_blocks=1, before_corner=True, in_contour=True),
+            one_of=_PLACE, least_blocks=1, before_corner=True, in_contour=True,
+            further=names("preset-thread")),
         _mode("G94", "G94Fn", "Feed in inches a minute.", "G94F5\nZ0",
             handler="feeds.feed_words", group="feed mode", further=names("feed-over-speed")),
         _mode("G95", "G95Fn", "Feed in inches a revolution; the spindle must turn.", "G95F.003\nZ0",

@@ -52,7 +52,8 @@ class _Finder:
         if statement.flow == "M99":
             self._close_subroutine(statement)
         elif self._ended and self._inside is None:
-            self._unreachable(statement)
+            if statement.flow != UNREADABLE or statement.text.strip():
+                self._unreachable(statement)
         elif statement.flow == "LS" or _unread(statement, "LS"):
             self._loops.append(statement)
         elif statement.flow == "LF":
@@ -114,7 +115,8 @@ class _Finder:
 
     def _close_subroutine(self, statement: Statement) -> None:
         if self._inside is None:
-            self._refuse(statement, "m99-outside", "M99 ends no subroutine here.", "Take it out.")
+            hint = "Write M30 at the end of the program, or delete the line."
+            self._refuse(statement, "m99-outside", "M99 ends no subroutine here.", hint)
             return
         self._unclosed_loops()
         self.found.subroutine_ends.setdefault(self._inside, statement.line - 1)
@@ -155,9 +157,11 @@ class _Finder:
 
     def _no_end(self, line: int) -> None:
         self._ended = True
+        self.found = self.found._replace(main_end=line)
+        if any(problem.code == "m99-outside" for problem in self.problems):
+            return  # M99 was meant to end the program
         text = "The main program ends without M30 or M02."
         self.problems.append(refusal(line, 0, "no-end", text, "M30 goes before the subroutines."))
-        self.found = self.found._replace(main_end=line)
 
     def finish(self, length: int) -> None:
         self._open_contour()
@@ -175,12 +179,12 @@ class _Finder:
 
 def _ends(statement: Statement) -> bool:
     """Whether the line ends the job, or was meant to."""
-    return statement.ends_program or _unread(statement, "M30") or _unread(statement, "M02")
+    return statement.ends_program or _unread(statement, "M0*(?:30|2)(?![0-9])")
 
 
 def _unread(statement: Statement, word: str) -> bool:
     """Whether a line that cannot be read was meant as this: what follows from it is no second mistake."""
-    return statement.flow == UNREADABLE and statement.text.lstrip(" /").upper().startswith(word)
+    return statement.flow == UNREADABLE and re.search(word, statement.text.upper()) is not None
 
 
 def find_structure(statements: Iterable[Statement], length: int) -> tuple[Structure, list[Diagnostic]]:

@@ -17,6 +17,7 @@ from core.interpreter.modal_state import Modal
 from core.interpreter.omniturn.block_execution import execute
 from core.interpreter.omniturn.checkpoint_restore import checkpoint_of, restore
 from core.interpreter.omniturn.coarse_feeds import looks_ahead
+from core.interpreter.omniturn.consequences import Consequences
 from core.interpreter.omniturn.contour_modification import ContourModifier
 from core.interpreter.omniturn.loops_and_subroutines import Flow, takes_call, terminal
 from core.interpreter.omniturn.m_codes import check_m_codes
@@ -95,6 +96,7 @@ class Interpreter(Interpretation):
         self._modifier = ContourModifier(self._state)
         self._flow = Flow(program.structure)
         self._ahead: SeriesLookAhead | None = None
+        self._consequences = Consequences()
         self._first, self._refused = check_opening(self._state, program)
         if setup.begin is not None:
             restore(self._state, setup.begin)
@@ -184,12 +186,12 @@ class Interpreter(Interpretation):
 
     def _statement(self, statement: Statement) -> Iterator[Block]:
         contour = self._contour(statement) if statement.contour_cycle else ()
-        if statement.block_delete and self._state.setup.block_delete:
+        if contour is None or (statement.block_delete and self._state.setup.block_delete):
             return
         if statement.flow == UNREADABLE:
             self._stopped = True
             self._modifier.drop()  # what is held back lacks this line
-            self._arrive(statement)
+            self._skip(statement)
         elif statement.calls:
             self._modifier.check(statement)
             yield from self._call(statement)
@@ -216,12 +218,15 @@ class Interpreter(Interpretation):
                 if isinstance(block.action, ProgramEnd):
                     self._flow.stop()
 
-    def _contour(self, statement: Statement) -> list[Statement]:
-        """The lines that describe the contour of a cycle; they are passed by even where it does not run."""
+    def _contour(self, statement: Statement) -> list[Statement] | None:
+        """Return the lines that describe the contour of a cycle; None where they have no end.
+
+        They are passed by even where the cycle does not run.
+        """
         lines = self._flow.contour(statement)
         if lines is None:
             self._stopped = True
-            return []
+            return [] if "P" in statement.words else None
         found = [self._program.statement(index + 1) for index in lines]
         return [each for each in found if each is not None]
 
@@ -245,8 +250,9 @@ class Interpreter(Interpretation):
             self._refuse(problem)
 
     def _refuse(self, problem: ProgramError) -> None:
-        """Keep the error; no block that is held back may come any more."""
-        self._log.add(problem.diagnostic)
+        """Keep the error, unless it follows from another; no block that is held back may come any more."""
+        if not self._consequences.includes(problem.diagnostic.code):
+            self._log.add(problem.diagnostic)
         self._stopped = True
         self._modifier.drop()
         self._state.fast = False
@@ -270,7 +276,12 @@ class Interpreter(Interpretation):
         if problem.diagnostic.code == "recursion" or self._log.full:
             self._flow.stop()
         if isinstance(line, Statement):
-            self._arrive(line)
+            self._skip(line)
+
+    def _skip(self, statement: Statement) -> None:
+        """Go on after a line that is refused."""
+        self._arrive(statement)
+        self._consequences.note(statement.text, place_known=statement.moves and self._state.absolute)
 
     def _arrive(self, statement: Statement) -> None:
         """Stand where the line would have ended."""

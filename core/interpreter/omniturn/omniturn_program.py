@@ -20,6 +20,7 @@ from core.interpreter.omniturn.omniturn_statement import (
 from core.interpreter.omniturn.plain_moves import ReadyLines, read_lines, read_move
 from core.language.diagnostics import Diagnostic, ProgramError, Severity, refusal
 from core.language.omniturn import Line, lex_line
+from core.language.omniturn.foreign_program import recognize
 from core.language.omniturn.plane_switching_lines import (
     PlaneLine,
     ends_program,
@@ -207,6 +208,8 @@ def read_program(source: Source, strict: bool = False) -> Program:
         problems += _beyond_the_end(ready, structure)
     problems.sort(key=lambda problem: (problem.line, problem.column))
     problems = without_repeats(problems)
+    if any(problem.severity is Severity.ERROR for problem in problems):
+        problems = [*filter(None, (recognize(source.lines),)), *problems]
     return Program(
         source=source,
         ready=ready,

@@ -10,7 +10,6 @@ from dataclasses import dataclass
 from math import ceil, copysign, radians, tan
 
 from core.interpreter.elementary_blocks import Block, Kind
-from core.interpreter.omniturn.canned_cycles import MOST_PASSES
 from core.interpreter.omniturn.code_rules import check_when, checked, number
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
@@ -19,6 +18,8 @@ from core.interpreter.omniturn.straight_moves import check_tool, on_step
 # --- words, and what has to be right before a thread may be cut
 
 
+MOST_PASSES = 1000  # the finest infeed of a real thread takes less than a hundred
+_LEAST_LEAD = 0.0254  # mm/rev; the finest pitch of ISO 1501 is 0.08 mm
 _ROUNDING = 1 + 1e-9
 _CLICK = 1e-6  # of a pass: what √ and decimal fractions lack
 _NEAR = 1e-6  # mm
@@ -62,6 +63,7 @@ def read_thread(state: State, statement: Statement) -> Thread:
     single = statement.one_shot == 34
     first = checked(state, statement, "I", _across(state, statement, "I")) or 0.0
     depth, out = (0.0, copysign(1.0, first)) if single else _depth(state, statement)
+    once = single or "O" in statement.words
     angle = radians(number(state, statement, "C") or 0.0) if "C" in statement.words else 0.0
     thread = Thread(
         x0=state.x,
@@ -74,7 +76,7 @@ def read_thread(state: State, statement: Statement) -> Thread:
         lead=lead,
         taper=_across(state, statement, "A") or 0.0,
         angle=angle,
-        passes=1 if single or "O" in statement.words else _count(statement, depth, first),
+        passes=1 if once else _count(statement, depth, first, lead),
         pulls_out="P" in statement.words,
     )
     if along * (z1 - state.z) <= depth * tan(angle) + _NEAR:
@@ -89,7 +91,12 @@ def _lead(state: State, statement: Statement) -> float:
         text = f"K is missing, and {feed.text} is there."
         raise statement.refuse("F", "thread-lead-missing", text, f"Was K{feed.text[1:]} meant?")
     coarser = ("G35 allows more.", "G35F2 allows more.", "Correct K.")[state.modal.coarse]
-    return checked(state, statement, "K", lead and lead * state.scale_z, more=coarser) or 0.0
+    value = checked(state, statement, "K", lead and lead * state.scale_z, more=coarser) or 0.0
+    if value < _LEAST_LEAD:
+        least = state.modal.feed_text(_LEAST_LEAD, per_rev=True)
+        text = f"{statement.words['K'].text}: the least lead is {least}."
+        raise statement.refuse("K", "thread-lead-range", text, "Correct K.")
+    return value
 
 
 def _check_spindle(state: State, statement: Statement, lead: float) -> None:
@@ -129,7 +136,11 @@ def _depth(state: State, statement: Statement) -> tuple[float, float]:
     return abs(x1 - state.x), copysign(1.0, state.x - x1)
 
 
-def _count(statement: Statement, depth: float, first: float) -> int:
+def _count(statement: Statement, depth: float, first: float, lead: float) -> int:
+    """Return the number of passes. Raises ProgramError for an I that does not fit the lead."""
+    if first > lead:
+        text = f"{statement.words['I'].text}: the first pass would be deeper than the lead."
+        raise statement.refuse("I", "thread-depth", text, "Correct I, the depth of the first pass, or K.")
     count = max(ceil((depth / first + 1.0) ** 2 - _CLICK), 1)
     if count > MOST_PASSES:
         text = f"The thread would take {count:,} passes; {MOST_PASSES:,} are the most."

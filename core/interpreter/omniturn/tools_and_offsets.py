@@ -85,6 +85,9 @@ def work_shift(state: State, statement: Statement) -> Iterator[Block]:
 def preset(state: State, statement: Statement) -> Iterator[Block]:
     """G92: the current point gets these coordinates. Raises ProgramError without any."""
     check_together(statement, statement.entry)
+    if {"X", "Z", "F"} <= statement.words.keys():
+        text = "G92 presets the position here; no thread is cut. A thread is G33."
+        state.log.warn(statement.line, statement.column("F"), "preset-thread", text, "Write G33XnZnInKn.")
     x, z = on_step(state, statement, "X"), on_step(state, statement, "Z")
     x, z = state.x if x is None else x, state.z if z is None else z
     modal = state.modal

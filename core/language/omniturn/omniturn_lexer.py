@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 from core.language.diagnostics import Diagnostic, refusal
 from core.language.omniturn import other_controls, word_faults
+from core.language.omniturn.intended_code import intent_of, with_digit_one
 from core.language.omniturn.omniturn_words import BARE, Line, Word
 from core.language.typography import ascii_upper
 
@@ -16,6 +17,7 @@ LONGEST_LINE = 8192
 # Most lines of a long program are nothing but these words; they need no look at each character.
 _NUMBER = r"[+-]?(?:[0-9]{1,4}(?:\.[0-9]{0,8})?|\.[0-9]{1,8})"
 _USUAL = re.compile(f"(?:[XZIKRFS]{_NUMBER}|[GM][0-9]{{2}}(?![0-9.]))+")
+_MAY_BE_FOREIGN = re.compile("G(?:04X|74|75|76|92S)")  # of usual words, but not of this control
 _USUAL_WORD = re.compile(r"(([A-Z])([-+0-9.]+))")
 _WORD = re.compile(r"(LS|LF|RF|CA|CI|[A-Z}])([+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+))?")
 _THREAD = re.compile(r"G3[34](?![0-9.])")
@@ -47,10 +49,14 @@ def lex_line(number: int, text: str) -> Line:
     """The words of line ``number``. Never raises: errors are in the line, each with its column."""
     if len(text) > LONGEST_LINE:
         return Line(number, errors=(word_faults.too_long(number, len(text)),))
-    if _USUAL.fullmatch(text):
+    if _USUAL.fullmatch(text) and not _MAY_BE_FOREIGN.search(text):
         words = _usual_words(text)
         if words is not None:
             return Line(number, words, text=text)
+    if "l" in text and (misread := _letter_l(number, text)) is not None:
+        return Line(number, errors=(misread,), text=text)
+    if text.count("(") > 1 and (inner := _nested_comment(text)) is not None:
+        return Line(number, errors=(word_faults.slip(number, inner + 1, "comment-nested"),), text=text)
     errors: list[Diagnostic] = []
     if _THREE_LETTERS.search(text) or text[:1] in "%oO: ":
         text, told = _without_prose(number, text)
@@ -58,8 +64,34 @@ def lex_line(number: int, text: str) -> Line:
     written, columns, comment, comment_column = _without_comment(number, text, errors)
     code = _Code(ascii_upper(written), written, columns)
     block_delete = code.text.startswith("/")
+    intent = intent_of(code.text)
+    if intent is not None:
+        error = refusal(number, columns[intent.at], intent.code, intent.message, intent.hint)
+        return Line(number, (), comment, comment_column, block_delete, written, (error,))
     words = _Scanner(number, code, errors).words(1 if block_delete else 0)
     return Line(number, words, comment, comment_column, block_delete, written, tuple(errors))
+
+
+def _nested_comment(text: str) -> int | None:
+    """Index of a parenthesis that opens inside a comment, where all are closed; else None."""
+    depth, inner = 0, None
+    for at, sign in enumerate(text):
+        depth += (sign == "(") - (sign == ")")
+        if depth == 2 and inner is None:
+            inner = at
+    return inner if depth == 0 else None
+
+
+def _letter_l(number: int, text: str) -> Diagnostic | None:
+    """The letter l written for the digit 1, where the line is good with the digit; else None."""
+    code = _COMMENT.sub(lambda found: " " * len(found[0]), text)
+    fixed = with_digit_one(code)
+    if fixed == code or lex_line(number, fixed).errors:
+        return None
+    at = next(i for i, (was, now) in enumerate(zip(code, fixed, strict=True)) if was != now)
+    word = next(found for found in _WORD.finditer(ascii_upper(fixed)) if found.start() <= at < found.end())
+    message = f"{code[word.start() : word.end()]}: letter l in a number."
+    return refusal(number, at + 1, "letter-l", message, f"Write {word[0]}.")
 
 
 def _without_prose(number: int, text: str) -> tuple[str, list[Diagnostic]]:
@@ -163,11 +195,13 @@ class _Scanner:
         letter, digits, end = match[1], match[2], match.end()
         text = self._code.text
         if letter == "O" and not self._thread:
-            return self._letter_o(match.start())
+            return self._letter_o(match.start(), match.start())
         if digits is None and letter not in BARE:
             return self._without_number(letter, match)
         if digits is None and text[end : end + 1] in {"+", "-", "."}:
             return self._without_number(letter, match)
+        if digits is not None and self._is_letter_o(end):
+            return self._letter_o(match.start(), end)
         value = None if digits is None else float(digits) if len(digits) < 32 else float("inf")
         written = self._code.written[match.start() : end]
         word = Word(letter, value, self._column(match.start()), written)
@@ -181,7 +215,7 @@ class _Scanner:
         text, end = self._code.text, match.end()
         follower = text[end : end + 1]
         if follower == "O":
-            return self._letter_o(end)
+            return self._letter_o(match.start(), end)
         if follower == "," or other_controls.sign(follower) is not None:
             return self._skip(end, after_number=False)
         column = self._column(match.start())
@@ -195,14 +229,20 @@ class _Scanner:
         if exponent is not None:
             self._errors.append(word_faults.slip(self._number, self._column(at), "exponent"))
             return exponent.end()
-        if text[at : at + 1] == "O" and (not self._thread or text[at + 1 : at + 2] in _NUMBER_SIGNS):
-            return self._letter_o(at)
         return at
 
-    def _letter_o(self, at: int) -> int:
-        self._errors.append(word_faults.slip(self._number, self._column(at), "letter-o"))
+    def _is_letter_o(self, at: int) -> bool:
+        """Whether a letter O here is part of a number; in a thread it may be a word."""
+        text = self._code.text
+        return text[at : at + 1] == "O" and (not self._thread or text[at + 1 : at + 2] in _NUMBER_SIGNS)
+
+    def _letter_o(self, start: int, at: int) -> int:
+        """Report the letter O at ``at`` in the word that begins at ``start``; return where the word ends."""
         match = _ZERO_LETTER.match(self._code.text, at)
-        return match.end() if match else at + 1
+        end = match.end() if match else at + 1
+        word = self._code.written[start:end]
+        self._errors.append(word_faults.letter_o(self._number, self._column(at), word))
+        return end
 
     def _skip(self, at: int, *, after_number: bool) -> int:
         sign = self._code.written[at]

@@ -65,7 +65,7 @@ _SIGNS: dict[str, tuple[str, str]] = {
     "]": ("how other controls calculate, and this one does not", "Write the number."),
     "*": ("how other controls calculate, and this one does not", "Write the number."),
     "=": ("how other controls calculate, and this one does not", "Write the number."),
-    "%": ("what a transfer puts round a program, and no line of it", "Take it out."),
+    "%": ("the mark at the ends of a transfer", "Delete it."),
     "$": ("a word of other controls", "Take it out."),
     ":": ("how other controls number programs; here the file has a name", "Take it out."),
 }
@@ -90,8 +90,8 @@ def whole_line(code: str) -> tuple[str, str, str] | None:
     if _TRANSFER.fullmatch(code):
         return (
             "transfer-line",
-            "A line of % stands round a program that is transferred, not in it.",
-            "Take it out.",
+            "% marks the ends of a transfer.",
+            "Delete the line.",
         )
     if _NUMBERED.fullmatch(code):
         shown = code.strip()

@@ -23,9 +23,9 @@ _AFTER_NUMBER = {
 
 _SLIPS = {
     "comment-open": ("The comment has no closing parenthesis.", "Add ')'."),
+    "comment-nested": ("A comment is inside another comment.", "Remove the inner parentheses."),
     # X1E5, and E005 where a print of F.005 was read.
     "exponent": ("Numbers have no exponent here.", "Write the number out; a feed is F."),
-    "letter-o": ("The letter O stands where a zero belongs.", "Write 0."),  # GO2, MO5, XO
 }
 
 
@@ -44,6 +44,12 @@ def text_outside(line: int, column: int, text: str) -> Diagnostic:
 def slip(line: int, column: int, code: str) -> Diagnostic:
     """What has one sentence wherever it stands."""
     return refusal(line, column, code, *_SLIPS[code])
+
+
+def letter_o(line: int, column: int, word: str) -> Diagnostic:
+    """A letter O for a zero: GO2, MO5, XO."""
+    message = f"{word}: letter O in a number."
+    return refusal(line, column, "letter-o", message, f"Write {word.upper().replace('O', '0')}.")
 
 
 def no_number(line: int, column: int, letter: str, follower: str) -> Diagnostic:
@@ -100,7 +106,10 @@ def of_word(line: int, word: Word, digits: str | None) -> Diagnostic | None:
 
 def _tool(text: str, _value: float) -> tuple[str, str, str]:
     habit = other_controls.tool(text)
-    return ("tool-number", *(habit or (f"{text}: tools go from 1 to 32.", "T0 cancels the tool.")))
+    return (
+        "tool-number",
+        *(habit or (f"{text}: tools are T1 to T32.", "Correct the tool number; T0 cancels the tool.")),
+    )
 
 
 def _offset(text: str, _value: float) -> tuple[str, str, str]:
@@ -108,6 +117,8 @@ def _offset(text: str, _value: float) -> tuple[str, str, str]:
 
 
 def _no_feed(text: str, value: float) -> tuple[str, str, str] | None:
+    if value < 0:
+        return "out-of-range", f"{text}: a feed rate cannot be negative.", "Remove the sign."
     if value:
         return None
     return "out-of-range", f"{text}: a feed of 0 moves nothing; a rapid is G00 here.", "Write the feed."

@@ -6,6 +6,7 @@ import re
 from collections.abc import Callable
 
 import pytest
+from canopen.sdo.exceptions import SdoAbortedError
 
 from app.compose.canopen_backend import canopen_machine, canopen_peers
 from core.faults import code_of
@@ -58,8 +59,61 @@ def test_outputs_have_their_safe_state_in_the_module(bench: CanBench) -> None:
     values = board.values  # type: ignore[attr-defined]
     # the collet, bit 1 of the first byte, keeps its state; the others fall
     assert values[od.ERROR_MODE, 1] == 0xFD
-    assert values[od.ERROR_VALUE, 1] == 0
+    assert values.get((od.ERROR_VALUE, 1), 0) == 0  # as it is anyway: not written
     assert values[od.ANALOG_EVENTS, 0] == 1
+
+
+READ_ONLY = 0x06010002  # abort code of SDO
+
+
+class Recorded:
+    """A device that refuses to have some objects written, and remembers what was written by SDO."""
+
+    def __init__(self, peers: CanopenDevices, name: str, locked: frozenset[int]) -> None:
+        self.written: list[int] = []
+        self._locked = locked
+        local = peers.nodes[name].local
+        local.add_write_callback(self.on_write)
+        local._write_callbacks.insert(0, local._write_callbacks.pop())  # before it is stored
+
+    def on_write(self, index: int, **_: object) -> None:
+        if index in self._locked:
+            raise SdoAbortedError(READ_ONLY)
+        self.written.append(index)
+
+
+def test_a_read_only_object_with_the_wanted_value_is_not_written() -> None:
+    """Interpolation time and following window are fixed in many drives."""
+    machine, clock = cyclic(), StepClock()
+    peers = canopen_peers(machine, clock)
+    window, period = round(2.032 / 0.00127), 4
+    values = {(od.WINDOW, 0): window, (od.IP_TIME, 1): period, (od.IP_TIME, 2): -3}
+    says(peers, "X", values)
+    record = Recorded(peers, "X", frozenset((od.WINDOW, od.IP_TIME)))
+    connected = canopen_machine(machine, clock, peers.pump)
+    connected.bus.close()
+    peers.close()
+    assert not {od.WINDOW, od.IP_TIME} & set(record.written)
+    assert od.QUICK_DECEL in record.written
+
+
+def test_a_read_only_object_with_another_value_is_named_with_both_values() -> None:
+    def spoil(peers: CanopenDevices) -> None:
+        says(peers, "X", {(od.WINDOW, 0): 77})
+        Recorded(peers, "X", frozenset((od.WINDOW,)))
+
+    refused(spoil, "drive-setup", "node 1", "6065:0", "77", "1600", machine=cyclic())
+
+
+def test_a_pdo_that_is_mapped_as_wanted_is_left_alone() -> None:
+    """Mapping and communication of many modules are fixed; the second connection finds all as it wants it."""
+    machine, clock = cyclic(), StepClock()
+    peers = canopen_peers(machine, clock)
+    canopen_machine(machine, clock, peers.pump).bus.close()
+    record = Recorded(peers, "X", frozenset())
+    canopen_machine(machine, clock, peers.pump).bus.close()
+    peers.close()
+    assert not [f"{index:04X}" for index in record.written if 0x1400 <= index < 0x1C00 and index != 0x1400]
 
 
 def connected_without(machine: Machine, *lacking: int) -> tuple[str, ...]:

@@ -83,3 +83,15 @@ def test_one_that_obeys_at_last_is_forgiven_what_was() -> None:
     assert obedience.judge(0.95, look(1.0)) == ""
     assert obedience.judge(1.5, look(0.0, run=False)) == ""  # its second begins here
     assert obedience.judge(2.6, look(0.0, run=False)) != ""
+
+
+def test_a_stop_while_it_gets_faster_is_compared_with_the_next_look() -> None:
+    """On a slow line the look before the stop is old: 10 Hz there, 30 Hz when the stop came."""
+    obedience = Obedience()
+    obedience.command(-1.0, 50.0, STOOD)
+    assert obedience.judge(-0.5, look(5.0, 50.0)) == ""
+    obedience.command(0.0, 0.0, look(10.0, 50.0))
+    for t, output in ((0.95, 30.0), (1.70, 25.0), (2.45, 15.0)):
+        assert obedience.judge(t, look(output, run=False)) == "", t
+    assert obedience.judge(3.2, look(15.0, run=False)) == ""
+    assert obedience.judge(4.3, look(15.0, run=False)) != ""

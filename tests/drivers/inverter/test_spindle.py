@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from core.faults import code_of
-from tests.drivers.inverter.benches import Bench, bench
+from tests.drivers.inverter.benches import FAMILIES, Bench, bench
 
 
 def test_a_surface_speed_changes_the_setpoint_all_the_time(turning: Bench) -> None:
@@ -114,3 +114,34 @@ def test_closing_says_stop(turning: Bench) -> None:
     turning.clock.advance(2.0)
     assert turning.rpm == 0.0
     assert turning.wire.closed == 1
+
+
+@pytest.mark.parametrize("family", FAMILIES)
+def test_a_slow_line_is_no_disobedience(family: str) -> None:
+    """150 ms an answer: a look of the Delta, five registers, is 0.75 s old when it is whole."""
+    one = bench(family)
+    one.wire.delay = 0.15
+    one.run(3.0)
+    for rpm in (3000.0, 800.0, 2500.0, -1500.0, 0.0, 3400.0, 0.0):
+        one.spindle.run(rpm)
+        one.run(0.7)
+        assert one.spindle.fault() == "", rpm
+    for step in range(40):
+        one.spindle.run(3000.0 - 60.0 * step)
+        one.run(0.1)
+        assert one.spindle.fault() == "", step
+    one.spindle.run(0.0)
+    one.run(4.0)
+    assert one.spindle.fault() == ""
+    assert one.rpm == 0.0
+
+
+def test_on_a_slow_line_disobedience_is_still_told() -> None:
+    one = bench("delta-vfdb")
+    one.wire.delay = 0.15
+    one.spindle.run(2000.0)
+    one.run(5.0)
+    one.inverter.deaf = True
+    one.spindle.run(0.0)
+    assert one.until_fault(6.0) <= 4.0
+    assert code_of(one.spindle.fault(), "driver") == "ignores-stop"

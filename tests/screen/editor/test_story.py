@@ -327,6 +327,57 @@ def test_who_only_looks_at_a_program_changes_nothing_on_the_desk(writer: Writer,
     assert not [each for each in writer.machine.posted[posted:] if isinstance(each, LoadJob)]
 
 
+def test_f1_saves_only_and_f3_loads_the_saved_text(writer: Writer, tmp_path: Path) -> None:
+    """F1 loaded the text although the prompt said that it does not, and the next start ran it."""
+    (tmp_path / "mine.nc").write_text(GOOD)
+    assert writer.desk.choose("mine")
+    writer.sees(lambda: writer.desk.session.now.phase is Phase.READY)
+    on_desk, posted = writer.desk.session.now, len(writer.machine.posted)
+    writer.key(Key.Key_F3)
+    writer.sees(lambda: writer.editor.editor.stage is Stage.OPEN)
+    writer.write("(CHANGED)\n")
+    writer.key(Key.Key_F1)
+    writer.sees(lambda: writer.front == page_table.MENU)
+    assert "(CHANGED)" in (tmp_path / "mine.nc").read_text()
+    assert writer.desk.session.now is on_desk
+    assert not [each for each in writer.machine.posted[posted:] if isinstance(each, LoadJob)]
+    assert writer.desk.notice == wording("editor.saved-old-runs", name="mine.nc")
+    writer.key(Key.Key_F3)
+    writer.sees(lambda: writer.front == page_table.EDITOR and writer.editor.editor.stage is Stage.OPEN)
+    writer.key(Key.Key_F3)  # nothing has been typed since, and yet it is not what is loaded
+    writer.sees(lambda: writer.front == page_table.AUTOMATIC)
+    writer.sees(lambda: writer.desk.session.now.phase is Phase.READY)
+    source = writer.desk.session.now.source
+    assert source is not None
+    assert "(CHANGED)" in source.text
+
+
+def test_every_page_says_that_the_saved_text_is_not_loaded(writer: Writer) -> None:
+    writer.desk.differs = lambda: "DIFFERENT"
+    for page in (page_table.AUTOMATIC, page_table.PROGRAMS, page_table.MENU):
+        writer.frame.go(page)
+        writer.sees(lambda page=page: writer.front == page)  # type: ignore[misc]
+        writer.sees(lambda: "DIFFERENT" in [row.text for row in writer.frame.notices.rows])
+
+
+def test_another_document_does_not_show_the_findings_of_the_last_one(writer: Writer, tmp_path: Path) -> None:
+    """Two files of one name in two folders: the findings of the first stood beside the second."""
+    writer.new("first")
+    writer.write("G90G94\nQ\n")
+    editor = writer.editor.editor
+    writer.sees(lambda: editor.proof.now.errors > 0)
+    writer.key(Key.Key_F1)
+    writer.sees(lambda: writer.front == page_table.MENU)
+    other = tmp_path / "other" / "first.nc"
+    other.parent.mkdir()
+    other.write_text(GOOD)
+    editor.proof.worker.give_up()
+    editor.open(other)
+    while editor.document is None:
+        editor.poll()
+    assert editor.proof.now.errors == 0  # before its own proof
+
+
 def test_the_program_on_the_desk_is_read_anew_when_its_text_has_changed(
     writer: Writer, tmp_path: Path
 ) -> None:
@@ -342,8 +393,8 @@ def test_the_program_on_the_desk_is_read_anew_when_its_text_has_changed(
     writer.key(Key.Key_F3)
     writer.sees(lambda: writer.front == page_table.EDITOR and writer.editor.editor.stage is Stage.OPEN)
     writer.write("(CHANGED)\n")
-    writer.key(Key.Key_F1)
-    writer.sees(lambda: writer.front == page_table.MENU)
+    writer.key(Key.Key_F3)
+    writer.sees(lambda: writer.front == page_table.AUTOMATIC)
     writer.sees(lambda: writer.desk.session.loads == before + 1)
     writer.sees(lambda: writer.desk.session.now.phase is Phase.READY)
 

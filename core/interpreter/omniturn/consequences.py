@@ -1,0 +1,45 @@
+"""Errors that only follow from a refused line, and are not reported.
+
+The control stops at the first error. The interpreter continues, so that one pass reports all independent
+errors. A refused line may have started the spindle or set the feed. Errors about what it may have set are
+reported once the line is corrected.
+"""
+
+from __future__ import annotations
+
+import re
+
+_SPINDLE = frozenset({"spindle-stopped", "speed-missing", "c-unlocked"})
+_FEED = frozenset({"feed-missing"})
+_PLACE = frozenset({
+    "arc-radius", "arc-no-radius", "arc-no-chord", "thread-side", "thread-length", "thread-angle",
+    "cycle-no-way", "cycle-start-near", "cycle-quadrant", "cycle-nothing", "cycle-depth",
+})  # fmt: skip
+_SETS = (
+    (re.compile(r"M0*[34](?![0-9])|M[O0]*[34]|S[0-9.]|M19|M89|G9[67]"), _SPINDLE),
+    (re.compile(r"F[-+0-9.O]|G9[45]"), _FEED),
+    (re.compile(r"T[0-9O]"), frozenset({"tool-first-move", "no-tool"})),
+    (re.compile(r"G7[0-3]|G9[01O2]|[XZ]"), _PLACE),
+    (re.compile(r"G0*[23](?![0-9])"), frozenset({"corner-without-move"})),
+    (re.compile(r"G35"), frozenset({"thread-lead-range", "coarse-order"})),
+    (re.compile(r"M1[23]"), frozenset({"collet-open"})),
+)
+"""Words of a refused line, and the errors of later lines that may follow from it."""
+
+
+class Consequences:
+    """The errors that may follow from the lines refused so far."""
+
+    def __init__(self) -> None:
+        self._uncertain: set[str] = set()
+
+    def note(self, text: str, *, place_known: bool) -> None:
+        """Note a refused line; ``place_known``: the axes are where it would have left them."""
+        code = text.upper()
+        for words, codes in _SETS:
+            if words.search(code) and not (place_known and codes is _PLACE):
+                self._uncertain |= codes
+
+    def includes(self, code: str) -> bool:
+        """Return whether an error may only be a consequence of a refused line."""
+        return code in self._uncertain

@@ -1,0 +1,166 @@
+"""Lines that mean something to another control, and the OmniTurn code that their author meant.
+
+Each pattern matches the code of a line: upper case, without blanks and comments. A line that matches gets one
+error. Its other words are not examined, because they belong to the other control too.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from typing import NamedTuple
+
+from core.language.omniturn import other_controls
+
+_NUMBER = r"([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+))"
+
+
+class Intent(NamedTuple):
+    """The mistake in a line: index of its first character, diagnostic code, message and remedy."""
+
+    at: int
+    code: str
+    message: str
+    hint: str
+
+
+class _Pattern(NamedTuple):
+    """A form of another control. The message and the remedy may depend on what matched."""
+
+    form: re.Pattern[str]
+    message: str
+    hint: Callable[[re.Match[str]], str]
+
+
+def _always(hint: str) -> Callable[[re.Match[str]], str]:
+    return lambda _: hint
+
+
+def _dwell(match: re.Match[str]) -> str:
+    """P counts milliseconds, X and U count seconds."""
+    seconds = float(match[2]) / (1000.0 if match[1] == "P" and "." not in match[2] else 1.0)
+    return f"Write G04F{_plain(seconds)}."
+
+
+def _plain(value: float) -> str:
+    """A number as a program has it: no zero before the point, none at the end."""
+    text = f"{value:.4f}".rstrip("0").rstrip(".")
+    return text[1:] if text.startswith("0.") else text
+
+
+def _decimal(match: re.Match[str]) -> str:
+    letter, value = match.string[match.start() - 1], int(match[1]) / max(int(match[2]), 1)
+    return f"Write {letter}{_plain(value)}."
+
+
+_ROUGHING = "Write G75InUnFn, then the contour and RF."
+_THREAD = "Write G33XnZnInKn."
+_PATTERNS = (
+    _Pattern(
+        re.compile(r"^(?=O(?:<|[0-9]+(?:SUB|CALL|IF|WHILE|REPEAT|ENDSUB|ENDIF|ENDWHILE|ENDREPEAT|RETURN)))"),
+        "O words of LinuxCNC are not read; a subroutine is }n … M99 here, and its call M98Pn.",
+        _always("Write }n, M99 and M98Pn."),
+    ),
+    _Pattern(
+        re.compile(r"^(?=#<)"),
+        "Variables are not read.",
+        _always("Write the number where it is used."),
+    ),
+    _Pattern(
+        re.compile(r"(?=G[78](?![0-9]))"),
+        "G7 and G8 of LinuxCNC are G72 (diameters) and G73 (radii) here.",
+        lambda match: f"Write {'G72' if match.string[match.end() + 1] == '7' else 'G73'}.",
+    ),
+    _Pattern(
+        re.compile(rf"(?<=G04)([PXU]){_NUMBER}"),
+        "G04 takes seconds as F.",
+        _dwell,
+    ),
+    _Pattern(
+        re.compile(r"(?<=G70)(?=.*[PQ])"),
+        "G70 selects inch here; finishing a contour is the last pass of G75.",
+        _always("Delete the line: G75 ends with a pass along the contour."),
+    ),
+    _Pattern(
+        re.compile(r"(?<=G71)(?=.*[UWPQ])"),
+        "G71 selects metric here; roughing to a contour is G75.",
+        _always(_ROUGHING),
+    ),
+    _Pattern(
+        re.compile(r"(?<=G72)(?=.*[UWPQ])"),
+        "G72 selects diameters here; roughing to a contour is G75.",
+        _always(_ROUGHING),
+    ),
+    _Pattern(
+        re.compile(r"(?<=G73)(?=.*[UWPQ])"),
+        "G73 selects radii here; roughing to a contour is G75.",
+        _always(_ROUGHING),
+    ),
+    _Pattern(
+        re.compile(r"(?<=G74)(?=.*[PQRW])"),
+        "G74 roughs a box here; peck drilling is G83.",
+        _always("Write G83ZnKnFn."),
+    ),
+    _Pattern(
+        re.compile(r"(?<=G75)(?=.*[QRW])"),
+        "G75 roughs a contour here; it does not cut grooves in pecks.",
+        _always("Write the moves of the groove, or G74."),
+    ),
+    _Pattern(
+        re.compile(r"(?<=G76)(?=.*[PQRXZ])"),
+        "G76 is the minimum rpm for constant surface speed here; threads are G33.",
+        _always(_THREAD),
+    ),
+    _Pattern(
+        re.compile(rf"(?<=G8[13])[^Q]*Q{_NUMBER}"),
+        "The peck depth is K here.",
+        lambda match: f"Write K{match[1]} in G83.",
+    ),
+    _Pattern(
+        re.compile(r"(?<=G92)(?=S[0-9.]+$)"),
+        "G92 presets the position here; the maximum rpm for constant surface speed is G77.",
+        lambda match: f"Write G77{match.string[match.end() :]}.",
+    ),
+    _Pattern(
+        re.compile(r"(?<=M98)P[0-9]+L([0-9]+)"),
+        "M98 has no repeat count.",
+        lambda match: f"Put LS{match[1]} before the call and LF after it.",
+    ),
+    _Pattern(
+        re.compile(r"(?<=[XZIKRFU])([0-9]+)/([0-9]+)(?![0-9])"),
+        "Fractions are not read.",
+        _decimal,
+    ),
+)
+
+
+def intent_of(code: str) -> Intent | None:
+    """Return what the author of a line for another control meant; None for any other line."""
+    for form, message, hint in _PATTERNS:
+        match = form.search(code)
+        if match is not None:
+            return Intent(_start(code, match), "other-control", message, hint(match))
+    for found in _CODE.finditer(code):
+        habit = other_controls.meaning_here(found[0])
+        if habit is not None:
+            message = f"{found[0]} is no code of this control. {habit[0]}"
+            return Intent(found.start(), "g-unknown", message, habit[1])
+    return None
+
+
+def _start(code: str, match: re.Match[str]) -> int:
+    """Index of the code or the letter that a pattern looks behind."""
+    if match.start() == 0 or code[match.start()] in _WORDS_OF_THEIR_OWN:
+        return match.start()
+    return match.start() - (3 if _AFTER_CODE.search(code[: match.start()]) else 1)
+
+
+_CODE = re.compile(r"G[0-9]{2}(?![0-9.])")
+_WORDS_OF_THEIR_OWN = "GO#"
+_AFTER_CODE = re.compile(r"[GM][0-9]{2}$")
+_LETTER_L = re.compile(r"(?<=[A-Za-z0-9.+-])l(?=[0-9.A-Za-z]|\s|$)")
+
+
+def with_digit_one(code: str) -> str:
+    """Return a line with 1 for each letter l that is part of a number; the line itself without any."""
+    return _LETTER_L.sub("1", code)

@@ -1,0 +1,126 @@
+"""Closing: the machine first; no step that raises or hangs keeps another from its end."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+
+import pytest
+
+from app.compose.screen_desk import build_desk
+from app.desk.desk import Desk
+from core.closing import ClosingStep
+from core.executor.commands import EnableDrives
+from core.executor.snapshot import State
+from tests.screen.desks import desk_on
+from tests.screen.fake import FakeMachine
+
+MACHINE = ("executor", "drivers")
+STEPS = (*MACHINE, "loading", "levels", "Part", "broker", "backup", "store", "log")
+LONG = 60.0  # s that a test waits for what has to come
+
+
+class Closings:
+    """Notes which steps were carried out. One of them raises or hangs, and is not waited for."""
+
+    def __init__(self, bad: str, how: str) -> None:
+        self._bad, self._how = bad, how
+        self._lock = threading.Lock()
+        self._hangs = threading.Event()
+        self.ran: list[str] = []
+        self.release = threading.Event()
+
+    def run(self, name: str) -> None:
+        """Carry out a step."""
+        with self._lock:
+            self.ran.append(name)
+        if name == self._bad and self._how == "raises":
+            raise OSError("the network folder is away")
+        if name == self._bad:
+            self._hangs.set()
+            self.release.wait()
+
+    def wait(self, name: str, ended: threading.Event, _seconds: float) -> bool:
+        """A step that hangs has used up its time; the others end."""
+        if name == self._bad and self._how == "hangs":
+            return not self._hangs.wait(LONG)
+        return ended.wait(LONG)
+
+
+class Part:
+    """The model of a page."""
+
+    def __init__(self, closed: Callable[[], None]) -> None:
+        self._closed = closed
+
+    def close(self) -> None:
+        self._closed()
+
+
+def desk_of(machine: FakeMachine, closings: Closings) -> Desk:
+    """A desk whose every step of closing is noted."""
+    desk = desk_on(machine)
+    step = partial(partial, closings.run)
+    desk.wait = closings.wait
+    desk.stops = [ClosingStep("executor", step("executor"))]
+    desk.shut = step("drivers")
+    desk.session = Part(step("loading"))  # type: ignore[assignment]
+    desk.access = Part(step("levels"))  # type: ignore[assignment]
+    desk.attach(Part(step("Part")))
+    desk.workers = [ClosingStep(name, step(name)) for name in ("broker", "backup")]
+    desk.ends = [ClosingStep(name, step(name)) for name in ("store", "log")]
+    return desk
+
+
+@pytest.mark.parametrize("how", ["raises", "hangs"])
+@pytest.mark.parametrize("bad", STEPS)
+def test_each_step_of_closing_is_carried_out_whatever_another_does(
+    machine: FakeMachine, bad: str, how: str
+) -> None:
+    closings = Closings(bad, how)
+    desk = desk_of(machine, closings)
+    desk.close()
+    closings.release.set()
+    assert tuple(closings.ran[:2]) == MACHINE
+    assert sorted(closings.ran) == sorted(STEPS)
+    assert tuple(closings.ran[-2:]) == ("store", "log")
+
+
+@pytest.fixture
+def machine() -> FakeMachine:
+    return FakeMachine()
+
+
+def test_a_load_that_hangs_does_not_keep_the_machine_running(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """The drives are off while the worker still waits for its dead network folder."""
+    monkeypatch.setenv("TURNDESK_HOME", str(tmp_path))
+    desk = build_desk()
+    reads, release, off = threading.Event(), threading.Event(), threading.Event()
+
+    def hang(_request: object) -> None:
+        reads.set()
+        release.wait()
+
+    desk.post(EnableDrives())
+    desk.session.worker.ask(hang, lambda _: None, lambda _: None)
+    assert reads.wait(LONG)
+    let_go = desk.shut
+
+    def shut() -> None:
+        let_go()
+        off.set()
+
+    desk.shut = shut
+    closing = threading.Thread(target=desk.close, daemon=True)
+    closing.start()
+    safe = off.wait(10.0)
+    state = desk.snapshot().state
+    release.set()
+    closing.join(LONG)
+    assert safe
+    assert state is State.DISABLED
+    assert not closing.is_alive()

@@ -1,0 +1,163 @@
+"""Round tools off the axis, holes that are missing, ends of the stock, holders behind a part-off."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from core.part.stock import Stock, bar, tube
+from core.part.tool_shape import Hand, ToolKind, ToolShape
+from tests.proving.test_edge_checks import part_of
+from tests.proving.test_part_proof import text
+
+INCH = 25.4
+ROD, PIPE = bar(25.4, 0.0, -76.2), tube(25.4, 12.0, 0.0, -76.2)
+TURNING = ToolShape(ToolKind.TURNING, tip=3, nose_radius=0.8, insert="CNMG120408")
+LEFT = ToolShape(ToolKind.TURNING, Hand.LEFT, tip=4, nose_radius=0.8, insert="CNMG120408")
+REAR = ToolShape(ToolKind.TURNING, tip=2, nose_radius=0.8, insert="CNMG120408", rear=True)
+BLADE = ToolShape(ToolKind.PARTING, tip=3, width=2.0, length=7.6)
+LONG_BLADE = ToolShape(ToolKind.PARTING, tip=3, width=2.0, length=15.0)
+FLAT = ToolShape(ToolKind.DRILL, diameter=6.35, point=180.0, length=40.0)
+POINTED = ToolShape(ToolKind.DRILL, diameter=6.35, point=118.0, length=90.0)
+TAP = ToolShape(ToolKind.TAP, diameter=6.35, pitch=1.27, length=25.0)
+BORER = ToolShape(ToolKind.BORING, tip=2, nose_radius=0.4, insert="DCMT070204", diameter=5.0, stick_out=40.0)
+SHAPES = {1: TURNING, 2: FLAT, 3: BLADE, 4: LEFT, 5: REAR, 6: TAP, 7: POINTED, 8: BORER, 9: LONG_BLADE}
+
+
+def found(program: str, stock: Stock = ROD, shapes: dict[int, ToolShape] = SHAPES) -> list[tuple[str, str]]:
+    """Return the check and the severity of each finding."""
+    return [(each.check, str(each.severity)) for each in part_of(program, stock, shapes).findings]
+
+
+def codes(program: str, stock: Stock = ROD) -> set[str]:
+    return {check for check, _ in found(program, stock)}
+
+
+HOLE = "T{t}\nX[0]Z[.1]\nG95F[.004]Z[{z}]\nG94F[300]Z[1]"
+
+
+def test_a_flat_drill_leaves_a_cylinder() -> None:
+    """.9 in deep: pi/4 x .25² x .9 = .04418 in³."""
+    part = part_of(text(HOLE.format(t=2, z="-.9")), ROD, SHAPES)
+    assert part.removed / INCH**3 == pytest.approx(math.pi / 4 * 0.25**2 * 0.9, rel=2e-3)
+
+
+def test_a_pointed_drill_leaves_a_cone_at_the_bottom() -> None:
+    """The cone of 118° is .125 / tan 59° = .0751 in high, and lacks two thirds of its cylinder."""
+    part = part_of(text(HOLE.format(t=7, z="-.9")), ROD, SHAPES)
+    solid = math.pi / 4 * 0.25**2 * (0.9 - 2 / 3 * 0.125 / math.tan(math.radians(59)))
+    assert part.removed / INCH**3 == pytest.approx(solid, rel=2e-3)
+
+
+def test_a_drill_beside_the_bar_meets_nothing() -> None:
+    assert (
+        codes(text("T2\nX[1.5]Z[1]\nZ[-.5]\nZ[1]\n" + HOLE.format(t=2, z="-.3").removeprefix("T2\n")))
+        == set()
+    )
+
+
+@pytest.mark.parametrize(("x", "expected"), [("0", False), (".005", False), (".02", True), ("-.02", True)])
+def test_a_drill_off_the_axis_is_an_error(x: str, expected: bool) -> None:
+    program = text(HOLE.format(t=2, z="-.3").replace("X[0]", f"X[{x}]"))
+    assert (("drill-off-axis", "error") in found(program)) is expected
+
+
+TAPPED = "T7\nX[0]Z[.1]\nG95F[.004]Z[{hole}]\nG94F[300]Z[1]\n"
+TAPPED += "T6\nX[0]Z[.1]\nM03S500\nG95F[.05]Z[{z}]\nM04\nZ[.1]\nM05"
+SMALL = {**SHAPES, 7: ToolShape(ToolKind.DRILL, diameter=5.1, point=118.0, length=40.0)}
+
+
+@pytest.mark.parametrize(
+    ("hole", "z", "expected"),
+    [("-.7", "-.4", False), ("-.01", "-.4", True), ("-.7", "-.9", True)],  # good, no hole, past its bottom
+)
+def test_a_tap_needs_a_hole_that_is_deep_enough(hole: str, z: str, expected: bool) -> None:
+    program = text(TAPPED.format(hole=hole, z=z))
+    assert (("tap-no-hole", "error") in found(program, ROD, SMALL)) is expected
+
+
+BORED = "T{t}\nX[.24]Z[.1]\nG95F[.004]Z[-.5]\nX[.2]\nG94F[300]Z[1]"
+
+
+def test_a_boring_bar_into_solid_material_is_an_error_whatever_the_bar() -> None:
+    solid = text(BORED.format(t=8))
+    assert ("no-bore", "error") in found(solid, ROD)
+    assert ("no-bore", "error") in found(solid.replace("T8\n", "T8(BORING BAR)\n"), ROD, {})
+    assert "no-bore" not in codes(solid, PIPE)
+    assert "no-bore" not in codes(text(HOLE.format(t=7, z="-.8") + "\n" + BORED.format(t=8)))
+
+
+TURNED = "T{t}\nX[.6]Z[.05]\nX[.45]\nG95F[.004]Z[{z}]\nX[.6]\nG94F[300]Z[1]"
+
+
+@pytest.mark.parametrize(("t", "z", "expected"), [(1, "-2.9", False), (1, "-3.05", False), (1, "-5.5", True)])
+def test_a_feed_beyond_the_end_of_the_stock_is_an_error(t: int, z: str, expected: bool) -> None:
+    stock = Stock("bar:1:3", ROD.outside)
+    assert (("past-stock", "error") in found(text(TURNED.format(t=t, z=z)), stock)) is expected
+
+
+def test_a_drill_may_come_out_of_the_end_of_the_stock() -> None:
+    stock = Stock("bar:1:3", ROD.outside)
+    assert "past-stock" not in codes(text(HOLE.format(t=7, z="-3.2")), stock)
+    assert "past-stock" in codes(text(HOLE.format(t=7, z="-3.5")), stock)
+
+
+@pytest.mark.parametrize(
+    ("t", "code", "expected"),
+    [(1, "M03", False), (1, "M04", True), (4, "M04", True), (4, "M03", False)],
+)
+def test_a_front_tool_that_is_mounted_upright_cuts_with_m03(t: int, code: str, expected: bool) -> None:
+    program = text("M05\n" + code + "S900\n" + TURNED.format(t=t, z="-.3"))
+    assert (("wrong-spindle-direction", "error") in found(program)) is expected
+
+
+PARTED = "T{t}\nX[.6]Z[-.8]\nG95F[.002]X[{x}]\nG94F[300]X[.6]"
+
+
+@pytest.mark.parametrize("x", ["0", "-.01", ".02"])
+def test_a_holder_that_the_blade_is_too_short_for_is_found_before_the_part_falls(x: str) -> None:
+    assert ("feed-into-holder", "error") in found(text(PARTED.format(t=3, x=x)))
+
+
+def test_a_blade_that_is_long_enough_parts_off_without_a_finding() -> None:
+    assert codes(text(PARTED.format(t=9, x="-.01"))) == set()
+
+
+SWAPPED = "T{t}\nX[.3]Z[.2]\nM03S600\nX[.212]\nG33X[.237]Z[-.5]I[.012]K[.05]P\nX[.3]"
+SOUND = "T{t}\nX[.3]Z[.2]\nM03S600\nX[.237]\nG33X[.212]Z[-.5]I[.012]K[.05]P\nX[.3]"
+
+
+def test_the_return_of_a_thread_pass_is_examined_but_for_the_way_out_of_the_groove() -> None:
+    """With start and end swapped each pass retracts towards the axis, and returns through the part."""
+    stock = bar(12.55, 0.0, -60.0)
+    v = {1: ToolShape(ToolKind.THREADING, tip=8, point=60.0)}
+    assert ("through-part", "error") in found(text(SWAPPED.format(t=1)), stock, v)
+    assert found(text(SOUND.format(t=1)), stock, v) == []
+    assert found(text(SOUND.format(t=1).replace("]P", "]")), stock, v) == []
+
+
+LOOP = "T1\nX[.6]Z[.1]\nX[.3]\nG95F[.004]Z[-.3]\nG03X[.45]Z[-.45]I[.3]K[-.45]\nX[.6]\nG94F[300]Z[1]"
+
+
+def test_an_arc_is_examined_piece_by_piece() -> None:
+    """The arc begins square to the axis, into .3 in of material; the back of a CNMG clears 5°."""
+    assert codes("G90G94F300G73\nM03S1500\n" + LOOP.replace("[", "").replace("]", "") + "\nM30\n") == {
+        "wrong-side"
+    }
+
+
+def test_what_rests_on_something_assumed_is_a_warning() -> None:
+    """A tip that is in the stated stock is an error whatever the tool."""
+    slip = text(TURNED.format(t=1, z="-.5").replace("G95F[.004]Z", "G00Z"))
+    assert ("rapid-into-stock", "error") in found(slip, ROD, {})
+    hit = "T1\nX[.6]Z[.05]\nX[.505]\nG00Z[-.5]\nX[.6]\nZ[1]"
+    assert all(severity != "error" for _, severity in found(text(hit), ROD, {}))
+
+
+def test_two_tools_with_one_offset_are_one_note_and_not_neighbours() -> None:
+    part = part_of(text(TURNED.format(t=1, z="-.5")), ROD, {1: TURNING, 4: LEFT})
+    assert {each.check for each in part.findings} == set()
+    gang = {1: (0.0, -25.4), 4: (0.0, -25.4)}
+    both = part_of(text(TURNED.format(t=1, z="-.5")), ROD, {1: TURNING, 4: LEFT}, gang=gang)
+    assert [(each.check, str(each.severity)) for each in both.findings] == [("tools-in-one-place", "note")]

@@ -1,0 +1,57 @@
+"""State, question and answer have separate places, and the prompt offers only what is accepted."""
+
+from __future__ import annotations
+
+from app.desk.prompt_line import CHOOSE_FILE, GIVE_UP, Sort
+from app.screen.page_table import menu_of
+from core.executor.commands import Reset
+from core.executor.snapshot import State
+from tests.screen.hands import Hands, Key
+from tests.screen.lathe import Operator
+
+
+def test_three_places_one_subject_each(hands: Hands) -> None:
+    hands.load("pin")
+    hands.sees_state(State.IDLE)
+    hands.desk.ask(GIVE_UP, lambda: None)
+    hands.desk.say("AN ANSWER")
+    hands.window.refresh()
+    line = hands.frame.prompt
+    assert (line.question, line.answer, line.asked) == (GIVE_UP, "AN ANSWER", "Y")
+    assert line.state not in {"", GIVE_UP, "AN ANSWER"}
+    assert line.sort is Sort.ANSWER
+
+
+def test_n_is_no_and_the_question_is_gone(hands: Hands) -> None:
+    done: list[str] = []
+    hands.desk.ask(GIVE_UP, lambda: done.append("yes"))
+    hands.window.refresh()
+    hands.key(Key.Key_N)
+    assert (hands.desk.asked, done) == ("", [])
+    assert not any(isinstance(each, Reset) for each in hands.machine.posted)
+
+
+def test_dropped_input_is_reported_whatever_is_pressed_next(hands: Hands) -> None:
+    hands.window.forgotten(0.6)
+    hands.key(Key.Key_S)
+    hands.key(Key.Key_O)
+    assert hands.frame.prompt.answer
+
+
+def test_the_question_for_a_file_offers_no_start(hands: Hands) -> None:
+    hands.key(Key.Key_F2)
+    assert hands.page.files.isVisible()
+    hands.window.refresh()
+    assert hands.frame.prompt.state == CHOOSE_FILE
+
+
+def test_no_page_offers_a_start_that_is_refused(operator: Operator) -> None:
+    desk, frame = operator.stage.desk, operator.window.frame
+    assert frame is not None
+    operator.stage.make_ready()
+    operator.window.refresh()
+    assert desk.start_words in frame.prompt.state
+    for entry in menu_of(desk.language):
+        if frame.go(entry.name):
+            operator.window.refresh()
+            assert desk.start_words not in frame.prompt.state or not desk.barred(), entry.name

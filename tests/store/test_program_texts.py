@@ -1,0 +1,116 @@
+"""Proof, counts and times belong to a text, whatever it is called."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from app.compose.journal import Journal
+from app.desk.program_folder import ProgramFolders
+from app.programs.program_rows import Program, list_programs
+from core.language.source import load_source
+from core.store import job_queue
+from core.store.store import Store
+
+GOOD, BAD = "G90G94\nX.5F10\nM30\n", "G90G94\nX1.5F10\nQ\nM30\n"
+
+
+def load(journal: Journal, path: Path) -> None:
+    """Load a file as a program to be run."""
+    journal.keep(load_source(path))
+
+
+def made(journal: Journal, path: Path, count: int, seconds: float) -> None:
+    """Load, prove and run it."""
+    load(journal, path)
+    journal.program_proved(path.name, "PROVED", seconds, load_source(path).text)
+    store = journal.opened()
+    for _ in range(count):
+        store.count_part(path.name)
+        store.cycle_finished(path.name, seconds).result(60)
+
+
+def listed(journal: Journal, folder: Path) -> dict[str, Program]:
+    found = list_programs(ProgramFolders((folder,)), folder, journal)
+    return {program.name: program for program in found}
+
+
+@pytest.fixture
+def own(tmp_path: Path) -> Path:
+    folder = tmp_path / "programs"
+    folder.mkdir()
+    return folder
+
+
+def test_another_text_under_the_same_name_has_no_proof_count_or_time(own: Path, tmp_path: Path) -> None:
+    journal, path = Journal(tmp_path / "store"), own / "pin.nc"
+    path.write_text(GOOD)
+    made(journal, path, 3, 12.5)
+    run = listed(journal, own)["pin.nc"].run
+    assert (run.proof, run.parts, run.best) == ("PROVED", 3, 12.5)
+    path.write_text(BAD)
+    run = listed(journal, own)["pin.nc"].run
+    assert (run.proof, run.parts, run.best, run.started) == ("", 0, None, None)
+    assert journal.parts("pin.nc") == 3  # of the text that is still loaded
+    load(journal, path)
+    assert journal.parts("pin.nc") == 0
+    path.write_text(GOOD)  # the first text again
+    load(journal, path)
+    assert journal.parts("pin.nc") == 3
+    journal.close()
+
+
+def test_a_copy_and_a_renamed_program_retain_them(own: Path, tmp_path: Path) -> None:
+    journal, path = Journal(tmp_path / "store"), own / "pin.nc"
+    path.write_text(GOOD)
+    made(journal, path, 2, 9.0)
+    (own / "copy.nc").write_text(GOOD)
+    path.rename(own / "bolt.nc")
+    journal.renamed("pin.nc", "bolt.nc")
+    for program in listed(journal, own).values():
+        assert (program.run.proof, program.run.parts, program.run.best) == ("PROVED", 2, 9.0)
+    assert journal.parts("bolt.nc") == 2
+    load(journal, own / "copy.nc")
+    assert journal.parts("copy.nc") == 2
+    journal.close()
+
+
+def test_a_proof_of_another_text_is_not_that_of_the_loaded_one(own: Path, tmp_path: Path) -> None:
+    journal, path = Journal(tmp_path / "store"), own / "pin.nc"
+    path.write_text(GOOD)
+    made(journal, path, 1, 9.0)
+    journal.program_proved("pin.nc", "1 ERRORS: Q", None, BAD)
+    journal.opened().set_setting("done", 1).result(60)
+    assert listed(journal, own)["pin.nc"].run.proof == "PROVED"
+    path.write_text(BAD)
+    assert listed(journal, own)["pin.nc"].run.proof == "1 ERRORS: Q"
+    journal.close()
+
+
+def test_a_job_retains_its_parts_when_the_text_is_edited(tmp_path: Path) -> None:
+    with Store.open(tmp_path) as store:
+        store.keep_program("pin.nc", GOOD.encode(), "loaded to run").result(60)
+        job = store.write(lambda c: job_queue.add(c, "pin.nc", 10)).result(60)
+        store.write(lambda c: job_queue.begin(c, job)).result(60)
+        store.correct_parts("pin.nc", 4).result(60)
+        store.keep_program("pin.nc", BAD.encode(), "loaded to run").result(60)
+        assert store.parts("pin.nc") == 0
+        store.count_part("pin.nc").result(60)
+        (row,) = store.jobs()
+        assert (row.made, row.target) == (5, 6)
+
+
+def test_records_stored_by_name_go_to_the_text_that_was_proved(tmp_path: Path) -> None:
+    """A store of an older version, in which the name was the key."""
+    with Store.open(tmp_path) as store:
+        store.save_program("pin.nc", GOOD.encode(), "loaded to run").result(60)
+        store.count_part("pin.nc")
+        store.program_proved("pin.nc", "PROVED", 9.0).result(60)
+        assert [row.program for row in store.runs()] == ["pin.nc"]
+        store.save_program("pin.nc", BAD.encode(), "saved in the editor").result(60)
+        store.keep_program("pin.nc", BAD.encode(), "loaded to run").result(60)
+        assert store.parts("pin.nc") == 0
+        store.keep_program("pin.nc", GOOD.encode(), "loaded to run").result(60)
+        (row,) = store.runs()
+        assert (row.program, row.parts, row.proof) == ("pin.nc", 1, "PROVED")
