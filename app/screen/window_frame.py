@@ -16,7 +16,6 @@ from app.desk.first_job import CLOSE
 from app.desk.interrupted_notice import NoticeRow, may_go_on, notice_of
 from app.desk.machine_status import MachineStatus
 from app.desk.program_loading import Loaded
-from app.desk.prompt_line import Sort
 from app.desk.readouts import Lamp, drives_lamp
 from app.desk.translation import tr
 from app.desk.unheard_notice import unheard_notice
