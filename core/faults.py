@@ -44,6 +44,7 @@ FaultCode = Literal[
     "hal-bridge",
     "hal-silent",
     "hal-thread",
+    "hal-board",
     "controller-lost",
     "controller-silent",
     "controller-reset",

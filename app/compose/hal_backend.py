@@ -44,6 +44,7 @@ def hal_config(machine: Machine) -> HalConfig:
         ),
         machine_on=hal.machine_on,
         charge_pump=hal.charge_pump,
+        link_fault=hal.link_fault,
         outputs={
             name: HalOutput(out.terminal, out.safe, name in machine.lamps)
             for name, out in machine.outputs.items()

@@ -101,7 +101,7 @@ def hal_file(machine: Machine) -> HalFile:
 
 def _names(machine: Machine, hal: HalTable) -> Iterator[tuple[str, str]]:
     """Every pin or signal that the machine file names, by its key."""
-    yield from (("hal.machine_on", hal.machine_on), ("hal.charge_pump", hal.charge_pump))
+    yield from ((f"hal.{key}", getattr(hal, key)) for key in ("machine_on", "charge_pump", "link_fault"))
     for axis, pins in hal.axes.items():
         yield from ((f"hal.axes.{axis}.{key}", name) for key, name in asdict(pins).items())
     yield from ((f"hal.spindle.{key}", name) for key, name in asdict(hal.spindle).items())

@@ -152,7 +152,7 @@ class Desk:
     def __post_init__(self) -> None:
         self.log = AlarmLog(self.time_of_day)
         self.answers = PromptAnswers(self.snapshot, self._not_kept, self._now)
-        self.rebuilding = ProgramRenewal(self.session, self.say)
+        self.rebuilding = ProgramRenewal(self.session, self.warn)
         starting = self.answers.starting
         self.hands = StationHands(self.station, self.clock, self.say, self.clear, starting, self.barred)
         if self.one_hand:

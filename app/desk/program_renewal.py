@@ -143,7 +143,7 @@ class ProgramRenewal:
     """
 
     session: ProgramLoader
-    say: Callable[[str], None]
+    warn: Callable[[str], None]  # a worker ends at any moment: the next key must not remove what it says
     wanted: bool = False
     renewing: RunningRenewal = field(init=False)
     _changes: int = 0  # of the book, as far as they were seen
@@ -156,7 +156,7 @@ class ProgramRenewal:
         trouble, before = book.poll(), self._changes
         self._changes = book.changes
         if trouble:
-            self.say(f"REFUSED: {trouble}")
+            self.warn(f"REFUSED: {trouble}")
         changed, under_way = self._changes != before, snapshot.state in UNDER_WAY
         if changed and under_way:
             self.renewing.begin()
@@ -177,7 +177,7 @@ class ProgramRenewal:
         """While there is still time to take a change back."""
         why = self.renewing.trouble()
         if why and snapshot.state in UNDER_WAY:
-            self.say(tr("NO NEXT PART WITH THE CHANGED OFFSETS: {why}").format(why=why))
+            self.warn(tr("NO NEXT PART WITH THE CHANGED OFFSETS: {why}").format(why=why))
 
     def _outdated(self, snapshot: Snapshot) -> bool:
         """The job before has left another unit than this program was proved with, and it names none."""

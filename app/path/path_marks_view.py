@@ -21,7 +21,8 @@ from app.path.polyline import Polyline
 from app.screen.look import CENTRE, LEFT, RIGHT, Look, put
 from app.screen.panel import Press
 from app.screen.window_layout import FINGER
-from core.language.diagnostics import Diagnostic, Severity
+from core.language.diagnostics import Diagnostic
+from core.proving.part_checks import is_serious
 
 BUTTON = (6.6, 6.6, 0.4)  # units: width, height, between two of them; at least a fingertip
 
@@ -224,7 +225,7 @@ def errors_of(pane: Pane) -> list[Diagnostic]:
     """What is wrong with the part that a pane shows, by now."""
     shown = pane.player.played if pane.player is not None else None
     found = shown.instant.findings if shown is not None else ()
-    return [each for each in found if each.severity is Severity.ERROR]
+    return [each for each in found if is_serious(each)]
 
 
 def part_words(pane: Pane) -> str:

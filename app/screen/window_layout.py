@@ -59,6 +59,10 @@ class Places(NamedTuple):
     keys: Rect
 
 
+LOW = 700
+"""px: a lower window has smaller rows above and below its page, so that its targets fit a finger."""
+
+
 def unit(width: int, height: int) -> float:
     """Pixels of the one unit that every size is told in."""
     return min(width / ACROSS, height / DOWN)
@@ -68,7 +72,10 @@ def places(width: int, height: int, dock: bool) -> Places:
     """Divide a window of this size."""
     u = unit(width, height)
     gap = _gap(u)
-    title_h, strip_h, prompt_h, keys_h = (round(k * u) for k in (4.8, 6.0, 7.6, 6.6))
+    low = height < LOW
+    title_h, strip_h, prompt_h, keys_h = (
+        round(k * u) for k in (4.0 if low else 4.8, 6.0, 5.2 if low else 7.6, 6.6)
+    )
     strip_h, keys_h = max(strip_h, FINGER), max(keys_h, FINGER)
     top_h = round(27.2 * u)
     keys = Rect(gap, height - gap - keys_h, width - 2 * gap, keys_h)

@@ -14,7 +14,7 @@ from app.special.special_functions import FigureFunction
 from core.access.access_table import Act
 from core.executor.snapshot import Snapshot
 
-RESET = "PRESS Y TO PUT THE COUNT TO NOUGHT, N TO KEEP IT"
+RESET = "PRESS Y TO SET THE COUNT TO ZERO, N TO KEEP IT"
 NO_PROGRAM = "CHOOSE A PROGRAM FIRST: EVERY PROGRAM HAS ITS OWN COUNT"
 
 
@@ -104,7 +104,7 @@ class PartsCounterFunction(FigureFunction):
             made = self.counter.count
             self.entry.text = refused(self.entry.text)
             self.desk.say(
-                tr("REFUSED: {made} PARTS ARE MADE ALREADY; F4 PUTS THE COUNT TO NOUGHT").format(made=made)
+                tr("REFUSED: {made} PARTS ARE MADE ALREADY; F4 SETS THE COUNT TO ZERO").format(made=made)
             )
             return False
         self.desk.keep(lambda: self.counter.set_target(target))

@@ -8,7 +8,7 @@ from core.alarms.alarm_entry import Code, Entries, off, stop
 CUT_OFF: frozenset[Code] = frozenset(
     (
         *("bus", "feeder-gone", "feeder-silent", "controller-lost"),
-        *("hal-bridge", "hal-silent", "hal-thread", "hal-setup"),
+        *("hal-bridge", "hal-silent", "hal-thread", "hal-board", "hal-setup"),
     )
 )
 WIRES: Entries = {
@@ -135,6 +135,17 @@ WIRES: Entries = {
             "a board's driver waits for a board: its cable, its power",
         ),
         "PRESS E-STOP, the spindle may turn; look at the boards; Reset starts HAL anew. Home where asked",
+    ),
+    "hal-board": off(
+        535,
+        "connection to the I/O board lost",
+        (
+            "the network cable between the computer and the board is out or damaged",
+            "the board has no power, or its watchdog has switched it off",
+            "an EtherCAT slave is not operational, or the bus is still starting",
+            "the 7I76E has lost its field I/O",
+        ),
+        "PRESS E-STOP, the spindle may turn. Check cable and board power, then press Reset. Home where asked",
     ),
     "hal-setup": off(
         534,

@@ -198,7 +198,8 @@ def _renewed(file: FileReading) -> Iterator[Finding]:
 
 def _guard(file: FileReading) -> Iterator[Finding]:
     path = "interlocks.guard_stops"
-    if file.values.has(path) and file.values.flag(path) and "io.in.guard" not in file.terminals:
+    named = "io.in.guard" in file.terminals or "io.in.guard.at" in file.values.wrong
+    if file.values.has(path) and file.values.flag(path) and not named:
         yield Finding(
             path, "true", "needs the guard's switch as the input guard, on while it is closed", "broken-rule"
         )

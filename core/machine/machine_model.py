@@ -147,7 +147,7 @@ class Machine:
     corner_tolerance: float = 0.0  # mm by which joints of short chords may be moved; 0: by a count alone
     inch: bool = True  # what its builder counts in
     clamping: ClampingModel = field(default_factory=ClampingModel)
-    tooling: str = "single"  # "gang": all tools ride one slide; "turret"; one at a time
+    tooling: str = "single"  # "gang": all tools ride one slide; "single": one at a time
     silenced: tuple[str, ...] = ()  # checks of the part that count for nothing on this machine
     kind: str = "lathe"  # or "mill"
     language: str = "omniturn"  # in which MDI is typed: omniturn, sinumerik or klartext

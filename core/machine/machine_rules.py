@@ -177,6 +177,17 @@ def _rotary(axis: str) -> tuple[Rule, ...]:
 
 
 _QUEUE = "the queue would run dry"
+
+
+def _indexes(values: Values) -> str:
+    """A turret would have to be indexed with every T; no driver does, and T2 would cut with another tool."""
+    if values.text("tooling.kind") != "turret":
+        return ""
+    return (
+        '"turret": TurnDesk does not index turrets yet. Use "gang", or "single" with one tool in the machine'
+    )
+
+
 RULES = (
     *_slide("X"),
     *_slide("Y"),
@@ -192,5 +203,6 @@ RULES = (
     _below("machine.commit_ms", "machine.lease_ms", "a renewal would come too late", Unit.MILLISECONDS),
     Rule("spindle.timeout_s", ("spindle.rpm", "spindle.accel_rpm_s", "spindle.at_speed_s"), _timeout),
     Rule("spindle.stop_below", ("spindle.rpm",), _stop_below),
+    Rule("tooling.kind", (), _indexes),
     Rule("c_axis.feedback", ("axis.C.enabled",), _feedback),
 )

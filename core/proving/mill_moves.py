@@ -27,7 +27,8 @@ class MillMove(NamedTuple):
 
 def mill_move(block: Block, place: Place, shape: ToolShape) -> MillMove | None:
     """The block's path in the part's frame, to which ``place`` leads from X and Z; None without a move."""
-    quick = block.rapid or (not block.per_rev and block.feed >= QUICK)
+    turns_only = (block.x, block.z) == (block.x0, block.z0)  # its feed is in degrees
+    quick = block.rapid or (not block.per_rev and not turns_only and block.feed >= QUICK)
     dx, dz = place
     if block.plane is not None:
         lift = dz + block.modal.secondary_z

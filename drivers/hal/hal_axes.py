@@ -309,8 +309,12 @@ class HalAxes:
         self.homing = Homing(figures, index, self)
 
     def clear_fault(self) -> None:
-        """Forget the fault; the drives stay off. A bridge that is gone is started anew. DriverError."""
-        if self._link.told.get("stands") is True:
+        """Forget the fault; the drives stay off. Raises DriverError.
+
+        HAL is loaded again where its bridge is gone, its thread has stopped or its board is not reached:
+        hm2_eth returns to a card only then.
+        """
+        if self._link.told.get("stands") is True or self._link.is_stale:
             self._link.give_up()
         if self._link.lost:
             self._link.connect()

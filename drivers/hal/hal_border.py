@@ -169,7 +169,7 @@ def _chain(border: Border, config: HalConfig) -> None:
     border.wire("td-alive", "watchdog.ok-out")
     border.values.append(("watchdog.timeout-0", config.watchdog))
     _estop(border, config)
-    border.add("and2", "td.whole", in0="td-estop-ok", in1="td-alive", out="td-whole")
+    border.add("and2", "td.whole", in0=_reached(border, config), in1="td-alive", out="td-whole")
     pins: dict[str, str] = {"ok_in": "td-whole", "reset": "td-reset", "ok_out": "td-ok"}
     faults = [(axis.name, axis.pins.fault) for axis in config.driven if axis.pins and axis.pins.fault]
     for name, pin in faults:
@@ -204,6 +204,17 @@ def _estop(border: Border, config: HalConfig) -> None:
         border.add("and2", "td.estop", in0=raw, in1=raw, out="td-estop-ok")
     else:
         border.add("not", "td.estop", in_=raw, out="td-estop-ok")
+
+
+def _reached(border: Border, config: HalConfig) -> str:
+    """Return the signal of a released E-stop whose input is current: a frozen input is a pressed E-stop."""
+    if not config.link_fault:
+        return "td-estop-ok"
+    border.own("link-fault", BIT, "in", "td-link-fault")
+    border.reads("hal.link_fault", config.link_fault, BIT, "td-link-fault")
+    border.add("not", "td.linked", in_="td-link-fault", out="td-linked")
+    border.add("and2", "td.reached", in0="td-estop-ok", in1="td-linked", out="td-reached")
+    return "td-reached"
 
 
 def _any_of(border: Border, name: str, signals: list[str]) -> str:

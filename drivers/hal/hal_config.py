@@ -83,6 +83,7 @@ class HalConfig:
     spindle: HalSpindle
     machine_on: str = ""
     charge_pump: str = ""
+    link_fault: str = ""
     outputs: Mapping[str, HalOutput] = field(default_factory=dict)
     inputs: Mapping[str, HalInput] = field(default_factory=dict)
     pots: Mapping[str, HalPot] = field(default_factory=dict)

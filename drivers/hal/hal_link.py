@@ -16,6 +16,7 @@ from drivers.setpoint_pieces import Piece
 _SILENT = 0.15  # s without a report
 _AT_ONCE = 0.05  # s of silence that one look counts at most: who stood still himself blames nobody
 _SETTLES = 0.5  # s after which debounced inputs tell the truth
+_STARTS = 5.0  # s for the slaves of a bus to become operational after HAL was loaded
 _DOWN = 4.0  # s in which HAL is taken down, what it goes on behind a bridge that has died among them
 _LOOK = 0.002  # s between two looks while something is waited for
 
@@ -53,13 +54,18 @@ class HalLink:
             )
         self.close()
         self.lost, self.rows, self._reports = "", [], 0
-        self._link = self._open()
+        try:
+            self._link = self._open()
+        except DriverError as error:
+            self.lost = error.fault  # the next Reset tries again
+            raise
         self._looked, self._silent = self._clock.now(), 0.0
         if not self.wait(lambda: self._reports > 0, 3.0):
             raise DriverError(
                 "the bridge to HAL does not tell anything; start the control again", "hal-silent"
             )
         self.wait(lambda: False, _SETTLES)
+        self.wait(lambda: not self.is_stale, _STARTS)
 
     def _goes_down(self, link: BridgeLink) -> bool:
         """Whether HAL is down behind a bridge that has ended, or will be in a moment."""
@@ -105,8 +111,18 @@ class HalLink:
 
     @property
     def blind(self) -> bool:
-        """Whether nothing is known of the machine: no word of the bridge, or of HAL's thread to it."""
-        return bool(self.trouble) or self.told.get("stands") is True
+        """Whether nothing is known of the machine: no word of the bridge, of HAL's thread or of the board."""
+        return bool(self.trouble) or self.told.get("stands") is True or self.is_stale
+
+    @property
+    def is_stale(self) -> bool:
+        """Return whether HAL's inputs are not current because the board is not reached."""
+        return self.told.get("stale") is True
+
+    @property
+    def input_age(self) -> float:
+        """Return the age of the inputs in seconds; inf while the board is not reached."""
+        return float("inf") if self.is_stale else self.age
 
     @property
     def age(self) -> float:

@@ -50,6 +50,7 @@ _FIELDS = (
     Field("watchdog_ms", Kind.NUMBER, Unit.MILLISECONDS, 0.05, 1.0, default=0.25),
     Field("machine_on", Kind.TEXT, default=""),  # bit in: the drives have power
     Field("charge_pump", Kind.TEXT, default=""),  # bit in: changes every period while all is well
+    Field("link_fault", Kind.TEXT, default=""),  # bit out: on while the board's inputs are not current
 )
 
 
@@ -129,6 +130,7 @@ class HalTable:
     watchdog: float
     machine_on: str
     charge_pump: str
+    link_fault: str
     axes: Mapping[str, HalAxisPins]
     spindle: HalSpindlePins
 
@@ -150,6 +152,7 @@ def _rules(file: FileReading) -> Iterator[Finding]:
     yield from _names(file)
     if not file.values.says("machine.backend", "hal"):
         return
+    yield from _link(file)
     yield from _all_axes(file)
     yield from _turns(file)
     yield from _orients(file)
@@ -164,7 +167,7 @@ def _rules(file: FileReading) -> Iterator[Finding]:
 def _pins(file: FileReading) -> Iterator[tuple[str, str]]:
     """Every pin that the file names, by its path."""
     values = file.values
-    places = ["hal.machine_on", "hal.charge_pump"]
+    places = ["hal.machine_on", "hal.charge_pump", "hal.link_fault"]
     places += [f"{_AXES}.{axis}.{each.name}" for axis in file.names(_AXES) for each in fields(HalAxisPins)]
     places += [f"{_SPINDLE}.{each.name}" for each in fields(HalSpindlePins)]
     yield from ((path, values.text(path)) for path in places if values.has(path) and values.text(path))
@@ -191,6 +194,24 @@ def _names(file: FileReading) -> Iterator[Finding]:
             first = driven.setdefault(pin, path)
             if first != path:
                 yield Finding(path, written(pin), f"expected a pin of its own; {first} drives it")
+
+
+_OVER_A_CABLE = re.compile(r"(hm2_|lcec\.).*")
+
+
+def _link(file: FileReading) -> Iterator[Finding]:
+    """Require hal.link_fault where an input comes over a cable: such an input freezes with the cable out."""
+    if not file.values.has("hal.link_fault") or file.values.text("hal.link_fault"):
+        return
+    read = (pin for path, pin in _pins(file) if not _DRIVEN.fullmatch(path.removesuffix(".at")))
+    frozen = next((pin for pin in read if _OVER_A_CABLE.fullmatch(pin)), "")
+    board = any(file.values.says("board.kind", kind) for kind in _ON_A_CABLE)
+    if frozen or board:
+        why = f"{frozen or 'this board'} keeps its last value while the board's cable is out"
+        yield Finding("hal.link_fault", "", f'missing; {why}: expected "link-fault", or your pin for it')
+
+
+_ON_A_CABLE = ("mesa-7i76e", "mesa-7i97", "ethercat")
 
 
 def _all_axes(file: FileReading) -> Iterator[Finding]:

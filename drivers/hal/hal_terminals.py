@@ -135,7 +135,7 @@ class HalTerminals:
         self._written[name] = on, self._link.say("out", name=name, on=on)
 
     def snapshot(self) -> StationState:
-        """The operator station as its pins have it; its age is that of the bridge's last word."""
+        """The operator station as its pins have it; its age is that of the inputs."""
         pot = self._config.pots.get("spindle_pot")
         return station_of(
             self.inputs(),
@@ -143,7 +143,7 @@ class HalTerminals:
             spindle_pot=self._pot("spindle_pot"),
             feed_pot=self._pot("feed_pot"),
             handwheel=round(self._analog("handwheel", 0.0)),
-            age=self._link.age,
+            age=self._link.input_age,
             spindle_load=self._load(),
         )
 

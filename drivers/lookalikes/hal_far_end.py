@@ -25,6 +25,7 @@ from drivers.lookalikes.plant_hands import PlantHands
 _ROUND, _REPORT = 2, 4  # periods between two rounds of the bridge, between two reports
 _STATION = ("estop", "start", "hold", "spindle_auto")
 _HAIR = 1e-9
+_PACKET_ERRORS = 5  # of hm2_eth: 10 / 2, its packet-error-limit and -increment
 _INDEX = 0.3  # turns, where the spindle's index is
 
 
@@ -131,6 +132,8 @@ class HalFarEnd:
         self.killed = False  # the bridge's process is gone
         self.stopped = False  # it stands, and comes back
         self.stands = False  # the servo thread is gone
+        self.cable_out = False  # the board is not reached: its inputs keep their last value
+        self.errors = 0  # periods in a row without the board, as hm2_eth counts packet errors
         self.garbled = False  # what is told is no packet
         self.has_index = True  # phase Z of the spindle's encoder is wired
         self._orients = False
@@ -155,6 +158,9 @@ class HalFarEnd:
 
     def open(self) -> HalFarEnd:
         """Anew after its bridge was lost."""
+        if self.cable_out:
+            raise DriverError("HAL does not load: hm2_eth: the board does not respond", "hal-setup")
+        self.errors = 0
         if self.killed or self.bridge.gone:
             self.killed = False
             self.thread = HalThread(border_of(self.config))
@@ -193,9 +199,12 @@ class HalFarEnd:
     def _period(self, t: float) -> None:
         period = self.config.period
         if not self.stands:
-            self._read(t)
+            self._read_board(t)
             self.thread.run(period)
-        self._drive(t, period)
+        if not self.cable_out:
+            self._drive(t, period)
+        else:
+            self._coast(t, period)
         self._count += 1
         if self.killed or self.stopped:
             return
@@ -203,6 +212,26 @@ class HalFarEnd:
             self.bridge.round()
         if self._count % _REPORT == 0:
             self._outbox.append(self.bridge.report())
+
+    def _read_board(self, t: float) -> None:
+        """Play hm2_read: without packets it returns early, and says so after a few of them."""
+        if not self.cable_out:
+            self._read(t)
+            return
+        self.errors += 1
+        if self.errors >= _PACKET_ERRORS:  # io_error: the driver reads nothing any more until it is reloaded
+            self._set(self.config.link_fault, True)
+
+    def _coast(self, t: float, period: float) -> None:
+        """A board without its computer: its watchdog takes power, spindle and outputs."""
+        for axis in self.config.driven:
+            self.plant.servos[self.plant.names.index(axis.name)].roll(period)
+        if self._rpm:
+            self._rpm = 0.0
+            self.plant.spindle.order(t, 0.0)
+        for name, output in self.config.outputs.items():
+            if output.safe is not None and self.plant.terminals.outputs.get(name) is not output.safe:
+                self.plant.terminals.write(name, output.safe, t)
 
     def _set(self, pin: str, value: float) -> None:
         if pin:

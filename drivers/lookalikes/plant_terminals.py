@@ -9,6 +9,8 @@ from core.ports import PROBE, DriverError
 from drivers.lookalikes.plant_config import SimCollet, SimOutput
 from drivers.lookalikes.tool_setter import ToolSetter
 
+_GUARD = "guard"
+
 
 class Terminals:
     """The terminal board: outputs as last written, inputs as wired or as a test sets them."""
@@ -18,7 +20,7 @@ class Terminals:
     ) -> None:
         self._models = dict(outputs)
         self.outputs = {name: model.initial for name, model in outputs.items()}
-        self.inputs = dict.fromkeys(inputs, False)
+        self.inputs = {name: name == _GUARD for name in inputs}  # it begins with the guard closed
         self.sensor_stuck = False
         self.setter: ToolSetter | None = None
         self._collet = collet

@@ -860,6 +860,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>CONNECTION TO THE I/O BOARD LOST</source>
+      <translation>CONEXIÓN CON LA PLACA DE E/S PERDIDA</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>COOLANT: OFF</source>
       <translation>NO</translation>
     </message>
@@ -5526,7 +5531,7 @@
     <message>
       <location filename="app/desk/desk.py" />
       <source>LOOK: {what}; PAUSE HOLDS THE FEED</source>
-      <translation type="unfinished" />
+      <translation>MIRE: {what}; PAUSA RETIENE EL AVANCE</translation>
     </message>
     <message>
       <location filename="app/desk/desk.py" />
@@ -5611,7 +5616,7 @@
     <message>
       <location filename="app/desk/desk.py" />
       <source>THE MACHINE IS MOVING: PRESS PAUSE FOR FEED HOLD FIRST</source>
-      <translation type="unfinished" />
+      <translation>LA MÁQUINA SE MUEVE: PULSE PRIMERO PAUSA, RETENCIÓN DE AVANCE</translation>
     </message>
     <message>
       <location filename="app/desk/desk.py" />
@@ -5646,7 +5651,7 @@
     <message>
       <location filename="app/desk/first_job.py" />
       <source>F10, 7, RETURN SHOWS THIS CARD AGAIN</source>
-      <translation type="unfinished" />
+      <translation>F10, 7, RETURN MUESTRA ESTA TARJETA OTRA VEZ</translation>
     </message>
     <message>
       <location filename="app/desk/first_job.py" />
@@ -6216,7 +6221,7 @@
     <message>
       <location filename="app/desk/prompt_line.py" />
       <source>PRESS BOTH PALMS WITHIN HALF A SECOND; FOR ONE HAND: F10, 7, RETURN, PALM BUTTONS ON THE SCREEN</source>
-      <translation type="unfinished" />
+      <translation>PRESIONE LOS DOS PULSADORES EN MEDIO SEGUNDO; CON UNA MANO: F10, 7, RETURN, PULSADORES EN PANTALLA</translation>
     </message>
     <message>
       <location filename="app/desk/prompt_line.py" />
@@ -6656,7 +6661,7 @@
     <message>
       <location filename="app/desk/waiting.py" />
       <source>F10, 3, RETURN, F4 SWITCHES THE SIMULATED INPUTS</source>
-      <translation type="unfinished" />
+      <translation>F10, 3, RETURN, F4 CONMUTA LAS ENTRADAS SIMULADAS</translation>
     </message>
     <message>
       <location filename="app/desk/waiting.py" />
@@ -9176,7 +9181,7 @@
     <message>
       <location filename="app/offsets/offsets_view.py" />
       <source>VALUES ARE TYPED INTO THE TABLE: PRESS ESC TO SHOW IT</source>
-      <translation type="unfinished" />
+      <translation>LOS VALORES SE ESCRIBEN EN LA TABLA: PRESIONE ESC PARA MOSTRARLA</translation>
     </message>
     <message>
       <location filename="app/offsets/part_effect.py" />
@@ -10356,7 +10361,7 @@
     <message>
       <location filename="app/programs/program_list.py" />
       <source>TYPE A PART OF A NAME; F3 OPENS IT IN THE EDITOR; PAUSE HOLDS THE FEED; ESC FOR AUTOMATIC</source>
-      <translation type="unfinished" />
+      <translation>ESCRIBA PARTE DE UN NOMBRE; F3 LO ABRE EN EL EDITOR; PAUSA RETIENE EL AVANCE; ESC: AUTOMÁTICO</translation>
     </message>
     <message>
       <location filename="app/programs/program_list.py" />
@@ -12616,7 +12621,7 @@
     <message>
       <location filename="app/screen/main_window.py" />
       <source>NOT RESPONDING FOR {seconds} S: KEYS WERE DROPPED. WAIT A SECOND, THEN PRESS AGAIN</source>
-      <translation type="unfinished" />
+      <translation>SIN RESPUESTA {seconds} S: SE DESCARTARON TECLAS. ESPERE UN SEGUNDO Y PRESIONE DE NUEVO</translation>
     </message>
     <message>
       <location filename="app/screen/main_window.py" />
@@ -12631,7 +12636,7 @@
     <message>
       <location filename="app/screen/main_window.py" />
       <source>{key} IS A KEY OF THE AUTOMATIC PAGE: PRESS F1, THEN F2</source>
-      <translation type="unfinished" />
+      <translation>{key} ES UNA TECLA DE LA PÁGINA AUTOMÁTICO: PRESIONE F1, LUEGO F2</translation>
     </message>
     <message>
       <location filename="app/screen/page_table.py" />
@@ -14600,7 +14605,7 @@
     </message>
     <message>
       <location filename="app/special/parts_counter.py" />
-      <source>PRESS Y TO PUT THE COUNT TO NOUGHT, N TO KEEP IT</source>
+      <source>PRESS Y TO SET THE COUNT TO ZERO, N TO KEEP IT</source>
       <translation>PULSE Y PARA PONER LA CUENTA EN CERO, N PARA CONSERVARLA</translation>
     </message>
     <message>
@@ -14610,7 +14615,7 @@
     </message>
     <message>
       <location filename="app/special/parts_counter.py" />
-      <source>REFUSED: {made} PARTS ARE MADE ALREADY; F4 PUTS THE COUNT TO NOUGHT</source>
+      <source>REFUSED: {made} PARTS ARE MADE ALREADY; F4 SETS THE COUNT TO ZERO</source>
       <translation>RECHAZADO: YA SE HICIERON {made} PIEZAS; F4 PONE LA CUENTA EN CERO</translation>
     </message>
     <message>
@@ -15036,7 +15041,7 @@
     <message>
       <location filename="app/special/special_functions.py" />
       <source>A FINGER OPENS A FUNCTION; ARROWS OR ITS NUMBER CHOOSE, RETURN OPENS IT; ESC FOR AUTOMATIC</source>
-      <translation type="unfinished" />
+      <translation>UN TOQUE ABRE UNA FUNCIÓN; LAS FLECHAS O SU NÚMERO LA ELIGEN, RETURN LA ABRE; ESC: AUTOMÁTICO</translation>
     </message>
     <message>
       <location filename="app/special/special_functions.py" />
@@ -15046,7 +15051,7 @@
     <message>
       <location filename="app/special/special_functions.py" />
       <source>FUNCTION {number} DOES NOT EXIST: TYPE 1 TO {last}</source>
-      <translation type="unfinished" />
+      <translation>LA FUNCIÓN {number} NO EXISTE: ESCRIBA DE 1 A {last}</translation>
     </message>
     <message>
       <location filename="app/special/spindle_limit.py" />
@@ -15905,6 +15910,11 @@
     </message>
     <message>
       <location filename="core/alarms/bus_alarms.py" />
+      <source>PRESS E-STOP, the spindle may turn. Check cable and board power, then press Reset. Home where asked</source>
+      <translation>PULSE E-STOP, el husillo puede girar. Revise el cable y la alimentación de la placa y pulse Reset. Haga la referencia donde se pida</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
       <source>PRESS E-STOP, the spindle may turn; check cable and power, Reset connects again. Home where asked</source>
       <translation>PULSE PARO DE EMERGENCIA, el husillo puede girar; revise cable y corriente, Reset conecta de nuevo. Referencie donde se pida</translation>
     </message>
@@ -15970,6 +15980,11 @@
     </message>
     <message>
       <location filename="core/alarms/bus_alarms.py" />
+      <source>an EtherCAT slave is not operational, or the bus is still starting</source>
+      <translation>un esclavo EtherCAT no está operativo, o el bus aún está arrancando</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
       <source>an I/O module does not answer</source>
       <translation>un módulo de E/S no responde</translation>
     </message>
@@ -16002,6 +16017,11 @@
       <location filename="core/alarms/bus_alarms.py" />
       <source>check the output in the machine file, Reset</source>
       <translation>revise la salida en el archivo de máquina, Reset</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
+      <source>connection to the I/O board lost</source>
+      <translation>conexión con la placa de E/S perdida</translation>
     </message>
     <message>
       <location filename="core/alarms/bus_alarms.py" />
@@ -16090,6 +16110,11 @@
     </message>
     <message>
       <location filename="core/alarms/bus_alarms.py" />
+      <source>the 7I76E has lost its field I/O</source>
+      <translation>la 7I76E ha perdido sus E/S de campo</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
       <source>the CAN cable is off, or a terminator is missing</source>
       <translation>el cable CAN está suelto, o falta un terminador</translation>
     </message>
@@ -16097,6 +16122,11 @@
       <location filename="core/alarms/bus_alarms.py" />
       <source>the CAN interface was unplugged</source>
       <translation>se desconectó la interfaz CAN</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
+      <source>the board has no power, or its watchdog has switched it off</source>
+      <translation>la placa no tiene alimentación, o su watchdog la ha desconectado</translation>
     </message>
     <message>
       <location filename="core/alarms/bus_alarms.py" />
@@ -16202,6 +16232,11 @@
       <location filename="core/alarms/bus_alarms.py" />
       <source>the machine file does not name it, or the controller does not have it</source>
       <translation>el archivo de máquina no la nombra, o el controlador no la tiene</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
+      <source>the network cable between the computer and the board is out or damaged</source>
+      <translation>el cable de red entre el ordenador y la placa está desconectado o dañado</translation>
     </message>
     <message>
       <location filename="core/alarms/bus_alarms.py" />

@@ -17,6 +17,7 @@ SHORT = {"thread-retract-through-bar": "bar:0.494:3.0"}
 STOCK = "bar:1.0:3.0"
 
 ERRORS = {
+    "bore-without-drill": [(5, "drill-off-axis"), (6, "drill-off-axis")],
     "arc-wrong-way": [], "behind-the-bar": [(7, "past-stock")], "dwell-4000": [],
     "fanuc-g71": [(5, "other-control")], "fanuc-g92-thread": [], "flat-drill": [], "fresa": [],
     "g04-fanuc": [(4, "other-control"), (5, "other-control"), (6, "other-control")],

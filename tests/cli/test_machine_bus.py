@@ -37,7 +37,7 @@ def test_every_drive_and_input_of_a_bus_answers(capsys: Captured, tmp_path: Path
     assert ports["X"] == ("ok", "not homed, at 0 in")
     assert ports["spindle"] == ("ok", "0 rpm")
     assert ports["input collet_closed"][0] == "on"
-    assert ports["input guard"][0] == "off"
+    assert ports["input guard"][0] == "on"
 
 
 def test_a_bus_that_is_not_there_is_one_sentence(capsys: Captured, tmp_path: Path) -> None:

@@ -50,7 +50,7 @@ def test_an_unchanged_program_is_left_unchanged_and_without_a_version(
 ) -> None:
     path = own(editor, "part.nc")
     editor.leave(editor.text)
-    assert (editor.stage, left, memory.kept) == (Stage.CLOSED, [LeftProgram(path, False, False)], {})
+    assert (editor.stage, left, memory.kept) == (Stage.CLOSED, [LeftProgram(path, False, False, GOOD)], {})
 
 
 def test_leaving_saves_and_keeps_the_old_and_the_new(
@@ -59,7 +59,7 @@ def test_leaving_saves_and_keeps_the_old_and_the_new(
     path = own(editor, "part.nc")
     editor.leave(GOOD + "(END)\n")
     settle(editor)
-    assert left == [LeftProgram(path, True, False)]
+    assert left == [LeftProgram(path, True, False, GOOD + "(END)\n")]
     assert path.read_text() == GOOD + "(END)\n"
     assert len(memory.kept["part.nc"]) == 2
 
@@ -124,7 +124,7 @@ def test_a_sample_is_saved_under_a_free_name_only(editor: Editor, left: list[Lef
     assert not editor.take_name("a/b")
     assert editor.take_name("other")
     settle(editor)
-    assert left == [LeftProgram(editor.programs / "other.nc", True, False)]
+    assert left == [LeftProgram(editor.programs / "other.nc", True, False, GOOD + "(X)\n")]
     assert sample.read_text() == GOOD
 
 

@@ -259,6 +259,6 @@ def test_the_recorder_is_told_that_the_machine_rests() -> None:
     rig.executor._tell = lambda tick: told.append(tick.rests)
     rig.run(0.2)
     assert set(told) == {True}
-    rig.sim.machine.set_input("guard", True)
+    rig.sim.machine.set_input("guard", False)
     rig.tick()
     assert told[-1] is False

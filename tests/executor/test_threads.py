@@ -120,8 +120,10 @@ def test_a_gear_follows_a_fast_swing_and_coarse_leads(lead: float, rpm: int, per
     recorder = Recorder(rig, lead)
     coarse = "G35F2\nG92X.237Z.6\n" if lead > 0.2 else ""
     head = f"G90G94F300G73\nM03S{rpm}\nT4\nX.3Z.6\nX.237\n{coarse}"
+    first = min(0.025, lead)  # four passes: (depth / first + 1)² = 4
+    end_x = 0.237 - first
     end = -0.2 if lead * rpm < 60.0 else -1.2  # in: several swings of the speed, two at the least
-    rig.start(f"{head}G33X.212Z{end}I.025K{lead}P\nM30\n", TOOLS)
+    rig.start(f"{head}G33X{end_x:.4f}Z{end}I{first}K{lead}P\nM30\n", TOOLS)
     rig.until(State.IDLE, State.FAULT, limit=300)
     assert rig.shot.alarms == ()
     assert len(recorder.rows) == 4

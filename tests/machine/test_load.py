@@ -232,3 +232,10 @@ def test_a_key_with_a_line_end_stays_in_its_sentence() -> None:
         parse_machine('["a\\nb"]\nx = 1\n', "x.toml")
     assert "[a b]: unknown table" in str(told.value)
     assert "\n" not in str(told.value)
+
+
+def test_a_turret_is_refused_while_nothing_indexes_it() -> None:
+    text = resources.machine_file("gt75.toml").replace('kind = "gang" ', 'kind = "turret" ')
+    with pytest.raises(MachineFileError) as caught:
+        parse_machine(text, "gt75.toml")
+    assert [(each.path, each.code) for each in caught.value.errors] == [("tooling.kind", "broken-rule")]

@@ -123,8 +123,11 @@ def test_a_correction_that_cannot_be_run_stops_at_the_end_of_the_part(day: Day) 
     day.key(Key.Key_C)
     day.palms()
     day.until(lambda: made(day) == "1")
-    correct(day, "-9")
+    day.key(Key.Key_F9)
+    day.enter("1", "-9", "", "")
     day.sees(lambda: begins(day.prompt, "screen.no-next-part"))
+    day.key(Key.Key_Escape)  # pressed as the proof ends: it must not remove what nobody has read
+    assert begins(day.prompt, "screen.no-next-part")
     day.reaches(State.IDLE)
     day.sees(lambda: shows(day.prompt, "screen.will-not-run") or shows(day.prompt, "screen.no-repeat"))
     assert day.count("part") == 2

@@ -22,6 +22,7 @@ from app.screen import page_table
 from app.screen.window_layout import FINGER
 from core.executor.commands import FeedHold, LoadJob
 from core.executor.snapshot import State
+from core.language.source import load_source
 from tests.attached import attached
 from tests.screen.desks import SAMPLES, desk_on
 from tests.screen.fake import FakeMachine
@@ -127,19 +128,20 @@ def test_the_name_of_a_copy_is_typed_in_a_cycle(shop: Shop) -> None:
     shop.machine.now = replace(shop.machine.now, state=State.RUN)
     shop.key(Key.Key_F4)
     shop.type("c")
-    assert shop.programs.model.entry.text == "alphac"
+    assert shop.programs.model.entry.text == "c"  # it takes the place of the name that is offered
     assert not shop.machine.now.cycle_repeat
 
 
 def test_it_is_sorted_by_name_date_run_parts_and_size(shop: Shop) -> None:
     assert shop.journal is not None
-    shop.journal.run_started("pin.nc")
+    shop.journal.keep(load_source(SAMPLES / "knob.nc"))
+    shop.journal.run_started("knob.nc")
     shop.sees(lambda: shop.journal is not None and bool(shop.journal.runs()))
     shop.open_list()
     assert shop.rows() == sorted(shop.rows())
     shop.key(Key.Key_F2)
     shop.key(Key.Key_F2)
-    shop.sees(lambda: shop.rows()[0] == "pin.nc")
+    shop.sees(lambda: shop.rows()[0] == "knob.nc")
     assert shop.programs.table.sheet.title.endswith("BY LAST RUN")
     shop.key(Key.Key_F2)
     shop.key(Key.Key_F2)
@@ -161,7 +163,8 @@ def test_a_copy_gets_a_name_and_the_ending(shop: Shop) -> None:
 def test_what_is_typed_goes_before_the_ending(shop: Shop) -> None:
     shop.open_list()
     shop.key(Key.Key_F4)
-    shop.type("2")
+    shop.key(Key.Key_Backspace)
+    shop.type("a2")
     shop.key(Key.Key_Return)
     shop.sees(lambda: "alpha2.nc" in shop.rows())
 

@@ -55,6 +55,7 @@ def section(day: Day, number: str) -> None:
     day.type("w")
     day.sees(lambda: day.page == page_table.MEASURED)
     day.type(number)
+    day.key(Key.Key_Return)
     day.run(0.05)
 
 

@@ -63,7 +63,7 @@ def test_a_bar_is_said_by_fingers(day: Day) -> None:
         QTest.mouseClick(shown.pad, Qt.MouseButton.LeftButton, pos=box.center().toPoint())
     day.sees(lambda: shown.model.kept.stock == "bar:1")
     day.sees(lambda: not day.desk.session.now.busy)
-    assert day.desk.session.now.diagnostics[-1].assumed == ("T1",)
+    assert day.desk.session.now.diagnostics[-1].assumed == ()
 
 
 def test_letters_are_a_reason_while_one_is_asked(day: Day) -> None:

@@ -160,9 +160,9 @@ def test_a_change_to_the_program_on_the_desk_is_said_once(day: Day, sharing: Sha
     heard.hear(sharing.now)  # on the sharing thread: a question is not spoilt in the middle of being asked
     assert day.desk.notice == "PRESS Y TO DELETE IT"
     day.desk.look()
-    assert (day.desk.notice, day.desk.asked) == (
+    assert (day.desk.answers.answer, day.desk.answers.question) == (
         wording("screen.changed-elsewhere", name="peg.nc", desk="LATHE 2"),
-        "",
+        "PRESS Y TO DELETE IT",
     )
     day.desk.clear()
     heard.hear(sharing.now)

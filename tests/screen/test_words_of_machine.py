@@ -54,7 +54,7 @@ def test_the_spindle_is_told_as_the_language_writes_it(language: str, words: tup
 @pytest.mark.parametrize(
     ("name", "switched", "asked"),
     [
-        ("gt75", {"coolant": "M08 M09", "collet": "M12 M13"}, {"TB2-5": "M91 M92", "guard": ""}),
+        ("gt75", {"coolant": "M08 M09", "collet": "M12 M13"}, {"TB2-5": "M91 M92", "guard": "GUARD"}),
         ("sinumerik-live", {"coolant": "M8 M9", "collet": ""}, {"guard": ""}),
         ("ac-table-mill", {"coolant": "M8 M9"}, {}),
     ],

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import count
 from pathlib import Path
 
 import pytest
@@ -10,7 +11,8 @@ from app.compose.journal import Journal
 from app.desk.program_folder import ProgramFolders
 from app.programs.program_rows import Program, list_programs
 from core.language.source import load_source
-from core.store import job_queue
+from core.store import job_queue, program_records
+from core.store import store as store_module
 from core.store.store import Store
 
 GOOD, BAD = "G90G94\nX.5F10\nM30\n", "G90G94\nX1.5F10\nQ\nM30\n"
@@ -21,12 +23,12 @@ def load(journal: Journal, path: Path) -> None:
     journal.keep(load_source(path))
 
 
-def made(journal: Journal, path: Path, count: int, seconds: float) -> None:
+def made(journal: Journal, path: Path, parts: int, seconds: float) -> None:
     """Load, prove and run it."""
     load(journal, path)
     journal.program_proved(path.name, "PROVED", seconds, load_source(path).text)
     store = journal.opened()
-    for _ in range(count):
+    for _ in range(parts):
         store.count_part(path.name)
         store.cycle_finished(path.name, seconds).result(60)
 
@@ -101,8 +103,17 @@ def test_a_job_retains_its_parts_when_the_text_is_edited(tmp_path: Path) -> None
         assert (row.made, row.target) == (5, 6)
 
 
-def test_records_stored_by_name_go_to_the_text_that_was_proved(tmp_path: Path) -> None:
+def test_records_stored_by_name_go_to_the_text_that_was_proved(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """A store of an older version, in which the name was the key."""
+    ticks = count(1)  # each reading of the clock a minute later: nothing is saved and proved at one moment
+
+    def later() -> str:
+        return f"2026-01-01T00:{next(ticks):02d}:00.000Z"
+
+    for module in (program_records, store_module):
+        monkeypatch.setattr(module, "utc_now", later)
     with Store.open(tmp_path) as store:
         store.save_program("pin.nc", GOOD.encode(), "loaded to run").result(60)
         store.count_part("pin.nc")

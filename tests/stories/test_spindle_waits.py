@@ -86,11 +86,9 @@ def test_a_computer_that_was_away_in_a_cut_holds_and_the_palms_go_on(story: Stor
     operator.reaches("FEED HOLD")
 
 
-GUARDED = {"[interlocks]": "[interlocks]\nguard_stops = true"}
-
-
 def test_an_opened_guard_holds_and_closing_it_waits_for_the_palms(story: Story) -> None:
-    operator = story.begins(CUT, tools=TOOLS, changes=GUARDED)
+    operator = story.begins(CUT, tools=TOOLS)
+    operator.ask("break", name="set_input", values=["guard", False])
     operator.drives_on()
     operator.cycle_start()
     operator.until(lambda: "guard" in operator.machine["refused"], "refused with its reason")

@@ -31,6 +31,7 @@ def ethercat_lathe(lathe: Lathe) -> HalFile:
     if _turned(lathe):
         drives.append("spindle")
     _load(file, drives)
+    file.link("nand", *_healthy(lathe, drives))
     for axis in lathe.driven:
         _axis(file, axis)
     file.section("Power of the drives")
@@ -44,6 +45,19 @@ def ethercat_lathe(lathe: Lathe) -> HalFile:
 
 def _turned(lathe: Lathe) -> bool:
     return lathe.board.spindle.channel >= 0
+
+
+def _healthy(lathe: Lathe, drives: list[str]) -> tuple[str, ...]:
+    """Return the pins that are on while the bus and each of its slaves exchange data.
+
+    ``all-op`` only counts slaves that respond, so each slave's ``slave-oper`` is watched too.
+    """
+    slaves = [*drives, *(("DI", "DO") if _has_terminals(lathe) else ())]
+    return "lcec.0.link-up", "lcec.0.all-op", *(f"lcec.0.{name}.slave-oper" for name in slaves)
+
+
+def _has_terminals(lathe: Lathe) -> bool:
+    return any(_IO.fullmatch(name) for name in lathe.names.values())
 
 
 def _load(file: HalFile, drives: list[str]) -> None:
@@ -137,7 +151,7 @@ def bus_xml(lathe: Lathe) -> str:
     for place, vendor, product, name in sorted(drives):
         lines += _slave(place, vendor, product, name)
     behind = 1 + max(place for place, *_ in drives)
-    if any(_IO.fullmatch(name) for name in lathe.names.values()):
+    if _has_terminals(lathe):
         lines += [
             f'    <slave idx="{behind}" type="EK1100" name="coupler"/>',
             f'    <slave idx="{behind + 1}" type="EL1008" name="DI"/>',

@@ -87,7 +87,7 @@ class Section(NamedTuple):
 
 
 _READS = re.compile(
-    r"io\.in\..*|io\.analog\..*|hal\.axes\.\w+\.(feedback|fault|home|limit_low|limit_high|index_enable)"
+    r"hal\.link_fault|io\.in\..*|io\.analog\..*|hal\.axes\.\w+\.(feedback|fault|home|limit_low|limit_high|index_enable)"
     r"|hal\.spindle\.(position|velocity|at_speed|fault|load|in_position_mode|index_enable)"
 )
 
@@ -208,6 +208,22 @@ class HalFile:
             self.net("machine-on", *pins)
         else:
             self.role("hal.machine_on", "machine-on", *pins, needed=True)
+
+    def link(self, gate: str, *pins: str, further: tuple[str, ...] = ()) -> None:
+        """Put hal.link_fault on a gate: "or" of pins that report a fault, "nand" of pins that report health.
+
+        ``further`` pins of the file are on the same signal.
+        """
+        personality = {"or": 0x200, "nand": 0x800}[gate] + len(pins)
+        self.load(
+            f"loadrt logic names=board-link personality={personality:#x}",
+            "inputs keep their last value while the board is not reached: this opens the E-stop chain",
+        )
+        self.first.append("board-link")
+        self.section("Connection to the board: a fault of it opens the E-stop chain")
+        for number, pin in enumerate(pins):
+            self.net(f"board-link-{number}", pin, f"board-link.in-{number:02d}")
+        self.role("hal.link_fault", "link-fault", f"board-link.{gate}", *further, needed=True)
 
     def claim(self, pin: str, path: str) -> None:
         """A terminal that is driven is driven by one thing."""

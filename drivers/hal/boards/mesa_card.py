@@ -13,39 +13,50 @@ NOTES = (
 )
 
 
-def load_card(file: HalFile, card: str, config: str) -> None:
-    """hostmot2 on Ethernet: read first in the thread, written last; a card that hears nothing lets go."""
+def load_card(file: HalFile, card: str, config: str, *further: str) -> None:
+    """Load hostmot2 on Ethernet: read first in the thread, written last.
+
+    ``further`` pins report that inputs of the card are not current.
+    """
     lathe = file.lathe
     file.load(f"loadrt threads name1={lathe.thread} period1={lathe.period * 1e9:.0f}")
     file.load("loadrt hostmot2")
     address = f'board_ip="{lathe.board.address}" ' if lathe.board.address else ""
     file.load(f'loadrt hm2_eth {address}config="{config}"')
     file.first.append(f"{card}.read")
-    file.section("Watchdog: a card that hears nothing lets everything fall; that is a fault of the axes")
-    file.say("Reset alone does not bring it back: start the control again.")
+    file.section("Watchdog: the card switches its outputs off when the computer is silent")
     file.setp(f"{card}.watchdog.timeout_ns", _WATCHDOG)
-    _faults(file, card)
+    _link(file, card, further)
 
 
-def _faults(file: HalFile, card: str) -> None:
-    """hal.axes.X.fault as a signal: the card's watchdog, or the drive's own fault where that is wired."""
+def _link(file: HalFile, card: str, further: tuple[str, ...]) -> None:
+    """Report a lost card: hm2_eth keeps every input as it was, and no longer reads the watchdog.
+
+    hm2_eth sets the parameter ``io_error`` together with the pin ``packet-error-exceeded``, which stays on
+    until the driver is loaded again.
+    """
+    gates = _drive_faults(file)
+    silent = f"{card}.packet-error-exceeded", f"{card}.watchdog.has_bit"
+    file.link("or", *silent, *further, further=tuple(f"{gate}.in0" for gate in gates))
+    file.first += gates
+
+
+def _drive_faults(file: HalFile) -> list[str]:
+    """Wire hal.axes.X.fault where it is a signal: a drive fault or the lost card. Return its gates."""
     gates = []
-    silent = [f"{card}.watchdog.has_bit"]
     for axis in file.lathe.axes:
         path = f"hal.axes.{axis.name}.fault"
         if "." in file.lathe.names.get(path, "."):
-            continue  # not said, or a terminal
+            continue  # not configured, or a terminal
         gate, wired = f"{axis.name.lower()}-fault-or", file.lathe.board.axes[axis.name].fault_input
         gates.append(gate)
-        silent.append(f"{gate}.in0")
         if wired:
             key = f"board.axis.{axis.name}.fault_input"
             file.at_terminal(key, f"{axis.name.lower()}-drive-fault", wired, f"{gate}.in1", drives=False)
         file.role(path, f"{axis.name.lower()}-fault", f"{gate}.out")
     if gates:
-        file.load(f"loadrt or2 names={','.join(gates)}", "a fault is the drive's own, or the card's watchdog")
-        file.first += gates
-        file.net("card-silent", *silent)
+        file.load(f"loadrt or2 names={','.join(gates)}", "a fault of the drive, or the lost card")
+    return gates
 
 
 def load_pid(file: HalFile, axes: tuple[LatheAxis, ...]) -> None:

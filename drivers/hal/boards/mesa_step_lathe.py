@@ -11,6 +11,8 @@ from drivers.hal.boards.mesa_card import NOTES, load_card, load_pid, spindle_enc
 _CARD = "hm2_7i76e.0"
 _FIELD = f"{_CARD}.7i76.0.0"  # the card's own field I/O, first port of its smart serial
 _PIN = re.compile(re.escape(_FIELD) + r"\.(input|output)-(\d\d)(-not)?")
+_FIELD_ERRORS = 50  # five failed transfers in a row
+_LATCHED_US = -50  # as pncconf of LinuxCNC writes it
 _FF1, _MOST_ERROR = 1.0, 0.0127  # mm by which a period may be off: half a thou
 
 
@@ -26,8 +28,13 @@ def mesa_step_lathe(lathe: Lathe) -> HalFile:
     encoder = bool(lathe.encoder_lines and lathe.names.get("hal.spindle.position"))
     steps = 1 + max((board.channel for board in lathe.board.axes.values()), default=0)
     load_card(
-        file, _CARD, f"num_encoders={int(encoder)} num_pwmgens=0 num_stepgens={steps} sserial_port_0=0xxxxxxx"
+        file,
+        _CARD,
+        f"num_encoders={int(encoder)} num_pwmgens=0 num_stepgens={steps} sserial_port_0=0xxxxxxx",
+        "field-lost.over",
     )
+    _field(file)
+    _timing(file)
     load_pid(file, tuple(axis for axis in lathe.driven if lathe.board.axes[axis.name].mode == "velocity"))
     for axis in lathe.driven:
         _axis(file, axis)
@@ -41,6 +48,25 @@ def mesa_step_lathe(lathe: Lathe) -> HalFile:
     file.rest()
     file.last.append(f"{_CARD}.write")
     return file
+
+
+def _field(file: HalFile) -> None:
+    """Watch the serial link to the field I/O: its inputs freeze as well when transfers fail."""
+    file.load("loadrt conv_u32_float names=field-errors")
+    file.load("loadrt wcomp names=field-lost")
+    file.first[1:1] = ["field-errors", "field-lost"]
+    file.section("Field I/O: the card reads it over a serial link that can fail by itself")
+    file.net("field-error-count", f"{_CARD}.sserial.port-0.fault-count", "field-errors.in")
+    file.net("field-error-level", "field-errors.out", "field-lost.in")
+    file.setp("field-lost.min", -1)
+    file.setp("field-lost.max", _FIELD_ERRORS, "each failed transfer counts 10, each good one takes 1 back")
+
+
+def _timing(file: HalFile) -> None:
+    """Latch the step counts at a fixed time before the read, whatever the delay on Ethernet is."""
+    file.section("Step counts: latched by the card's timer, so that Ethernet jitter is not a movement")
+    file.setp(f"{_CARD}.dpll.01.timer-us", _LATCHED_US, "before the read; more than the worst delay")
+    file.setp(f"{_CARD}.stepgen.timer-number", 1)
 
 
 def _terminal(name: str) -> Terminal | None:

@@ -66,7 +66,7 @@ def _hands(file: HalFile) -> None:
     """Inputs and outputs as signals: ``halcmd sets in-guard 1`` is a hand at the switch."""
     file.section("Inputs and outputs are signals, to be set by hand: halcmd sets NAME 1")
     for path, name in file.lathe.names.items():
-        if path.startswith("io.") and "." not in name:
+        if path.startswith(("io.", "hal.link_fault")) and "." not in name:
             file.signal(path, name)
     estop = file.lathe.names.get("io.in.estop", "")
     if "." not in estop:

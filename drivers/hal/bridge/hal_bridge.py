@@ -197,6 +197,7 @@ class Bridge:
             "dry": self._dry,
             "parted": self._parted,
             "stands": self._stands,
+            "stale": self._is_stale,
             "orients": "orient" in self.config.spindle and bool(self.pins["spindle.orient"]),
             "c_at": self._c_at if self._c_from == INF else None,  # once the drive is changed over
         }
@@ -254,6 +255,8 @@ class Bridge:
             self._trip("setpoints came too late to HAL, which played what was queued before", "late")
         if self._stands:
             self._trip("HAL's servo thread stands: is rtapi_app still there?", "hal-thread")
+        if self._is_stale:
+            self._trip("the board is not reached; its inputs are as they were last read", "hal-board")
         for name in self.config.bits:
             axis, _, what = name.partition(".")
             if what == "fault" and pins[name] and self._on:
@@ -288,6 +291,11 @@ class Bridge:
     def _stands(self) -> bool:
         """HAL's servo thread plays nothing any more: what its pins say is of before."""
         return self._sampled and self._quiet > _QUIET
+
+    @property
+    def _is_stale(self) -> bool:
+        """Return whether the board's inputs are not current, as hal.link_fault reports it."""
+        return "link-fault" in self.config.bits and bool(self.pins["link-fault"])
 
     def _open_chain(self) -> None:
         """What is off in HAL does not come back by itself when the chain is closed again."""

@@ -83,11 +83,11 @@ class Hal(Rig):
         "dead reader": _GONE,
         "silence": Fault(0.2, 0.6, "hal-silent", "0.1", unknown=ALL_UNKNOWN),
         "node reboot": Fault(told=0.35, rests=0.2, code="hal-thread", unknown=ALL_UNKNOWN),
+        "cable out": Fault(told=0.05, rests=0.2, code="hal-board", unknown=ALL_UNKNOWN),
         "garbage": replace(_GONE, code="hal-silent", names="packet"),
     }
     harmless: ClassVar[tuple[str, ...]] = ("late answers",)
     missing: ClassVar[Mapping[str, str]] = {
-        "cable out": "bridge, HAL and control are in one computer; a board's cable is a fault of its drive",
         "bus-off": "a socket pair has no such state",
         "two masters": "LinuxCNC refuses a second session of HAL",
         "blocks": "its motion is planned here",
@@ -126,6 +126,7 @@ class Hal(Rig):
             "dead reader": lambda: setattr(far, "killed", True),
             "silence": lambda: setattr(far, "stopped", True),
             "node reboot": lambda: setattr(far, "stands", True),
+            "cable out": lambda: setattr(far, "cable_out", True),
             "garbage": lambda: setattr(far, "garbled", True),
             "late answers": lambda: setattr(far, "late", 4),
         }
@@ -134,7 +135,7 @@ class Hal(Rig):
         """The slide is free, the processes go on."""
         self.far.machine.jam("X", False)
         self.far.plant.faulty.clear()
-        self.far.stopped = self.far.stands = self.far.garbled = False
+        self.far.stopped = self.far.stands = self.far.garbled = self.far.cable_out = False
 
     def close(self) -> None:
         """Both ends."""

@@ -62,6 +62,8 @@ def _of(prefix: str, pins: tuple[tuple[str, str, str], ...]) -> Iterator[BoardPi
 
 def _watchdog(card: str) -> Iterator[BoardPin]:
     yield BoardPin(f"{card}.watchdog.has_bit", "bit", BOTH)
+    yield BoardPin(f"{card}.packet-error-exceeded", "bit", OUT)
+    yield BoardPin(f"{card}.io_error", "bit", PARAM)
     yield BoardPin(f"{card}.watchdog.timeout_ns", "u32", PARAM)
 
 
@@ -71,6 +73,9 @@ def mesa_7i76e() -> Iterator[BoardPin]:
     yield from _watchdog(card)
     for number in range(5):
         yield from _of(f"{card}.stepgen.{number:02d}", _STEPGEN)
+    yield BoardPin(f"{card}.dpll.01.timer-us", "float", IN)
+    yield BoardPin(f"{card}.stepgen.timer-number", "s32", IN)
+    yield BoardPin(f"{card}.sserial.port-0.fault-count", "u32", OUT)
     yield from _of(f"{card}.encoder.00", _ENCODER)
     field = f"{card}.7i76.0.0"
     for number in range(32):
@@ -103,6 +108,10 @@ def ethercat() -> Iterator[BoardPin]:
     for name in ("x", "z", "spindle"):
         yield from _of(f"cia402.{name}", _CIA402)
         yield from _of(f"lcec.0.{name}", _SLAVE)
+    for name in ("link-up", "all-op"):
+        yield BoardPin(f"lcec.0.{name}", "bit", OUT)
+    for name in ("x", "z", "spindle", "DI", "DO"):
+        yield BoardPin(f"lcec.0.{name}.slave-oper", "bit", OUT)
     for number in range(8):
         yield BoardPin(f"lcec.0.DI.din-{number}", "bit", OUT)
         yield BoardPin(f"lcec.0.DI.din-{number}-not", "bit", OUT)

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
-from PySide6.QtCore import QPoint, QRectF, Qt
-from PySide6.QtGui import QImage
+from PySide6.QtCore import QEvent, QPoint, QRectF, Qt
+from PySide6.QtGui import QImage, QKeyEvent
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QWidget
 from pytestqt.qtbot import QtBot
@@ -20,7 +20,6 @@ from app.screen.theme import DARK
 from app.screen.window_layout import FINGER
 from app.shapes import shapes_view
 from app.shapes.shapes_view import LinesPanel, RowsPanel, _Line
-from core.executor.snapshot import State
 from core.language.diagnostics import Diagnostic, Severity
 from tests.screen.editor.writer import Writer
 from tests.screen.hands import Key
@@ -145,10 +144,13 @@ def test_a_finger_opens_types_and_writes(writer: Writer) -> None:
     assert form.typed == {"DIA": "9"}
 
 
-def test_letters_that_stop_the_machine_stop_it_here_too(writer: Writer) -> None:
+def test_the_key_that_stops_the_machine_stops_it_here_too(writer: Writer) -> None:
     opened(writer)
-    writer.key(Key.Key_E)
-    writer.sees(lambda: writer.desk.snapshot().state is State.ESTOP)
+    press = QKeyEvent(QEvent.Type.KeyPress, Key.Key_ScrollLock, Qt.KeyboardModifier.NoModifier)
+    stop = writer.window.keyboard._stop_of(press)
+    assert stop is not None
+    stop()
+    assert writer.desk.hands.estop_pressed
     assert writer.editor.shapes.model.form is None
 
 
@@ -254,7 +256,9 @@ def test_the_list_is_one_key_from_a_form(writer: Writer) -> None:
 def test_labels_that_are_long_take_two_lines_and_are_never_cut(qtbot: QtBot) -> None:
     above = QWidget()
     qtbot.addWidget(above)
-    panel = RowsPanel(Look(DARK, 6.4), lambda _row, _column: None, above)
+    look = Look(DARK, 6.4)
+    look.caret = True
+    panel = RowsPanel(look, lambda _row, _column: None, above)
     panel.resize(260, 300)  # as at 1024x600
     drawn: list[str] = []
     write = Painter.write
@@ -277,7 +281,9 @@ def test_what_is_unsaid_or_turned_is_not_drawn_as_typed(qtbot: QtBot) -> None:
     """A question mark stood in the entry as if somebody had typed it, and a bar behind a choice."""
     above = QWidget()
     qtbot.addWidget(above)
-    panel = RowsPanel(Look(DARK, 6.4), lambda _row, _column: None, above)
+    look = Look(DARK, 6.4)
+    look.caret = True
+    panel = RowsPanel(look, lambda _row, _column: None, above)
     panel.resize(260, 300)
     panel.typing = True
 

@@ -131,7 +131,7 @@ def by_estop(jog: JogBench) -> None:
 
 
 def by_switch(jog: JogBench) -> None:
-    jog.type("a")
+    jog.desk.hands.set_spindle_auto(False)  # on the station: A is a key of the Automatic page
 
 
 @pytest.mark.parametrize(
