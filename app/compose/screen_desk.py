@@ -295,9 +295,8 @@ def _desk(
 
     kept = partial(kept_part, keep.setting)
     changed = file_changes(machine, keep, partial(say, "machine"))
-    first_move = StartWatch(guarded(executor.post, changed, partial(say, "refused")))
     desk = Desk(
-        post=first_move.post,
+        post=guarded(executor.post, changed, partial(say, "refused")),
         snapshot=lambda: executor.snapshot,
         session=ProgramLoader(
             workshop(machine, offsets, journal, left=left, shapes=shapes_at_hand, kept=kept),
@@ -315,8 +314,8 @@ def _desk(
         book=book_of(offsets, journal),
     )
     if machine.kind == "lathe":
-        desk.first_move = first_move
-    desk.attach(first_move)
+        desk.first_move = StartWatch(desk.post)
+        desk.attach(desk.first_move)
     desk.attach(Effect(drawer(machine), part_comparer(machine, shapes_at_hand, kept)))
     beside = workshop(machine, offsets, left=left, shapes=shapes_at_hand, kept=kept)
     desk.attach_later("app.editor.editor.Editor", partial(_editor, desk, beside, journal, machine))

@@ -9,7 +9,7 @@ from functools import partial
 from app.desk.latest import Latest, Watch
 from app.desk.program_loading import Proved
 from core.executor.commands import Command, Prepare
-from core.executor.job import Job, Proof
+from core.executor.job import Job
 from core.executor.snapshot import CYCLE, Snapshot, Starts
 from core.language.diagnostics import Diagnostic, Severity
 
@@ -40,7 +40,7 @@ class PreparedLine:
     ready: Job | None = None  # proved and prepared
     worker: Latest = field(default_factory=lambda: Latest("loading-mdi"))
     refused: Callable[[Diagnostic], None] = field(default=lambda _error: None)  # it does not run
-    _proof: Proof | None = None  # of what is ready
+    proved: Proved | None = None  # of what is ready
     _begun: int = 0  # lines that the executor has begun, as far as they were seen
 
     def ask(self, text: str, snapshot: Snapshot, failed: Callable[[str], None]) -> None:
@@ -70,7 +70,7 @@ class PreparedLine:
         """
         if snapshot.state in CYCLE or snapshot.starts is Starts.LINE:
             return
-        self.post(Prepare(Starts.LINE, self.ready, self._proof if self.ready is not None else None))
+        self._prepare()
 
     def look(self, snapshot: Snapshot) -> bool:
         """Once a frame: take up what the worker has found. True when the line has just been started."""
@@ -101,5 +101,11 @@ class PreparedLine:
         if self.errors:
             self.refused(self.errors[0])
         else:
-            self.ready, self._proof = job, proved.proof
-            self.post(Prepare(Starts.LINE, job, proved.proof))
+            self.ready, self.proved = job, proved
+            self._prepare()
+
+    def _prepare(self) -> None:
+        if self.ready is None or self.proved is None:
+            self.post(Prepare(Starts.LINE))
+        else:
+            self.post(Prepare(Starts.LINE, self.ready, self.proved.proof, self.proved.clearance))

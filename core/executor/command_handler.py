@@ -157,8 +157,9 @@ class CommandHandler:
             return
         status = self._control.status
         self._control.program_run.interruption.withdraw()
-        status.starts, status.start_refused = command.starts, ""
+        status.starts, status.start_refused, status.start_code = command.starts, "", ""
         status.prepared, status.prepared_proof = command.job, command.proof
+        status.prepared_clearance = command.clearance
         if command.job is not None and command.starts is Starts.RESTART:
             self._control.meant_at = self._context.now
 

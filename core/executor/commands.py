@@ -248,6 +248,7 @@ class BarNextPart(Command):
 class Prepare(Command):
     """What the next Cycle Start begins: the program, a restart in it, or a line of MDI with its proof.
 
+    ``clearance`` is the verdict on the first move of a restart or a line.
     ``Starts.LINE`` without a job: MDI is open and no line is ready, so that nothing starts. Refused while
     something is under way.
     """
@@ -255,3 +256,4 @@ class Prepare(Command):
     starts: Starts = Starts.PROGRAM
     job: Job | None = None
     proof: Proof | None = None
+    clearance: Clearance | None = None

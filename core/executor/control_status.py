@@ -61,7 +61,8 @@ class ControlStatus:
     prepared: Job | None = None  # the restart or the line of MDI that Cycle Start begins
     prepared_proof: Proof | None = None
     checks_starts: bool = False  # no cycle starts without a verdict on its first move
-    clearances: tuple[Clearance, ...] = ()  # the verdicts that are known
+    clearances: tuple[Clearance, ...] = ()  # the verdicts on the program
+    prepared_clearance: Clearance | None = None  # the verdict on what is prepared
     next_barred: str = ""  # why no other part begins, as whoever keeps tool lives has told
     tool_open: bool = False  # MDI has called a tool, and its first move is still to come
     kept: KeptPass[Any] | None = None  # what lines of MDI in other languages have left in force

@@ -161,11 +161,15 @@ def first_move_verdict(
     context: MachineContext, status: ControlStatus, begun: int, *, repeats: bool = False
 ) -> Clearance | None:
     """The verdict on what Cycle Start, or Cycle Repeat, would begin from here; None: not computed yet."""
-    job = status.job if repeats else job_to_start(status)
+    job, known = job_to_start(status), status.clearances
+    if repeats:
+        job = status.job
+    elif status.starts is not Starts.PROGRAM:
+        known = tuple(filter(None, (status.prepared_clearance,)))
     if job is None:
         return None
     at, _ = context.ports.axes.demand_at(context.now)
-    return verdict(status.clearances, job.digest, at, begun, repeats=repeats)
+    return verdict(known, job.digest, at, begun, repeats=repeats)
 
 
 def _moved(context: MachineContext, job: Job | None) -> str:

@@ -127,12 +127,21 @@ class Stage:
         self.make_ready()
         self.press_start()
 
+    def checks_start(self) -> None:
+        """The first move of the next start is checked."""
+        desk = self.desk
+        desk.look()
+        if desk.first_move is not None:
+            desk.first_move.worker.settle(LOADING)
+        self.tick(lambda: True)
+
     def press_start(self) -> None:
         """Both palms, until something happens."""
         desk = self.desk
         desk.look()  # what was changed since is read anew first
         desk.session.settled(LOADING)
         self.hears()  # what the scenes have posted
+        self.checks_start()
         desk.hands.palm("left", down=True)
         desk.hands.palm("right", down=True)
         self.tick(lambda: desk.snapshot().state is not State.IDLE, 5.0)
