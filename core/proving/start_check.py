@@ -27,7 +27,7 @@ MET = 0.1
 
 ASIDE = 7.3  # mm: the other start; no program's words fall together with it
 _SAME = 1e-6  # mm
-_NOSE = 0.5  # mm of radius about the tip: within the outline of any insert that is assumed
+_NOSE = 0.4  # mm of radius about the tip: the corner of the insert that is assumed
 _MOST = 60  # moves that are followed at most
 _FAR = 500.0  # mm: how far a tool is jogged clear
 
@@ -138,7 +138,7 @@ class StartCheck:
                     tool=tool,
                     z=z,
                     inside=inside,
-                    out=self._out(making, tool, now),
+                    out=self._out(making, now),
                     assumed=self._is_assumed(body, tool, now),
                 )
         return found
@@ -190,9 +190,9 @@ class StartCheck:
             for a, b in pairwise(move.points):
                 cutter.cut(metal, a, b)
 
-    def _out(self, making: PartMaking, tool: int, now: StartNow) -> str:
-        """The jog that leads out along one axis and meets nothing."""
-        x, z = now.at[0], now.at[1]
+    def _out(self, making: PartMaking, now: StartNow) -> str:
+        """The jog that leads the tool in work out along one axis and meets nothing."""
+        tool, (x, z) = now.tool, now.at[:2]
         zero = self._zero(tool) or (0.0, 0.0)
         side = 1.0 if x >= zero[0] else -1.0
         across = ("X+", (x + side * _FAR, z)) if side > 0.0 else ("X-", (x + side * _FAR, z))
