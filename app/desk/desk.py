@@ -355,8 +355,8 @@ class Desk:
         if page:
             return prompt_line.alarm_of(snapshot, self.release_words) or page
         standing = prompt_line.prompt(snapshot, loaded, self.start_words, self.release_words)
-        if snapshot.state is State.IDLE and self.first_move is not None and self.first_move.refusal:
-            standing = f"{prompt_line.NO_START}: {self.first_move.refusal}"
+        if refusal := self.first_move_refusal(snapshot):
+            standing = f"{prompt_line.NO_START}: {refusal}"
         if snapshot.state is State.WAIT:
             standing = how_it_ends(snapshot, self.set_input is not None) or standing
         return " · ".join(each for each in (self._due(snapshot, standing), standing) if each)
@@ -367,6 +367,12 @@ class Desk:
         if waits or standing.startswith(prompt_line.NO_START):
             return ""
         return " · ".join(told for watcher in self.watches if (told := watcher.due()))
+
+    def first_move_refusal(self, snapshot: Snapshot) -> str:
+        """Why Cycle Start does not begin the program from here; empty when its first move is clear."""
+        if self.first_move is None or snapshot.state is not State.IDLE:
+            return ""
+        return self.first_move.refusal if snapshot.starts is Starts.PROGRAM else ""
 
     def time_left(self, snapshot: Snapshot, loaded: Loaded) -> float:
         """Seconds to the end of the cycle at the present override; infinite while it stands still."""
@@ -488,6 +494,8 @@ class Desk:
             snapshot.state is not State.IDLE or not self.starts_here or snapshot.starts is not Starts.PROGRAM
         ):
             self.say(tr("Y MEANS SOMETHING ON THE AUTOMATIC PAGE, WITH THE DRIVES ON"))
+        elif refusal := self.first_move_refusal(snapshot):
+            self.say(f"{prompt_line.NO_START}: {refusal}")
         else:
             self.clear()
             self.post(ConfirmStart(found.at))

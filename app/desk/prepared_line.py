@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import partial
+from typing import TYPE_CHECKING
 
 from app.desk.latest import Latest, Watch
 from app.desk.program_loading import Proved
@@ -12,6 +13,9 @@ from core.executor.commands import Command, Prepare
 from core.executor.job import Job
 from core.executor.snapshot import CYCLE, Snapshot, Starts
 from core.language.diagnostics import Diagnostic, Severity
+
+if TYPE_CHECKING:
+    from app.desk.start_verdict import FirstMoveSeen
 
 ProveLine = Callable[[str, Snapshot, Watch], tuple[Job, Proved]]
 """From a line and the machine as it stands to its job and its proof; called on the worker."""
@@ -40,7 +44,7 @@ class PreparedLine:
     ready: Job | None = None  # proved and prepared
     worker: Latest = field(default_factory=lambda: Latest("loading-mdi"))
     refused: Callable[[Diagnostic], None] = field(default=lambda _error: None)  # it does not run
-    proved: Proved | None = None  # of what is ready
+    _proof: Proved | None = None  # of what is ready
     _begun: int = 0  # lines that the executor has begun, as far as they were seen
 
     def ask(self, text: str, snapshot: Snapshot, failed: Callable[[str], None]) -> None:
@@ -87,6 +91,11 @@ class PreparedLine:
         return self.worker.busy
 
     @property
+    def first_move(self) -> FirstMoveSeen | None:
+        """The first move of the line that is ready; None: none is, or it was not checked."""
+        return self._proof.first_move if self.ready is not None and self._proof is not None else None
+
+    @property
     def errors(self) -> tuple[Diagnostic, ...]:
         """What keeps the line from running."""
         return tuple(each for each in self.found if each.severity is Severity.ERROR)
@@ -101,11 +110,11 @@ class PreparedLine:
         if self.errors:
             self.refused(self.errors[0])
         else:
-            self.ready, self.proved = job, proved
+            self.ready, self._proof = job, proved
             self._prepare()
 
     def _prepare(self) -> None:
-        if self.ready is None or self.proved is None:
+        if self.ready is None or self._proof is None:
             self.post(Prepare(Starts.LINE))
         else:
-            self.post(Prepare(Starts.LINE, self.ready, self.proved.proof, self.proved.clearance))
+            self.post(Prepare(Starts.LINE, self.ready, self._proof.proof, self._proof.clearance))

@@ -11,6 +11,7 @@ from PySide6.QtWidgets import QWidget
 
 from app.desk import formats
 from app.desk.desk import Desk
+from app.desk.prompt_line import NO_START
 from app.desk.station_hands import Pot
 from app.desk.translation import tr
 from app.screen.look import CENTRE, RIGHT, Look, Painter
@@ -27,6 +28,7 @@ class StationDock(FingerPanel):
     title = "OPERATOR STATION"
     _shown: Shown[object] = Shown(())
     _auto = Shown(True)
+    start_refused = Shown(False)  # for its first move: the palms are not offered
 
     def __init__(self, look: Look, desk: Desk, parent: QWidget | None = None) -> None:
         super().__init__(look, parent)
@@ -37,6 +39,7 @@ class StationDock(FingerPanel):
         """Where its switches and buttons stand."""
         desk = self._desk
         self._auto = snapshot.spindle_auto
+        self.start_refused = bool(desk.first_move_refusal(snapshot))
         palms = frozenset(desk.hands.palms.down)
         pots = (desk.hands.spindle_pot.wanted, desk.hands.feed_pot.wanted)
         latched = desk.settings.now.latched and desk.one_hand
@@ -183,7 +186,9 @@ class StationDock(FingerPanel):
         text = "CYCLE START: BOTH PALMS" if desk.two_hand else "CYCLE START"
         if self._latches:
             text = "CYCLE START: ONE BY ONE"
-        painter.write(head, text, 1.6, "pause" if self._latches else "soft")
+        if self.start_refused:
+            text = NO_START
+        painter.write(head, text, 1.6, "pause" if self._latches or self.start_refused else "soft")
         box = self._row(56.8, 13.6)
         if not desk.two_hand:
             self._palm(painter, box, "F12", down=False)
@@ -212,11 +217,12 @@ class StationDock(FingerPanel):
         look, u = self.look, self.look.u
         size = min(box.width(), box.height()) - 0.8 * u
         head = QRectF(box.center().x() - size / 2, box.center().y() - size / 2, size, size)
-        painter.setPen(look.pen("run", 0.3))
+        ink = "frame" if self.start_refused else "run"
+        painter.setPen(look.pen(ink, 0.3))
         painter.setBrush(look.colour("key"))
         painter.drawEllipse(head)
         inset = (1.7 if down else 0.9) * u
         painter.setPen(Qt.PenStyle.NoPen)
-        painter.setBrush(look.colour("lit" if down else "run"))
+        painter.setBrush(look.colour("lit" if down else ink))
         painter.drawEllipse(head.adjusted(inset, inset, -inset, -inset))
         painter.write(head, key, 2.3, "on_lit" if down else "on_state", at=CENTRE)
