@@ -128,19 +128,18 @@ class Stage:
         self.press_start()
 
     def checks_start(self) -> None:
-        """The first move of the next start is checked."""
+        """What was posted is obeyed, and the first move of the next start is checked."""
         desk = self.desk
+        self.hears()
         desk.look()
         if desk.first_move is not None:
             desk.first_move.worker.settle(LOADING)
-        self.tick(lambda: True)
 
     def press_start(self) -> None:
         """Both palms, until something happens."""
         desk = self.desk
         desk.look()  # what was changed since is read anew first
         desk.session.settled(LOADING)
-        self.hears()  # what the scenes have posted
         self.checks_start()
         desk.hands.palm("left", down=True)
         desk.hands.palm("right", down=True)
