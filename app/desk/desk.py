@@ -357,6 +357,8 @@ class Desk:
         standing = prompt_line.prompt(snapshot, loaded, self.start_words, self.release_words)
         if refusal := self.first_move_refusal(snapshot):
             standing = f"{prompt_line.NO_START}: {refusal}"
+        elif self.first_move is not None and self.first_move.checking and snapshot.state is State.IDLE:
+            standing = tr("CHECKING THE FIRST MOVE AGAINST THE PART")
         if snapshot.state is State.WAIT:
             standing = how_it_ends(snapshot, self.set_input is not None) or standing
         return " · ".join(each for each in (self._due(snapshot, standing), standing) if each)

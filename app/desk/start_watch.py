@@ -63,6 +63,11 @@ class StartWatch:
         """Why a start of the program is refused for its first move; empty when it is not."""
         return self.seen.clearance.why if self.seen is not None else ""
 
+    @property
+    def checking(self) -> bool:
+        """Whether the verdict is still to come, so that the program does not start yet."""
+        return self._asked is not None and self.seen is None
+
     # --- lines and restarts, on the worker that proves them ---------------------------------------------
 
     def with_lines(self, prove: ProveLine) -> ProveLine:

@@ -116,6 +116,7 @@ class Stage:
         self.tick(lambda: desk.snapshot().state is State.DISABLED)
         desk.enable()
         self.tick(lambda: desk.snapshot().state is State.IDLE)
+        self.checks_start()
 
     def hears(self) -> None:
         """The executor obeys what was posted."""
