@@ -60,10 +60,14 @@ class StartQuestion(NamedTuple):
 
 
 class FirstMoveSeen(NamedTuple):
-    """The answer to one question: the verdict here and that of Cycle Repeat, and the legs that are drawn."""
+    """The answer to one question: the verdict here and that of Cycle Repeat, and the legs that are drawn.
+
+    ``zero`` is machine X and Z, mm, with the tip for which they are drawn on part zero.
+    """
 
     verdicts: tuple[Clearance, ...]
     legs: Legs = ()
+    zero: tuple[float, float] = (0.0, 0.0)
 
     @property
     def clearance(self) -> Clearance:
@@ -93,14 +97,15 @@ class StartJudge:
             return self._judge(asked, watch)
 
     def _judge(self, asked: StartQuestion, watch: Watch) -> FirstMoveSeen:
-        from core.proving.start_check import first_moves, machine_path
+        from core.proving.start_check import first_moves, unchecked
 
         part, passes = asked.part, _passes(asked.job)
         plain = Clearance(asked.job.digest, asked.at, asked.begun)
         if part is None or part.picture.part is None:
-            legs = machine_path(first_moves(passes, asked.at))
+            move = unchecked(first_moves(passes, asked.at))
             unknown = asked.unknown or (part is not None and part.broken is not None)
-            return FirstMoveSeen((replace(plain, warned=_not_known() if unknown and legs else ""),), legs)
+            warned = _not_known() if unknown and move.path else ""
+            return FirstMoveSeen((replace(plain, warned=warned),), move.path, move.zero)
         check, now, go = self._check(part), _now(asked, part), partial(watch, 0.0)
         found = check.find(passes, now, go)
         verdicts = [_verdict(plain, found, part)]
@@ -110,7 +115,7 @@ class StartJudge:
             again = check.find(passes, replace(now, at=at, broken=None, strict=False), go)
             here = replace(plain, at=at, repeats=True)
             verdicts.append(_verdict(here, again, part._replace(broken=None)))
-        return FirstMoveSeen(tuple(verdicts), found.path)
+        return FirstMoveSeen(tuple(verdicts), found.path, found.zero)
 
     def _check(self, part: KnownPart) -> StartCheck:
         from core.proving.part_history import PartHistory

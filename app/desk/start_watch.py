@@ -56,7 +56,7 @@ class StartWatch:
 
     def legs(self, snapshot: Snapshot) -> tuple[DrawnLeg, ...]:
         """The first move of the next start of the program; empty while a cycle runs."""
-        return drawn(self.seen, snapshot) if snapshot.state in _AT_REST else ()
+        return drawn(self.seen) if snapshot.state in _AT_REST else ()
 
     @property
     def refusal(self) -> str:
@@ -131,12 +131,12 @@ class StartWatch:
         self._found(FirstMoveSeen((Clearance(asked.job.digest, asked.at, asked.begun, warned=warned),)))
 
 
-def drawn(seen: FirstMoveSeen | None, snapshot: Snapshot) -> tuple[DrawnLeg, ...]:
-    """The first move in the frame of the tool in work; its end is labelled."""
+def drawn(seen: FirstMoveSeen | None) -> tuple[DrawnLeg, ...]:
+    """The first move as the path view draws it over the part; its end is labelled."""
     if seen is None:
         return ()
-    modal, last = snapshot.modal, len(seen.legs) - 1
+    (zero_x, zero_z), last = seen.zero, len(seen.legs) - 1
     return tuple(
-        DrawnLeg(z - modal.base_z, x - modal.base_x, quick, tr("START") if number == last else "")
+        DrawnLeg(z - zero_z, x - zero_x, quick, tr("START") if number == last else "")
         for number, (x, z, quick) in enumerate(seen.legs)
     )

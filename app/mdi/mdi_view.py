@@ -237,7 +237,7 @@ class MdiPage(ModelPage):
 
     def _show_first_move(self, snapshot: Snapshot, loaded: Loaded) -> None:
         """A line that is ready and moves is drawn over the program's path, in the place of the history."""
-        legs = drawn(self.model.line.first_move, snapshot)
+        legs = drawn(self.model.line.first_move)
         if legs:
             self.path.show_picture(loaded.picture)
             self.path.show_tip(tip_of(snapshot, loaded.job)._replace(block=0))

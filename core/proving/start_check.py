@@ -61,11 +61,14 @@ class StartNow:
 class FirstMove:
     """The finding. ``path`` is the first move in machine X and Z, mm, with whether each leg is a rapid.
 
+    ``zero`` is machine X and Z with the tip that it is drawn for on part zero: of the tool that meets
+    something, or else of the tool that arrives.
     ``met`` is what ``tool`` runs into, at Z ``z`` (mm, part's frame), already before it moves where
     ``inside``. ``out`` is the direction of a jog that leads out, as ``Z+``; empty where none is sure.
     """
 
     path: tuple[tuple[float, float, bool], ...]
+    zero: Point = (0.0, 0.0)
     met: Body | None = None
     tool: int = 0
     z: float = 0.0
@@ -93,14 +96,14 @@ def _is_known(one: Block, other: Block) -> bool:
     return same and abs(one.z + one.offset_z - other.z - other.offset_z) < _SAME
 
 
-def machine_path(moves: Sequence[TipMove]) -> tuple[tuple[float, float, bool], ...]:
-    """Return the moves in machine X and Z, mm, with whether each leg is a rapid; the start comes first."""
+def unchecked(moves: Sequence[TipMove]) -> FirstMove:
+    """Return the first move that consists of these, before anything is known of what it meets."""
     if not moves:
-        return ()
+        return FirstMove(())
     legs = [(*_machine(moves[0].points[0], moves[0].zero), True)]
     for move in moves:
         legs += ((*_machine(point, move.zero), move.quick) for point in move.points[1:])
-    return tuple(legs)
+    return FirstMove(tuple(legs), moves[-1].zero)
 
 
 def _tip(at: Point, zero: Point) -> Point:
@@ -127,13 +130,14 @@ class StartCheck:
         moves = first_moves(passes, now.at)
         making = self._making(now, watch)
         known = making.milling is None and (making.part is not None or self.history.stock is None)
-        found = FirstMove(machine_path(moves), known=known or now.broken is None)
+        found = replace(unchecked(moves), known=known or now.broken is None)
         for body, metal in self._metal(making):
             hit = self._hit(body, metal, moves, now)
             if hit is not None:
                 tool, z, inside = hit
                 return replace(
                     found,
+                    zero=self._zero(tool) or found.zero,
                     met=body,
                     tool=tool,
                     z=z,
