@@ -102,14 +102,34 @@ def test_what_is_assumed_is_announced_before_the_start() -> None:
     assert rig.starts()
 
 
-def test_a_line_needs_its_own_verdict() -> None:
+def prepares(rig: Checked, job: Job, clearance: Clearance | None) -> None:
+    proof = rig.executor._control.status.proof
+    rig.post(Prepare(Starts.LINE, job, proof, clearance))
+
+
+def test_the_verdict_on_the_program_is_none_on_a_line() -> None:
     rig, job = loaded()
+    prepares(rig, job, None)
     rig.clear(job)
-    rig.post(Prepare(Starts.LINE, job, rig.executor._control.status.proof))
-    assert rig.shot.start_code == ""
-    rig.post(GiveClearance(()))
     assert not rig.starts()
     assert rig.shot.start_code == UNCHECKED
+
+
+def test_a_line_is_prepared_with_its_verdict_and_starts() -> None:
+    rig, job = loaded()
+    prepares(rig, job, Clearance(job.digest, rig.shot.demand, rig.shot.begun))
+    assert rig.starts()
+
+
+def test_a_line_whose_first_move_crosses_is_refused_until_another_is_prepared() -> None:
+    rig, job = loaded()
+    rig.clear(job)
+    prepares(rig, job, Clearance(job.digest, rig.shot.demand, rig.shot.begun, CROSSES, WHY))
+    assert not rig.starts()
+    assert (rig.shot.start_code, rig.shot.start_refused) == (CROSSES, WHY)
+    rig.post(Prepare(Starts.PROGRAM))
+    assert (rig.shot.start_code, rig.shot.start_refused) == ("", "")
+    assert rig.starts()
 
 
 def test_cycle_repeat_does_not_begin_a_move_that_crosses_the_part() -> None:

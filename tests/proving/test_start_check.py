@@ -156,3 +156,23 @@ def test_the_usual_place_away_from_the_part_is_clear() -> None:
     assert end is not None
     found = check_of(job).find(passes(job), StartNow((*end, 0.0), 1, strict=False))
     assert (found.met, found.known) == (None, True)
+
+
+def test_a_tool_that_was_jogged_into_specified_stock_is_inside_without_any_interruption() -> None:
+    job = job_of(BORE)
+    now = StartNow((*axes(1, 0.5, -0.5), 0.0), 1)
+    assert met(check_of(job).find(passes(job), now)) == (Body.PART, 1, True)
+    assert check_of(job, replace(SETTING, stock=None)).find(passes(job), now).assumed
+
+
+def test_the_way_out_is_that_of_the_tool_in_work_where_another_tool_meets_the_part() -> None:
+    job = job_of(BORE)
+    found = check_of(job).find(passes(job), interrupted(job, (3, 1.0, 0.2), line=9))
+    assert (found.met, found.tool, found.out) == (Body.PART, 1, "Z+")
+
+
+def test_the_first_move_is_drawn_for_the_tool_that_arrives() -> None:
+    job = job_of(BORE)
+    found = check_of(job).find(passes(job), StartNow((0.0, 0.0, 0.0), 0))
+    assert found.met is None
+    assert found.zero == pytest.approx((TOOLS[1].x, TOOLS[1].z))
