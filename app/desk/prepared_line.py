@@ -5,17 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import partial
-from typing import TYPE_CHECKING
 
+from app.desk.first_move_seen import FirstMoveSeen
 from app.desk.latest import Latest, Watch
 from app.desk.program_loading import Proved
 from core.executor.commands import Command, Prepare
 from core.executor.job import Job
 from core.executor.snapshot import CYCLE, Snapshot, Starts
 from core.language.diagnostics import Diagnostic, Severity
-
-if TYPE_CHECKING:
-    from app.desk.start_verdict import FirstMoveSeen
 
 ProveLine = Callable[[str, Snapshot, Watch], tuple[Job, Proved]]
 """From a line and the machine as it stands to its job and its proof; called on the worker."""

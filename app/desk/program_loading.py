@@ -10,6 +10,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from app.desk.first_move_seen import FirstMoveSeen
 from app.desk.latest import Latest, Request, Watch
 from core.executor.commands import Command, GiveProof, LoadJob
 from core.executor.job import Job, Proof
@@ -18,7 +19,6 @@ from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Source
 
 if TYPE_CHECKING:
-    from app.desk.start_verdict import FirstMoveSeen
     from app.path.path_picture import Picture
     from core.proving.part_report import PartReport
 

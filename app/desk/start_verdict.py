@@ -11,6 +11,7 @@ from functools import partial
 from threading import Lock
 from typing import TYPE_CHECKING, NamedTuple
 
+from app.desk.first_move_seen import FirstMoveSeen
 from app.desk.interrupted_notice import may_go_on
 from app.desk.latest import Watch
 from app.desk.program_loading import Loaded, Proved
@@ -27,9 +28,6 @@ if TYPE_CHECKING:
     from core.interpreter.elementary_blocks import Block
     from core.proving.part_history import PartHistory
     from core.proving.start_check import FirstMove, StartCheck, StartNow
-
-Legs = tuple[tuple[float, float, bool], ...]
-"""A path in machine X and Z, mm, with whether each leg is a rapid."""
 
 
 class KnownPart(NamedTuple):
@@ -59,29 +57,14 @@ class StartQuestion(NamedTuple):
         return self.job.digest, self.starts, self.at, self.begun, self.tool, known, self.unknown
 
 
-class FirstMoveSeen(NamedTuple):
-    """The answer to one question: the verdict here and that of Cycle Repeat, and the legs that are drawn.
-
-    ``zero`` is machine X and Z, mm, with the tip for which they are drawn on part zero.
-    """
-
-    verdicts: tuple[Clearance, ...]
-    legs: Legs = ()
-    zero: tuple[float, float] = (0.0, 0.0)
-
-    @property
-    def clearance(self) -> Clearance:
-        """The verdict on a start from where the axes are."""
-        return self.verdicts[0]
-
-    def among(self, proved: Proved) -> Proved:
-        """Return the proof of a line or of a restart with this verdict: what is refused does not run."""
-        found = self.clearance
-        if not found.code:
-            return replace(proved, first_move=self)
-        error = Diagnostic(1, 0, Severity.ERROR, found.code, found.why, "")
-        proof = replace(proved.proof, errors=(*proved.proof.errors, found.why))
-        return replace(proved, proof=proof, diagnostics=(*proved.diagnostics, error), first_move=self)
+def with_verdict(proved: Proved, seen: FirstMoveSeen) -> Proved:
+    """Return the proof of a line or of a restart with this verdict: what is refused does not run."""
+    found = seen.clearance
+    if not found.code:
+        return replace(proved, first_move=seen)
+    error = Diagnostic(1, 0, Severity.ERROR, found.code, found.why, "")
+    proof = replace(proved.proof, errors=(*proved.proof.errors, found.why))
+    return replace(proved, proof=proof, diagnostics=(*proved.diagnostics, error), first_move=seen)
 
 
 @dataclass(slots=True)

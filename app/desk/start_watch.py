@@ -11,10 +11,11 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import partial
 
+from app.desk.first_move_seen import FirstMoveSeen
 from app.desk.latest import Latest, Watch
 from app.desk.prepared_line import ProveLine
 from app.desk.program_loading import Loaded, Proved
-from app.desk.start_verdict import FirstMoveSeen, KnownPart, StartJudge, StartQuestion
+from app.desk.start_verdict import KnownPart, StartJudge, StartQuestion, with_verdict
 from app.desk.translation import tr
 from app.path.path_aspects import DrawnLeg
 from core.executor.commands import Command, GiveClearance
@@ -83,7 +84,7 @@ class StartWatch:
         """Return the proof of a line or of a restart with the verdict on its first move."""
         if proved.proof.errors:
             return proved
-        return self._judge.judge(self._of(job, Starts.LINE, snapshot), watch).among(proved)
+        return with_verdict(proved, self._judge.judge(self._of(job, Starts.LINE, snapshot), watch))
 
     # --- what is asked ------------------------------------------------------------------------------------
 

@@ -12,7 +12,7 @@ from app.compose.stored_offsets import read_offsets
 from app.compose.workshop import samples, workshop
 from app.desk.latest import AbandonedError
 from app.desk.program_loading import Proved
-from app.desk.start_verdict import KnownPart, StartJudge, StartQuestion
+from app.desk.start_verdict import KnownPart, StartJudge, StartQuestion, with_verdict
 from core.executor.interrupted_job import ESTOP, InterruptedJob
 from core.executor.job import Proof
 from core.executor.snapshot import Starts
@@ -121,10 +121,11 @@ def test_a_line_may_cut_where_a_program_may_not_begin() -> None:
 def test_a_refused_line_has_an_error_and_a_clear_one_none() -> None:
     part = known("knob.nc", described=True)
     proved = Proved(Proof(part.job.digest, ()))
-    refused = StartJudge().judge(question(part, tip_at(part, 10.0, -10.0)), watch).among(proved)
+    inside = question(part, tip_at(part, 10.0, -10.0))
+    refused = with_verdict(proved, StartJudge().judge(inside, watch))
     assert [each.code for each in refused.diagnostics] == [INSIDE]
     assert refused.proof.errors
-    clear = StartJudge().judge(question(part, HOME), watch).among(proved)
+    clear = with_verdict(proved, StartJudge().judge(question(part, HOME), watch))
     assert (clear.diagnostics, clear.proof.errors) == ((), ())
     assert clear.clearance is not None
 
