@@ -286,6 +286,8 @@ class Executor:
             control.feed_hold("GUARD OPEN")  # a jog in setting is the builder's to limit
         if signals.start:
             control.start()
+        elif signals.late_start:
+            self._context.log("refused", "CycleStart came too late to be obeyed")
         if signals.turned_on:
             control.spindle_switch()
         control.follow_wheel()

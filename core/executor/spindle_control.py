@@ -288,7 +288,8 @@ class SpindleControl:
             self.command = 0.0
             self._port.coast()
         else:
-            self._note_fall(0.0, self._now)
+            if self.command != 0.0:  # told again, it has no more time to obey
+                self._note_fall(0.0, self._now)
             self.command = 0.0
             self._port.run(0.0)
 

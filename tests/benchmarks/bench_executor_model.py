@@ -38,7 +38,7 @@ def main(arguments: list[str]) -> int:
                 deadline=None,
                 derandomize=False,
                 database=None,
-                phases=(Phase.generate, Phase.shrink),
+                phases=(Phase.generate,),
                 suppress_health_check=list(HealthCheck),
             ),
         )
