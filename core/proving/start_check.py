@@ -172,6 +172,8 @@ class StartCheck:
     ) -> tuple[int, float, bool] | None:
         """Tool, Z, and whether it is inside before it moves; None: nothing is met."""
         here = (now.at[0], now.at[1])
+        if now.tool == 0 and now.broken is None:
+            now = replace(now, strict=False)  # no tool is in work: where its tip would be says nothing
         standing = self._met(metal, now.tool, here, here)
         if standing and now.strict:
             return now.tool, standing.front, True

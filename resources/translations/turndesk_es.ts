@@ -17615,6 +17615,11 @@
     </message>
     <message>
       <location filename="core/executor/executor.py" />
+      <source>CycleStart came too late to be obeyed</source>
+      <translation>CycleStart llegó demasiado tarde para obedecerla</translation>
+    </message>
+    <message>
+      <location filename="core/executor/executor.py" />
       <source>feed %1 %</source>
       <translation>avance %1 %</translation>
     </message>
@@ -18095,6 +18100,11 @@
     </message>
     <message>
       <location filename="core/executor/safe_stop.py" />
+      <source>the drives</source>
+      <translation>los accionamientos</translation>
+    </message>
+    <message>
+      <location filename="core/executor/safe_stop.py" />
       <source>the outputs</source>
       <translation>las salidas</translation>
     </message>
@@ -18432,6 +18442,11 @@
       <location filename="core/executor/supervision.py" />
       <source>THE MACHINE WAS NOT HEARD</source>
       <translation>NO SE OÍA A LA MÁQUINA</translation>
+    </message>
+    <message>
+      <location filename="core/executor/supervision.py" />
+      <source>nothing is heard of the slides</source>
+      <translation>no se recibe nada de los carros</translation>
     </message>
     <message>
       <location filename="core/executor/thread_path.py" />

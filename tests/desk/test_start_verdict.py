@@ -17,6 +17,7 @@ from core.executor.interrupted_job import ESTOP, InterruptedJob
 from core.executor.job import Proof
 from core.executor.snapshot import Starts
 from core.executor.start_clearance import CROSSES, INSIDE
+from core.language.source import Source, load_source
 from core.part.tool_shape import ToolKind, ToolShape
 from core.proving.part_history import PartHistory
 from core.proving.tip_moves import TipMove
@@ -29,13 +30,19 @@ def watch(_reached: float = 0.0) -> None:
     """Nothing gives the work up."""
 
 
+def part_of(source: Source) -> KnownPart:
+    """A program and its part, with stock and tools as assumed."""
+    steps = workshop(load_machine(None), lambda: read_offsets(samples() / "offsets.toml"))
+    job = steps.make_job(source, False)
+    steps.prove(job, watch)
+    return KnownPart(job, steps.draw(job, watch))
+
+
 @cache
 def known(name: str, *, described: bool = False) -> KnownPart:
     """A sample program and its part; ``described``: its stock and T1 are specified."""
-    steps = workshop(load_machine(None), lambda: read_offsets(samples() / "offsets.toml"))
-    job = steps.make_job(steps.read(samples() / name), False)
-    steps.prove(job, watch)
-    picture = steps.draw(job, watch)
+    part = part_of(load_source(samples() / name))
+    job, picture = part.job, part.picture
     assert picture.part is not None
     if described:
         stock = PartHistory(picture.part).stock
@@ -95,6 +102,11 @@ def test_a_tool_inside_specified_stock_is_refused_without_any_interruption() -> 
 def test_what_rests_on_assumed_stock_is_only_announced() -> None:
     part = known("knob.nc")
     assert code(question(part, tip_at(part, 10.0, -10.0))) == ("", True)
+
+
+def test_without_a_tool_in_work_its_place_says_nothing() -> None:
+    part = part_of(Source("NO TOOL", "G90G94\nM03S600\nM08\nG01X.4Z-.4F30\nX0.Z0.\nM30\n"))
+    assert code(question(part, HOME)._replace(tool=0)) == ("", False)
 
 
 def test_after_an_estop_in_a_groove_the_way_to_line_1_is_refused_and_a_jog_is_named() -> None:
