@@ -21,6 +21,7 @@ from app.desk.first_job import FirstJob
 from app.desk.interrupted_notice import NoticeRow
 from app.desk.machine_file_changes import FileChanges
 from app.desk.machine_status import MachineStatus, SilenceWatch, Tone, status_of
+from app.desk.page_entry import program_barred
 from app.desk.program_folder import ProgramFolders
 from app.desk.program_loading import Loaded, PartProved, Phase, ProgramLoader
 from app.desk.program_renewal import ProgramRenewal
@@ -353,8 +354,9 @@ class Desk:
 
     def _prompt(self, snapshot: Snapshot, loaded: Loaded, page: str) -> str:
         if page:
-            return prompt_line.alarm_of(snapshot, self.release_words) or page
-        standing = prompt_line.prompt(snapshot, loaded, self.start_words, self.release_words)
+            return prompt_line.alarm_of(snapshot, self.release_words, field_open=self.field_open()) or page
+        words = self.start_words, self.release_words
+        standing = prompt_line.prompt(snapshot, loaded, *words, field_open=self.field_open())
         if refusal := self.first_move_refusal(snapshot):
             standing = f"{prompt_line.NO_START}: {refusal}"
         elif self.first_move is not None and self.first_move.checking and snapshot.state is State.IDLE:
@@ -396,10 +398,9 @@ class Desk:
 
     def may_choose(self) -> bool:
         """Whether a program can be chosen now; says why not."""
-        if self.snapshot().state in UNDER_WAY:
-            self.say("A PROGRAM IS UNDER WAY: LET IT END, OR STOP IT AND PRESS R, BEFORE CHOOSING ANOTHER")
-            return False
-        return True
+        if why := program_barred(self.snapshot()):
+            self.say(why)
+        return not why
 
     def choose(self, typed: str) -> bool:
         """Load the program that was typed or picked; False when there is none of that name."""

@@ -93,6 +93,18 @@ class JogPage(HeldKeysPage):
         touch = {"F5": lambda: model.ask(TOUCH_X), "F6": lambda: model.ask(TOUCH_Z)}
         return {**common, **touch, "F10": model.tool.undo}
 
+    def barred(self) -> frozenset[str]:
+        """Return the keys of touching off, of undo and of the tilted plane while they would be refused."""
+        model, snapshot = self.model, self.desk.snapshot()
+        if model.on_mill:
+            return frozenset() if model.tilt.turns(snapshot) else frozenset({"F5"})
+        found = {
+            "F5": model.tool.barred(TOUCH_X, snapshot),
+            "F6": model.tool.barred(TOUCH_Z, snapshot),
+            "F10": model.tool.undo_barred(),
+        }
+        return frozenset(key for key, why in found.items() if why)
+
     def has_field(self) -> bool:
         """A question about the tool, or the spindle speed."""
         return self.model.asked

@@ -284,7 +284,12 @@ class ToolSetting:
     def undo(self) -> None:
         """Take the last change of the tools back."""
         self.close()
-        self.history.undo(self.book.locked or refusal(self.desk.snapshot(), correction=False))
+        self.history.undo(self.undo_barred())
+
+    def undo_barred(self) -> str:
+        """Return why the last change of the tools is not taken back now; empty when it is."""
+        why = self.book.locked or refusal(self.desk.snapshot(), correction=False)
+        return why or ("" if self.history.undoable else tr("NO OFFSET WAS CHANGED YET: NOTHING TO UNDO"))
 
     def escape(self) -> bool:
         """Close the question, forget half a tool; False when there was nothing."""

@@ -131,6 +131,11 @@ class OffsetHistory:
         """The history instead of the table, or the table again."""
         self.listed = None if self.listed is not None else self._read()
 
+    @property
+    def undoable(self) -> bool:
+        """Whether this table was ever changed."""
+        return self._newest > 0
+
     def undo(self, why_not: str) -> None:
         """Take the last change of this table back, unless there is a reason not to."""
         if not why_not:

@@ -102,7 +102,9 @@ class SecondaryOffsets(OffsetTable):
         return f"{leave}        {tr('Press C to clear all offsets')}"
 
     def hint(self, snapshot: Snapshot) -> str:
-        """That every value may be a sum, or from when a correction counts."""
+        """Return what is typed now, or from when a correction counts."""
+        if self.step is Step.NUMBER and not counts_from(snapshot):
+            return tr("TYPE THE NUMBER OF AN OFFSET AND PRESS RETURN")
         return counts_from(snapshot) or tr(
             "EVERY VALUE TAKES ARITHMETIC, SUCH AS .5-.002; RETURN ALONE KEEPS THE VALUE"
         )

@@ -11,7 +11,6 @@ from PySide6.QtWidgets import QWidget
 
 from app.desk import formats
 from app.desk.desk import Desk
-from app.desk.prompt_line import NO_START
 from app.desk.station_hands import Pot
 from app.desk.translation import tr
 from app.screen.look import CENTRE, RIGHT, Look, Painter
@@ -28,7 +27,8 @@ class StationDock(FingerPanel):
     title = "OPERATOR STATION"
     _shown: Shown[object] = Shown(())
     _auto = Shown(True)
-    start_refused = Shown(False)  # for its first move: the palms are not offered
+    mute: Shown[frozenset[str]] = Shown(frozenset())  # letters that do not act now, and are not shown
+    barred = Shown(False)  # Cycle Start would be refused
 
     def __init__(self, look: Look, desk: Desk, parent: QWidget | None = None) -> None:
         super().__init__(look, parent)
@@ -38,8 +38,8 @@ class StationDock(FingerPanel):
     def show_station(self, snapshot: Snapshot) -> None:
         """Where its switches and buttons stand."""
         desk = self._desk
-        self._auto = snapshot.spindle_auto
-        self.start_refused = bool(desk.first_move_refusal(snapshot))
+        refused = desk.barred() or desk.first_move_refusal(snapshot)
+        self._auto, self.barred = snapshot.spindle_auto, bool(refused)
         palms = frozenset(desk.hands.palms.down)
         pots = (desk.hands.spindle_pot.wanted, desk.hands.feed_pot.wanted)
         latched = desk.settings.now.latched and desk.one_hand
@@ -71,7 +71,8 @@ class StationDock(FingerPanel):
         self._switch(painter)
         spindle, feed = desk.hands.spindle_pot, desk.hands.feed_pot
         self._label(painter, self._row(26.2, 2.4), "SPINDLE SPEED", formats.percent(spindle.wanted), "text")
-        self._pot(painter, self._spindle_box(), (",", "."), spindle, desk.hands.turn_spindle_pot)
+        keys = ("−", "+") if "," in self.mute else (",", ".")
+        self._pot(painter, self._spindle_box(), keys, spindle, desk.hands.turn_spindle_pot)
         self._label(painter, self._row(36.1, 2.4), "FEED RATE", formats.percent(feed.wanted), "text")
         self._pot(painter, self._feed_box(), ("−", "+"), feed, desk.override)
         self._hold(painter)
@@ -104,7 +105,7 @@ class StationDock(FingerPanel):
         painter.box(box, "estop_ground", 0.14, "estop_ground" if pressed else "")
         ink, third = "estop_plate" if pressed else "estop_ground", QRectF(box)
         third.setHeight(box.height() / 3)
-        for number, word in enumerate(("TWIST", "OUT", "U")):
+        for number, word in enumerate(("TWIST", "OUT", "" if "U" in self.mute else "U")):
             row = third.translated(0, number * third.height())
             painter.write(row, word, 1.7, ink, at=CENTRE, margin=0.6)
         self.controls.append(Control(box, self._twist_begins, None, self._twist_ends))
@@ -122,7 +123,9 @@ class StationDock(FingerPanel):
             self._desk.hands.estop(pressed=False)
 
     def _switch(self, painter: Painter) -> None:
-        self._label(painter, self._row(16.4, 2.4), "SPINDLE SWITCH", "A", "accent")
+        self._label(
+            painter, self._row(16.4, 2.4), "SPINDLE SWITCH", "" if "A" in self.mute else "A", "accent"
+        )
         box = self._row(18.9, 6.5)
         half = box.width() / 2
         for number, word in enumerate(("OFF", "AUTO")):
@@ -175,7 +178,7 @@ class StationDock(FingerPanel):
             row = QRectF(room.x(), top + number * high, room.width(), high)
             painter.write(row, line, 2.3, "text", fit=False)
         inner.setHeight(inner.height() / 2)
-        painter.write(inner, "H", 2.2, "accent", at=RIGHT)
+        painter.write(inner, "" if "H" in self.mute else "H", 2.2, "accent", at=RIGHT)
         painter.write(inner.translated(0, inner.height()), "PAUSE", 1.5, "accent", at=RIGHT)
         press, release = partial(desk.hands.hold, down=True), partial(desk.hands.hold, down=False)
         self.controls.append(Control(box, lambda _at: press(), None, release, always=True))
@@ -186,9 +189,7 @@ class StationDock(FingerPanel):
         text = "CYCLE START: BOTH PALMS" if desk.two_hand else "CYCLE START"
         if self._latches:
             text = "CYCLE START: ONE BY ONE"
-        if self.start_refused:
-            text = NO_START
-        painter.write(head, text, 1.6, "pause" if self._latches or self.start_refused else "soft")
+        painter.write(head, text, 1.6, "pause" if self._latches else "soft")
         box = self._row(56.8, 13.6)
         if not desk.two_hand:
             self._palm(painter, box, "F12", down=False)
@@ -217,7 +218,7 @@ class StationDock(FingerPanel):
         look, u = self.look, self.look.u
         size = min(box.width(), box.height()) - 0.8 * u
         head = QRectF(box.center().x() - size / 2, box.center().y() - size / 2, size, size)
-        ink = "frame" if self.start_refused else "run"
+        ink = "frame" if self.barred else "run"
         painter.setPen(look.pen(ink, 0.3))
         painter.setBrush(look.colour("key"))
         painter.drawEllipse(head)

@@ -92,7 +92,7 @@ class Executor:
         self._missed = False  # the scope could not be told something
         self._late = 0.0  # s, the worst since the last that was handed over
         spindle = SpindleControl(
-            ports.spindle, machine.spindle, ports.lock, _lay_out(ports), ports.orientation
+            ports.spindle, machine.spindle, ports.lock, _lay_out(ports), ports.orientation, ports.spindle_lag
         )
         outputs = CommandedOutputs(ports.io, machine.outputs)
         self._context = MachineContext(

@@ -5495,11 +5495,6 @@
     </message>
     <message>
       <location filename="app/desk/desk.py" />
-      <source>A PROGRAM IS UNDER WAY: LET IT END, OR STOP IT AND PRESS R, BEFORE CHOOSING ANOTHER</source>
-      <translation>HAY UN PROGRAMA EN CURSO: DEJE QUE TERMINE, O PÁRELO Y PULSE R, ANTES DE ELEGIR OTRO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/desk.py" />
       <source>AN ALARM STANDS: PRESS R TO ACKNOWLEDGE IT FIRST</source>
       <translation>HAY UNA ALARMA: PULSE PRIMERO R PARA RECONOCERLA</translation>
     </message>
@@ -6039,6 +6034,61 @@
       <translation>corrector de herramienta</translation>
     </message>
     <message>
+      <location filename="app/desk/page_entry.py" />
+      <source>A PROGRAM IS UNDER WAY: LET IT END, OR STOP IT AND PRESS R, BEFORE CHOOSING ANOTHER</source>
+      <translation>HAY UN PROGRAMA EN CURSO: DEJE QUE TERMINE, O PÁRELO Y PULSE R, ANTES DE ELEGIR OTRO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/page_entry.py" />
+      <source>A PROGRAM IS UNDER WAY: LET IT END, OR STOP IT AND PRESS R, BEFORE MDI</source>
+      <translation>HAY UN PROGRAMA EN CURSO: DEJE QUE TERMINE, O PÁRELO Y PULSE R, ANTES DE MDI</translation>
+    </message>
+    <message>
+      <location filename="app/desk/page_entry.py" />
+      <source>A PROGRAM IS UNDER WAY: LET IT END, OR STOP IT AND PRESS R, BEFORE SEARCHTO</source>
+      <translation>HAY UN PROGRAMA EN CURSO: DEJE QUE TERMINE, O PÁRELO Y PULSE R, ANTES DE BUSCAR A</translation>
+    </message>
+    <message>
+      <location filename="app/desk/page_entry.py" />
+      <source>CHOOSE A PROGRAM FIRST (F2)</source>
+      <translation>ELIJA PRIMERO UN PROGRAMA (F2)</translation>
+    </message>
+    <message>
+      <location filename="app/desk/page_entry.py" />
+      <source>CHOOSE A PROGRAM FIRST (F2), OR TYPE THE NAME OF A NEW ONE THERE</source>
+      <translation>ELIJA PRIMERO UN PROGRAMA (F2), O ESCRIBA AHÍ EL NOMBRE DE UNO NUEVO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/page_entry.py" />
+      <source>NOBODY KNOWS WHETHER THE SPINDLE TURNS: PRESS E-STOP, NO EDITING BESIDE IT</source>
+      <translation>NADIE SABE SI GIRA EL HUSILLO: PULSE PARO DE EMERGENCIA, NO EDITE A SU LADO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/page_entry.py" />
+      <source>THE AXES ARE MOVING: STOP THEM (H) BEFORE YOU CHOOSE A PROGRAM</source>
+      <translation>LOS EJES SE MUEVEN: PÁRELOS (H) ANTES DE ELEGIR UN PROGRAMA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/page_entry.py" />
+      <source>THE PROGRAM IS NOT PROVED WITHOUT ERRORS: SEARCHTO NEEDS THAT</source>
+      <translation>EL PROGRAMA NO ESTÁ COMPROBADO SIN ERRORES: BUSCAR A LO NECESITA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/page_entry.py" />
+      <source>THE SLIDES ARE BEING MOVED BY HAND: LET THEM COME TO REST BEFORE EDITING</source>
+      <translation>LOS CARROS SE MUEVEN A MANO: ESPERE A QUE PAREN ANTES DE EDITAR</translation>
+    </message>
+    <message>
+      <location filename="app/desk/page_entry.py" />
+      <source>THE SPINDLE IS ON: SWITCH IT OFF (M05, OR R FOR RESET) AND LET IT COME TO REST BEFORE EDITING</source>
+      <translation>EL HUSILLO ESTÁ ENCENDIDO: APÁGUELO (M05, O R PARA RESET) Y ESPERE QUE SE DETENGA ANTES DE EDITAR</translation>
+    </message>
+    <message>
+      <location filename="app/desk/page_entry.py" />
+      <source>THE SPINDLE STILL COASTS: WAIT UNTIL IT STANDS BEFORE EDITING</source>
+      <translation>EL HUSILLO AÚN GIRA POR INERCIA: ESPERE QUE SE DETENGA ANTES DE EDITAR</translation>
+    </message>
+    <message>
       <location filename="app/desk/persistence.py" />
       <source>nothing is kept here; start turndesk with a folder that can be written (TURNDESK_HOME)</source>
       <translation>aquí no se guarda nada; arranque turndesk con una carpeta en la que se pueda escribir (TURNDESK_HOME)</translation>
@@ -6292,6 +6342,11 @@
       <location filename="app/desk/prompt_line.py" />
       <source>TYPE A NAME, OR MARK A PROGRAM WITH THE ARROWS, BEFORE EDITING</source>
       <translation>ESCRIBA UN NOMBRE, O MARQUE UN PROGRAMA CON LAS FLECHAS, ANTES DE EDITAR</translation>
+    </message>
+    <message>
+      <location filename="app/desk/prompt_line.py" />
+      <source>WHAT TO DO: %1  ·  F1 LEAVES THE PAGE, THEN R ACKNOWLEDGES</source>
+      <translation>QUÉ HACER: %1  ·  F1 SALE DE LA PÁGINA, LUEGO R RECONOCE</translation>
     </message>
     <message>
       <location filename="app/desk/prompt_line.py" />
@@ -6895,11 +6950,6 @@
     </message>
     <message>
       <location filename="app/editor/editor_messages.py" />
-      <source>CHOOSE A PROGRAM FIRST (F2), OR TYPE THE NAME OF A NEW ONE THERE</source>
-      <translation>ELIJA PRIMERO UN PROGRAMA (F2), O ESCRIBA AHÍ EL NOMBRE DE UNO NUEVO</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor_messages.py" />
       <source>F3 SAVE AND LOAD    F1 SAVE ONLY</source>
       <translation>F3 GUARDAR Y CARGAR    F1 SOLO GUARDAR</translation>
     </message>
@@ -6907,11 +6957,6 @@
       <location filename="app/editor/editor_messages.py" />
       <source>F6 LEAVE WITHOUT SAVING    F3 SAVE AND LOAD    ESC CONTINUE EDITING</source>
       <translation>F6 SALIR SIN GUARDAR    F3 GUARDAR Y CARGAR    ESC SEGUIR EDITANDO</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor_messages.py" />
-      <source>NOBODY KNOWS WHETHER THE SPINDLE TURNS: PRESS E-STOP, NO EDITING BESIDE IT</source>
-      <translation>NADIE SABE SI GIRA EL HUSILLO: PULSE PARO DE EMERGENCIA, NO EDITE A SU LADO</translation>
     </message>
     <message>
       <location filename="app/editor/editor_messages.py" />
@@ -6942,21 +6987,6 @@
       <location filename="app/editor/editor_messages.py" />
       <source>THE MACHINE RUNS THE PROGRAM AS IT WAS LOADED, NOT THIS TEXT: ESC FOR FEED HOLD</source>
       <translation>LA MÁQUINA CORRE EL PROGRAMA COMO SE CARGÓ, NO ESTE TEXTO: ESC PARA RETENCIÓN DE AVANCE</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor_messages.py" />
-      <source>THE SLIDES ARE BEING MOVED BY HAND: LET THEM COME TO REST BEFORE EDITING</source>
-      <translation>LOS CARROS SE MUEVEN A MANO: ESPERE A QUE PAREN ANTES DE EDITAR</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor_messages.py" />
-      <source>THE SPINDLE IS ON: SWITCH IT OFF (M05, OR R FOR RESET) AND LET IT COME TO REST BEFORE EDITING</source>
-      <translation>EL HUSILLO ESTÁ ENCENDIDO: APÁGUELO (M05, O R PARA RESET) Y ESPERE QUE SE DETENGA ANTES DE EDITAR</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor_messages.py" />
-      <source>THE SPINDLE STILL COASTS: WAIT UNTIL IT STANDS BEFORE EDITING</source>
-      <translation>EL HUSILLO AÚN GIRA POR INERCIA: ESPERE QUE SE DETENGA ANTES DE EDITAR</translation>
     </message>
     <message>
       <location filename="app/editor/editor_messages.py" />
@@ -7420,6 +7450,11 @@
     </message>
     <message>
       <location filename="app/jobs/jobs_model.py" />
+      <source>NO JOB IS LOADED WHILE THE MACHINE MOVES OR A PROGRAM IS UNDER WAY; ESC FOR AUTOMATIC</source>
+      <translation>NO SE CARGA NINGÚN TRABAJO MIENTRAS LA MÁQUINA SE MUEVE O HAY UN PROGRAMA EN CURSO; ESC: AUTOMÁTICO</translation>
+    </message>
+    <message>
+      <location filename="app/jobs/jobs_model.py" />
       <source>NO JOB WAITS: F3 ADDS THE PROGRAM ON THE DESK, F10 OF THE LIST OF PROGRAMS (F1, F6) ANY OTHER</source>
       <translation>NINGÚN TRABAJO ESPERA: F3 AÑADE EL PROGRAMA DEL PUESTO, F10 DE LA LISTA DE PROGRAMAS (F1, F6) CUALQUIER OTRO</translation>
     </message>
@@ -7585,6 +7620,11 @@
     </message>
     <message>
       <location filename="app/jog/drive_test_model.py" />
+      <source>AN ARROW ASKS FOR THE TRAVEL; THE SAME ARROW, HELD, PLAYS THE TEST</source>
+      <translation>UNA FLECHA PREGUNTA EL RECORRIDO; LA MISMA FLECHA, MANTENIDA, HACE LA PRUEBA</translation>
+    </message>
+    <message>
+      <location filename="app/jog/drive_test_model.py" />
       <source>AN ARROW ASKS FOR THE TRAVEL; THE SAME ARROW, HELD, PLAYS THE TEST; F5 SHOWS ITS FIGURES</source>
       <translation>UNA FLECHA PREGUNTA POR EL RECORRIDO; LA MISMA, MANTENIDA, HACE LA PRUEBA; F5 MUESTRA SUS CIFRAS</translation>
     </message>
@@ -7622,6 +7662,11 @@
       <location filename="app/jog/drive_test_model.py" />
       <source>NO DRIVE TEST: {why}</source>
       <translation>SIN PRUEBA DE ACCIONAMIENTO: {why}</translation>
+    </message>
+    <message>
+      <location filename="app/jog/drive_test_model.py" />
+      <source>NO TEST WAS PLAYED YET: THERE ARE NO FIGURES</source>
+      <translation>AÚN NO SE HIZO NINGUNA PRUEBA: NO HAY VALORES</translation>
     </message>
     <message>
       <location filename="app/jog/drive_test_model.py" />
@@ -8055,6 +8100,11 @@
     </message>
     <message>
       <location filename="app/jog/jog_model.py" />
+      <source>A PROGRAM IS UNDER WAY: LET IT END, OR PRESS PAUSE, THEN R, BEFORE JOGGING</source>
+      <translation>HAY UN PROGRAMA EN CURSO: ESPERE A QUE TERMINE, O PULSE PAUSE Y LUEGO R, ANTES DE MOVER A MANO</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_model.py" />
       <source>AN ENTRY IS OPEN: PRESS RETURN OR ESC FIRST</source>
       <translation>HAY UNA ENTRADA ABIERTA: PULSE PRIMERO RETURN O ESC</translation>
     </message>
@@ -8092,6 +8142,11 @@
       <location filename="app/jog/jog_model.py" />
       <source>HOLD A KEY TO MOVE, WITH SHIFT FOR RAPID; F8 TOUCHES TOOLS OFF, F9 THE WORKPIECE</source>
       <translation>MANTENGA UNA TECLA PARA MOVER, CON MAYÚS. EN RÁPIDO; F8 MIDE HERRAMIENTAS, F9 LA PIEZA</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_model.py" />
+      <source>HOLD AN ARROW TO MOVE, WITH SHIFT FOR RAPID; T CHOOSES A TOOL</source>
+      <translation>MANTENGA UNA FLECHA PARA MOVER, CON MAYÚS EN RÁPIDO; T ELIGE UNA HERRAMIENTA</translation>
     </message>
     <message>
       <location filename="app/jog/jog_model.py" />
@@ -8500,6 +8555,11 @@
     </message>
     <message>
       <location filename="app/jog/tool_setting.py" />
+      <source>NO OFFSET WAS CHANGED YET: NOTHING TO UNDO</source>
+      <translation>AÚN NO SE CAMBIÓ NINGÚN CORRECTOR: NO HAY NADA QUE DESHACER</translation>
+    </message>
+    <message>
+      <location filename="app/jog/tool_setting.py" />
       <source>THE CONTROL HAS CHANGED ITS UNIT OR ITS X: NOTHING WAS CHANGED, ENTER IT AGAIN</source>
       <translation>EL CONTROL CAMBIÓ SU UNIDAD O SU X: NO SE CAMBIÓ NADA, ESCRÍBALO OTRA VEZ</translation>
     </message>
@@ -8592,11 +8652,6 @@
       <location filename="app/jog/tool_setting_view.py" />
       <source>none</source>
       <translation>ninguna</translation>
-    </message>
-    <message>
-      <location filename="app/mdi/mdi_model.py" />
-      <source>A PROGRAM IS UNDER WAY: LET IT END, OR STOP IT AND PRESS R, BEFORE MDI</source>
-      <translation>HAY UN PROGRAMA EN CURSO: DEJE QUE TERMINE, O PÁRELO Y PULSE R, ANTES DE MDI</translation>
     </message>
     <message>
       <location filename="app/mdi/mdi_model.py" />
@@ -9365,6 +9420,11 @@
     </message>
     <message>
       <location filename="app/offsets/secondary_offsets.py" />
+      <source>TYPE THE NUMBER OF AN OFFSET AND PRESS RETURN</source>
+      <translation>ESCRIBA EL NÚMERO DE UN CORRECTOR Y PULSE RETURN</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/secondary_offsets.py" />
       <source>X DIAMETER CORRECTION?</source>
       <translation>¿CORRECCIÓN EN DIÁMETRO X?</translation>
     </message>
@@ -9687,6 +9747,11 @@
       <location filename="app/part/part_sheet.py" />
       <source>TYPE THE REASON, RETURN KEEPS IT WITH THE PROGRAM; ESC LEAVES THE CHECK ON</source>
       <translation>ESCRIBA EL MOTIVO, RETURN LO GUARDA CON EL PROGRAMA; ESC DEJA LA COMPROBACIÓN</translation>
+    </message>
+    <message>
+      <location filename="app/part/part_sheet.py" />
+      <source>UP AND DOWN SHOW THE PLACE OF A FINDING; F2: STOCK</source>
+      <translation>ARRIBA Y ABAJO MUESTRAN EL LUGAR DE UN AVISO; F2: MATERIAL</translation>
     </message>
     <message>
       <location filename="app/part/part_sheet.py" />
@@ -10367,6 +10432,11 @@
       <location filename="app/programs/program_list.py" />
       <source>TYPE A PART OF A NAME; F3 OPENS IT IN THE EDITOR; PAUSE HOLDS THE FEED; ESC FOR AUTOMATIC</source>
       <translation>ESCRIBA PARTE DE UN NOMBRE; F3 LO ABRE EN EL EDITOR; PAUSA RETIENE EL AVANCE; ESC: AUTOMÁTICO</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_list.py" />
+      <source>TYPE A PART OF A NAME; PAUSE HOLDS THE FEED; ESC FOR AUTOMATIC</source>
+      <translation>ESCRIBA PARTE DE UN NOMBRE; PAUSE DETIENE EL AVANCE; ESC: AUTOMÁTICO</translation>
     </message>
     <message>
       <location filename="app/programs/program_list.py" />
@@ -12970,18 +13040,8 @@
     </message>
     <message>
       <location filename="app/searchto/searchto_model.py" />
-      <source>A PROGRAM IS UNDER WAY: LET IT END, OR STOP IT AND PRESS R, BEFORE SEARCHTO</source>
-      <translation>HAY UN PROGRAMA EN CURSO: DEJE QUE TERMINE, O PÁRELO Y PULSE R, ANTES DE BUSCAR A</translation>
-    </message>
-    <message>
-      <location filename="app/searchto/searchto_model.py" />
       <source>CHOOSE A GOOD LINE FIRST</source>
       <translation>ELIJA PRIMERO UNA LÍNEA BUENA</translation>
-    </message>
-    <message>
-      <location filename="app/searchto/searchto_model.py" />
-      <source>CHOOSE A PROGRAM FIRST (F2)</source>
-      <translation>ELIJA PRIMERO UN PROGRAMA (F2)</translation>
     </message>
     <message>
       <location filename="app/searchto/searchto_model.py" />
@@ -13037,11 +13097,6 @@
       <location filename="app/searchto/searchto_model.py" />
       <source>THE LINE CANNOT BE SEARCHED: {why}</source>
       <translation>LA LÍNEA NO SE PUEDE BUSCAR: {why}</translation>
-    </message>
-    <message>
-      <location filename="app/searchto/searchto_model.py" />
-      <source>THE PROGRAM IS NOT PROVED WITHOUT ERRORS: SEARCHTO NEEDS THAT</source>
-      <translation>EL PROGRAMA NO ESTÁ COMPROBADO SIN ERRORES: BUSCAR A LO NECESITA</translation>
     </message>
     <message>
       <location filename="app/searchto/searchto_model.py" />
@@ -13665,6 +13720,11 @@
     </message>
     <message>
       <location filename="app/sharing/sharing_model.py" />
+      <source>F2 TAKES THE MARKED VERSION; NOTHING IS TAKEN UNASKED; ESC FOR AUTOMATIC</source>
+      <translation>F2 TOMA LA VERSIÓN MARCADA; NADA SE TOMA SIN PREGUNTAR; ESC: AUTOMÁTICO</translation>
+    </message>
+    <message>
+      <location filename="app/sharing/sharing_model.py" />
       <source>KEEP</source>
       <translation>CONSERVAR</translation>
     </message>
@@ -13737,6 +13797,11 @@
       <location filename="app/sharing/sharing_model.py" />
       <source>THERE IS NOTHING TO SETTLE: NO OTHER DESK HAS CHANGED IT TOO</source>
       <translation>NO HAY NADA QUE DECIDIR: NINGÚN OTRO PUESTO LO HA CAMBIADO TAMBIÉN</translation>
+    </message>
+    <message>
+      <location filename="app/sharing/sharing_model.py" />
+      <source>UP AND DOWN MARK A PROGRAM, F5 LOOKS AGAIN; ESC FOR AUTOMATIC</source>
+      <translation>ARRIBA Y ABAJO MARCAN UN PROGRAMA, F5 MIRA OTRA VEZ; ESC: AUTOMÁTICO</translation>
     </message>
     <message>
       <location filename="app/sharing/sharing_model.py" />
@@ -17616,7 +17681,7 @@
     <message>
       <location filename="core/executor/executor.py" />
       <source>CycleStart came too late to be obeyed</source>
-      <translation>CycleStart llegó demasiado tarde para obedecerla</translation>
+      <translation>CycleStart llegó demasiado tarde para ser obedecido</translation>
     </message>
     <message>
       <location filename="core/executor/executor.py" />

@@ -77,7 +77,7 @@ def test_out_of_the_bore_no_start_is_offered_and_the_way_out_is_named(in_the_bor
     operator = in_the_bore
     assert begins(operator.prompt(), "screen.first-move-crosses", tool="T2", direction="Z+")
     assert offered(operator) == ["F6"]
-    assert dock(operator).start_refused
+    assert dock(operator).barred
     assert len(operator.frame.automatic.path.legs) == 2  # the line that is refused is drawn
 
 
@@ -114,7 +114,7 @@ def test_the_way_out_is_taken_and_then_the_program_starts(in_the_bore: Operator)
     assert depth(operator) > 0.0
     assert operator.stage.desk.first_move_refusal(operator.shot) == ""
     assert offered(operator) == ["F6", "Y"]
-    assert not dock(operator).start_refused
+    assert not dock(operator).barred
     operator.key(Key.Key_Y)
     operator.palms()
     operator.until(lambda: operator.shot.state is State.RUN, 5.0)
@@ -140,7 +140,7 @@ def test_where_nothing_was_interrupted_a_start_from_home_is_offered(operator: Op
     operator.stage.make_ready()
     operator.window.refresh()
     assert not begins(operator.prompt(), "screen.first-move-crosses")
-    assert not dock(operator).start_refused
+    assert not dock(operator).barred
     assert len(operator.frame.automatic.path.legs) == 2
     operator.palms()
     assert operator.shot.state in {State.RUN, State.WAIT}

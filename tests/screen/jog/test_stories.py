@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import pytest
+from PySide6.QtCore import QRectF
+from PySide6.QtGui import QPixmap
 
+from app.screen.look import Painter
 from core.executor.snapshot import State
 from core.store.store_rows import ToolRow
 from tests.screen.jog.bench import INCH, SHIFT, JogBench, Key
@@ -286,3 +289,24 @@ def test_hold_ends_homing(lost: JogBench) -> None:
     lost.run(0.5)
     assert lost.shot.state is State.IDLE
     assert not lost.shot.homed[1]
+
+
+@pytest.mark.parametrize(("units", "shown", "other"), [("MM", "12.7", "0.5"), ("INCH", "0.5", "12.7")])
+def test_the_tip_is_shown_in_the_unit_of_the_readout(
+    jog: JogBench, monkeypatch: pytest.MonkeyPatch, units: str, shown: str, other: str
+) -> None:
+    """The readout showed millimeters, and the tip next to it inches."""
+    jog.store.set_tool(1, "test", x=0.0, z=-12.7).result(60)
+    jog.desk.book.read()
+    jog.desk.choose_setting("units", units)
+    jog.type("t")
+    jog.enter("1")
+    jog.run(0.1)
+    written: list[str] = []
+
+    monkeypatch.setattr(Painter, "write", lambda *values, **_more: written.append(values[2]))
+    pixmap = QPixmap(400, 100)
+    with Painter(pixmap, jog.page.look) as painter:
+        jog.page.tool._stands(painter, QRectF(0, 0, 300, 60))
+    assert [each for each in written if each.lstrip("-").startswith(shown)], written
+    assert not [each for each in written if each.lstrip("-").startswith(other)], written
