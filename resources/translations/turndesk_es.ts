@@ -13425,6 +13425,11 @@
     </message>
     <message>
       <location filename="app/shapes/drawing_plan.py" />
+      <source>%1 is %2: in %3 it would fit: choose %4.</source>
+      <translation>%1 mide %2: en %3 cabría: elija %4.</translation>
+    </message>
+    <message>
+      <location filename="app/shapes/drawing_plan.py" />
       <source>A bore begins with a hole: type its diameter.</source>
       <translation>Un mandrinado empieza con un agujero: escriba su diámetro.</translation>
     </message>
@@ -17172,6 +17177,16 @@
       <location filename="core/drawings/dxf_reader.py" />
       <source>is three-dimensional: save a section or a view of the part in one plane.</source>
       <translation>es tridimensional: guarde una sección o una vista de la pieza en un plano.</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/profile_program.py" />
+      <source>%1: enter the tip on its SHAPE page (F8, F8).</source>
+      <translation>%1: introduzca la punta en la página de su forma (F8, F8).</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/profile_program.py" />
+      <source>T%1 has a nose radius of %2 and no tip quadrant in its sheet</source>
+      <translation>T%1 tiene un radio de punta de %2 y su ficha no indica el cuadrante de punta</translation>
     </message>
     <message>
       <location filename="core/drawings/profile_program.py" />
@@ -21622,11 +21637,6 @@
       <location filename="core/interpreter/omniturn/omniturn_statement.py" />
       <source>Keep one of them.</source>
       <translation>Deje uno de ellos.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/omniturn_statement.py" />
-      <source>Look it up.</source>
-      <translation>Búsquelo en la página del lenguaje.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/omniturn_statement.py" />
@@ -27330,8 +27340,8 @@
     </message>
     <message>
       <location filename="core/language/omniturn/other_controls.py" />
-      <source>See the language page.</source>
-      <translation>Vea la página del lenguaje.</translation>
+      <source>See the list of codes: Shift+F1 in the editor.</source>
+      <translation>Vea la lista de códigos: Shift+F1 en el editor.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/other_controls.py" />
@@ -27737,11 +27747,6 @@
       <location filename="core/language/omniturn/word_faults.py" />
       <source>Lines have no numbers here: N is not allowed.</source>
       <translation>Aquí las líneas no llevan número: N no se permite.</translation>
-    </message>
-    <message>
-      <location filename="core/language/omniturn/word_faults.py" />
-      <source>Look the word up in the language page.</source>
-      <translation>Busque la palabra en la página del lenguaje.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/word_faults.py" />
