@@ -136,6 +136,9 @@ class _Making:
             made, fields = self._made(chosen)
         except DrawingError as error:
             return self._plan({word: str(error)})
+        for one, _ in made.shapes:
+            if one.shape.contour:
+                fields["ROUGH"] = one.n("ROUGH")
         self.proposals |= {name: fields[name] for name in _NUMBERS if name in fields}
         troubles = {_field_of(each.word): each.text for each in reversed(made.refusals)}
         return self._plan(troubles, made, chosen)

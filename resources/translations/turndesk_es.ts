@@ -30810,6 +30810,11 @@
     </message>
     <message>
       <location filename="core/shapes/calculators.py" />
+      <source>rough passes %1 deep a side</source>
+      <translation>pasadas de desbaste de %1 por lado</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/calculators.py" />
       <source>rpm, surface speed, feed a turn and a minute: what is typed gives the rest</source>
       <translation>rpm, velocidad de corte, avance por vuelta y por minuto: lo escrito da el resto</translation>
     </message>
@@ -31627,6 +31632,16 @@
       <location filename="core/shapes/turning.py" />
       <source>%1: put a point before it at the same Z, at the lowest X.</source>
       <translation>%1: ponga antes un punto en la misma Z, en la X más baja.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/turning.py" />
+      <source>%1: type a smaller depth of a pass.</source>
+      <translation>%1: escriba una profundidad de pasada menor.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/turning.py" />
+      <source>A pass would be %1 deep, and the insert of T%2 takes %3</source>
+      <translation>Una pasada tendría %1 de profundidad y la plaquita de T%2 admite %3</translation>
     </message>
     <message>
       <location filename="core/shapes/turning.py" />
