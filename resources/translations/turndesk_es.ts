@@ -17095,8 +17095,8 @@
     </message>
     <message>
       <location filename="core/drawings/drawing.py" />
-      <source>%1 is damaged or no %2 (%3): save the drawing anew.</source>
-      <translation>%1 está dañado o no es %2 (%3): guarde el dibujo de nuevo.</translation>
+      <source>%1 is damaged or no %2: save the drawing anew.</source>
+      <translation>%1 está dañado o no es %2: guarde el dibujo de nuevo.</translation>
     </message>
     <message>
       <location filename="core/drawings/drawing_file.py" />
@@ -17177,6 +17177,21 @@
       <location filename="core/drawings/dxf_reader.py" />
       <source>is three-dimensional: save a section or a view of the part in one plane.</source>
       <translation>es tridimensional: guarde una sección o una vista de la pieza en un plano.</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/expansion.py" />
+      <source>%1: save the contour of the part alone.</source>
+      <translation>%1: guarde solo el contorno de la pieza.</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/expansion.py" />
+      <source>A repeated part of %1 contains itself: save the contour of the part alone.</source>
+      <translation>Una parte repetida de %1 se contiene a sí misma: guarde solo el contorno de la pieza.</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/expansion.py" />
+      <source>The repeated parts of %1 come to more than %2 entities</source>
+      <translation>Las partes repetidas de %1 suman más de %2 entidades</translation>
     </message>
     <message>
       <location filename="core/drawings/profile_program.py" />
@@ -17287,6 +17302,11 @@
       <location filename="core/drawings/svg_reader.py" />
       <source>%1 has no path nor line, only %2: draw the contour as a path.</source>
       <translation>%1 no tiene trazado ni línea, solo %2: dibuje el contorno como trazado.</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/svg_reader.py" />
+      <source>%1 is no SVG, its first element is of another namespace: save the drawing anew.</source>
+      <translation>%1 no es SVG, su primer elemento es de otro espacio de nombres: guarde el dibujo de nuevo.</translation>
     </message>
     <message>
       <location filename="core/drawings/turning_contour.py" />
