@@ -18,6 +18,7 @@ from app.compose.error_log import Log
 from app.compose.jobs_desk import give_jobs
 from app.compose.journal import Journal
 from app.compose.kinematics_chain import kinematics_of
+from app.compose.machine_in_use import remember_machine
 from app.compose.machine_setup import read_machine
 from app.compose.machine_status import AGENTS, keep_status
 from app.compose.office import open_office
@@ -212,6 +213,8 @@ def desk_and_executor(
     The scope's record goes to the folder ``records``; None: it is kept in memory alone.
     """
     machine = read_machine(machine_file)
+    if journal is not None:
+        remember_machine(machine_file, journal)
     connected = _connected(machine, clock)
     recorder = Recorder(recorded_of(machine, connected.ports), records)
     events = _Events(clock, journal, recorder)

@@ -21,6 +21,7 @@ from app.desk.first_job import FirstJob
 from app.desk.interrupted_notice import NoticeRow
 from app.desk.machine_file_changes import FileChanges
 from app.desk.machine_status import MachineStatus, SilenceWatch, Tone, status_of
+from app.desk.page_entry import program_barred
 from app.desk.program_folder import ProgramFolders
 from app.desk.program_loading import Loaded, PartProved, Phase, ProgramLoader
 from app.desk.program_renewal import ProgramRenewal
@@ -349,8 +350,9 @@ class Desk:
 
     def _prompt(self, snapshot: Snapshot, loaded: Loaded, page: str) -> str:
         if page:
-            return prompt_line.alarm_of(snapshot, self.release_words) or page
-        standing = prompt_line.prompt(snapshot, loaded, self.start_words, self.release_words)
+            return prompt_line.alarm_of(snapshot, self.release_words, field_open=self.field_open()) or page
+        words = self.start_words, self.release_words
+        standing = prompt_line.prompt(snapshot, loaded, *words, field_open=self.field_open())
         if snapshot.state is State.WAIT:
             standing = how_it_ends(snapshot, self.set_input is not None) or standing
         return " · ".join(each for each in (self._due(snapshot, standing), standing) if each)
@@ -382,10 +384,9 @@ class Desk:
 
     def may_choose(self) -> bool:
         """Whether a program can be chosen now; says why not."""
-        if self.snapshot().state in UNDER_WAY:
-            self.say("A PROGRAM IS UNDER WAY: LET IT END, OR STOP IT AND PRESS R, BEFORE CHOOSING ANOTHER")
-            return False
-        return True
+        if why := program_barred(self.snapshot()):
+            self.say(why)
+        return not why
 
     def choose(self, typed: str) -> bool:
         """Load the program that was typed or picked; False when there is none of that name."""

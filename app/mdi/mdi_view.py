@@ -13,6 +13,7 @@ from PySide6.QtWidgets import QWidget
 from app.desk.machine_status import MachineStatus
 from app.desk.modal_rows import ModalRow, rows_of
 from app.desk.program_loading import Loaded
+from app.desk.prompt_line import MOVING
 from app.desk.translation import tr
 from app.mdi.mdi_model import MdiModel
 from app.screen import page_table
@@ -21,7 +22,7 @@ from app.screen.letter_keys import LINES, LetterPad
 from app.screen.look import RIGHT, Look, Painter
 from app.screen.page_base import Host, KeyActions, ModelPage
 from app.screen.panel import Panel, Press, Shown
-from core.executor.snapshot import CYCLE, Snapshot, Starts
+from core.executor.snapshot import CYCLE, Snapshot, Starts, State
 from core.interpreter.checkpoint import Checkpoint
 from core.language.diagnostics import Diagnostic, Severity
 
@@ -186,6 +187,12 @@ class MdiPage(ModelPage):
             "F9": partial(self.host.go, page_table.SECCMP),
             "F10": partial(self.host.press, "Scope"),
         }
+
+    def barred(self) -> frozenset[str]:
+        """Return DRIVES and RESET while they would be refused."""
+        state = self.desk.snapshot().state
+        found = {"F5": state in {State.ESTOP, State.FAULT}, "F6": state in MOVING}
+        return frozenset(key for key, refused in found.items() if refused)
 
     def _recall(self, back: int) -> None:
         if self.model.has_keyboard:

@@ -128,7 +128,7 @@ class Frame(QWidget):
     def _front(self) -> None:
         page = self.page
         self.desk.starts_here, self.desk.field_open = page.STARTS, self.has_field
-        self.keys.labels = page.labels()
+        self.keys.labels, self.keys.barred = page.labels(), page.barred()
         self._lay_out()
         self.log.hide()
         self.notice.stackUnder(self.log)
@@ -291,9 +291,10 @@ class Frame(QWidget):
         self.log.show_entries(self.desk.log.entries)
         if self.dock is not None:
             self.dock.show_station(snapshot)
+            self.dock.mute = frozenset(key for key in "AHU," if self._is_dead(key))
         self.page.refresh(snapshot, view, loaded)
         self._show_caret()
-        self.keys.labels = self.page.labels()
+        self.keys.labels, self.keys.barred = self.page.labels(), self.page.barred()
 
     def _show_caret(self) -> None:
         """Draw the caret of the page's entry exactly while the characters are that entry's."""

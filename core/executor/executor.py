@@ -89,7 +89,7 @@ class Executor:
         self._missed = False  # the scope could not be told something
         self._late = 0.0  # s, the worst since the last that was handed over
         spindle = SpindleControl(
-            ports.spindle, machine.spindle, ports.lock, _lay_out(ports), ports.orientation
+            ports.spindle, machine.spindle, ports.lock, _lay_out(ports), ports.orientation, ports.spindle_lag
         )
         outputs = CommandedOutputs(ports.io, machine.outputs)
         self._context = MachineContext(
@@ -282,6 +282,8 @@ class Executor:
             control.feed_hold("GUARD OPEN")  # a jog in setting is the builder's to limit
         if signals.start:
             control.start()
+        elif signals.late_start:
+            self._context.log("refused", "CycleStart came too late to be obeyed")
         if signals.turned_on:
             control.spindle_switch()
         control.follow_wheel()

@@ -365,6 +365,7 @@ class MachineControl:
     def shut(self) -> None:
         """Nothing is left moving or switched on."""
         self.safe.react(Reaction.OFF)
+        self.safe.finish()
         self._give_up(CLOSED)
         if self.state is not State.ESTOP:
             self.status.state = State.DISABLED

@@ -160,12 +160,15 @@ class Day:
 
 
 @contextmanager
-def begun(qtbot: QtBot, name: str = "", program: str = "") -> Iterator[Day]:
-    """The desk is switched on, with a program in its folder or none; put away again afterwards."""
+def begun(qtbot: QtBot, name: str = "", program: str = "", machine: str | None = None) -> Iterator[Day]:
+    """The desk is switched on, with a program in its folder or none; put away again afterwards.
+
+    ``machine`` names another machine file than the lathe's.
+    """
     if name:
         write_whole(data_folder() / "programs" / name, program.encode())
     clock, journal = StepClock(), Journal.at_home()
-    desk, executor = desk_and_executor(None, stored_offsets, clock, journal)
+    desk, executor = desk_and_executor(machine, stored_offsets, clock, journal)
     desk.hands.clock = clock.now
     window = MainWindow(Look(DARK))
     window.resize(1024, 600)

@@ -125,6 +125,7 @@ def test_a_correction_that_cannot_be_run_stops_at_the_end_of_the_part(day: Day) 
     day.until(lambda: made(day) == "1")
     day.key(Key.Key_F9)
     day.enter("1", "-9", "", "")
+    yes(day.window)
     day.sees(lambda: begins(day.prompt, "screen.no-next-part"))
     day.key(Key.Key_Escape)  # pressed as the proof ends: it must not remove what nobody has read
     assert begins(day.prompt, "screen.no-next-part")
