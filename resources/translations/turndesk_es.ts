@@ -13610,6 +13610,11 @@
     </message>
     <message>
       <location filename="app/shapes/drawing_plan.py" />
+      <source>%1 is %2: in %3 it would fit: choose %4.</source>
+      <translation>%1 mide %2: en %3 cabría: elija %4.</translation>
+    </message>
+    <message>
+      <location filename="app/shapes/drawing_plan.py" />
       <source>A bore begins with a hole: type its diameter.</source>
       <translation>Un mandrinado empieza con un agujero: escriba su diámetro.</translation>
     </message>
@@ -17285,8 +17290,8 @@
     </message>
     <message>
       <location filename="core/drawings/drawing.py" />
-      <source>%1 is damaged or no %2 (%3): save the drawing anew.</source>
-      <translation>%1 está dañado o no es %2 (%3): guarde el dibujo de nuevo.</translation>
+      <source>%1 is damaged or no %2: save the drawing anew.</source>
+      <translation>%1 está dañado o no es %2: guarde el dibujo de nuevo.</translation>
     </message>
     <message>
       <location filename="core/drawings/drawing_file.py" />
@@ -17367,6 +17372,31 @@
       <location filename="core/drawings/dxf_reader.py" />
       <source>is three-dimensional: save a section or a view of the part in one plane.</source>
       <translation>es tridimensional: guarde una sección o una vista de la pieza en un plano.</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/expansion.py" />
+      <source>%1: save the contour of the part alone.</source>
+      <translation>%1: guarde solo el contorno de la pieza.</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/expansion.py" />
+      <source>A repeated part of %1 contains itself: save the contour of the part alone.</source>
+      <translation>Una parte repetida de %1 se contiene a sí misma: guarde solo el contorno de la pieza.</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/expansion.py" />
+      <source>The repeated parts of %1 come to more than %2 entities</source>
+      <translation>Las partes repetidas de %1 suman más de %2 entidades</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/profile_program.py" />
+      <source>%1: enter the tip on its SHAPE page (F8, F8).</source>
+      <translation>%1: introduzca la punta en la página de su forma (F8, F8).</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/profile_program.py" />
+      <source>T%1 has a nose radius of %2 and no tip quadrant in its sheet</source>
+      <translation>T%1 tiene un radio de punta de %2 y su ficha no indica el cuadrante de punta</translation>
     </message>
     <message>
       <location filename="core/drawings/profile_program.py" />
@@ -17467,6 +17497,11 @@
       <location filename="core/drawings/svg_reader.py" />
       <source>%1 has no path nor line, only %2: draw the contour as a path.</source>
       <translation>%1 no tiene trazado ni línea, solo %2: dibuje el contorno como trazado.</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/svg_reader.py" />
+      <source>%1 is no SVG, its first element is of another namespace: save the drawing anew.</source>
+      <translation>%1 no es SVG, su primer elemento es de otro espacio de nombres: guarde el dibujo de nuevo.</translation>
     </message>
     <message>
       <location filename="core/drawings/turning_contour.py" />
@@ -21837,11 +21872,6 @@
       <location filename="core/interpreter/omniturn/omniturn_statement.py" />
       <source>Keep one of them.</source>
       <translation>Deje uno de ellos.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/omniturn_statement.py" />
-      <source>Look it up.</source>
-      <translation>Búsquelo en la página del lenguaje.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/omniturn_statement.py" />
@@ -27545,8 +27575,8 @@
     </message>
     <message>
       <location filename="core/language/omniturn/other_controls.py" />
-      <source>See the language page.</source>
-      <translation>Vea la página del lenguaje.</translation>
+      <source>See the list of codes: Shift+F1 in the editor.</source>
+      <translation>Vea la lista de códigos: Shift+F1 en el editor.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/other_controls.py" />
@@ -27952,11 +27982,6 @@
       <location filename="core/language/omniturn/word_faults.py" />
       <source>Lines have no numbers here: N is not allowed.</source>
       <translation>Aquí las líneas no llevan número: N no se permite.</translation>
-    </message>
-    <message>
-      <location filename="core/language/omniturn/word_faults.py" />
-      <source>Look the word up in the language page.</source>
-      <translation>Busque la palabra en la página del lenguaje.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/word_faults.py" />
@@ -31020,6 +31045,11 @@
     </message>
     <message>
       <location filename="core/shapes/calculators.py" />
+      <source>rough passes %1 deep a side</source>
+      <translation>pasadas de desbaste de %1 por lado</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/calculators.py" />
       <source>rpm, surface speed, feed a turn and a minute: what is typed gives the rest</source>
       <translation>rpm, velocidad de corte, avance por vuelta y por minuto: lo escrito da el resto</translation>
     </message>
@@ -31837,6 +31867,16 @@
       <location filename="core/shapes/turning.py" />
       <source>%1: put a point before it at the same Z, at the lowest X.</source>
       <translation>%1: ponga antes un punto en la misma Z, en la X más baja.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/turning.py" />
+      <source>%1: type a smaller depth of a pass.</source>
+      <translation>%1: escriba una profundidad de pasada menor.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/turning.py" />
+      <source>A pass would be %1 deep, and the insert of T%2 takes %3</source>
+      <translation>Una pasada tendría %1 de profundidad y la plaquita de T%2 admite %3</translation>
     </message>
     <message>
       <location filename="core/shapes/turning.py" />
