@@ -25,8 +25,9 @@ def tool_call(state: State, node: ToolCall, use: ToolUse) -> Iterator[Block]:
 
     Raises ProgramError before anything has changed.
     """
-    if state.m128:
-        why = "TOOL CALL while M128 is on."
+    changes = node.tool is not None or node.length is not None or node.radius is not None
+    if state.m128 and changes:
+        why = "TOOL CALL with a tool or an oversize while M128 is on."
         raise state.refuse(1, NOT_WITH_M128, why, "Switch it off with M129 before.")
     if node.tool_axis not in {"", "Z"}:
         raise unsupported(state.line, node.column, f"The tool axis {node.tool_axis}")

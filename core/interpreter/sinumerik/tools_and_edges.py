@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 
 from core.interpreter.actions import ToolChange
@@ -88,9 +89,20 @@ def _offset(state: State, statement: Statement, key: int, use: ToolUse) -> ToolO
         word = statement.words.get("T") or statement.words.get("D")
         name = f'T="{word.string}"' if word is not None and word.string else edge_name(key)
         text = f"{name} has no tool offset; 0 is used, and the machine will refuse to start."
-        hint = "Enter the name as remark of a tool (F8)." if word is not None and word.string else _SET
+        hint = _hint(word)
         state.log.add(statement.warning(word, "tool-offset-missing", text, hint))
     return offset or ToolOffset()
 
 
+def _hint(word: Word | None) -> str:
+    """What to do where a tool has no offset; T0101 is how other controls write tool 1 and its offset."""
+    if word is not None and word.string:
+        return "Enter the name as remark of a tool (F8)."
+    if word is not None and (iso := _TOOL_AND_OFFSET.fullmatch(word.text)):
+        meant = f"T{int(iso[1])} D{max(int(iso[2]) % 10, 1)}"
+        return f"{word.text} is tool {int(word.text[1:])} here; write {meant}."
+    return _SET
+
+
+_TOOL_AND_OFFSET = re.compile(r"T([0-9]{1,2})([0-9]{2})")
 _SET = "Set the tool's offset on the page of tool offsets (F8); tools are T1 to T32."
