@@ -23015,6 +23015,11 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/groove_cycle.py" />
+      <source>%1 reckons with a tool %2 mm wide: %3 is not set.</source>
+      <translation>%1 cuenta con una herramienta de %2 mm de ancho: %3 no está medida.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/groove_cycle.py" />
       <source>%1 reckons with the tool's width, and %2, its other corner, is not set.</source>
       <translation>%1 cuenta con el ancho de la herramienta, y %2, su otra esquina, no está puesta.</translation>
     </message>
@@ -23030,8 +23035,18 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/groove_cycle.py" />
+      <source>Look at the angles.</source>
+      <translation>Mire los ángulos.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/groove_cycle.py" />
       <source>Set %1 on the page of tool offsets (F8).</source>
       <translation>Ponga %1 en la página de correctores de herramienta (F8).</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/groove_cycle.py" />
+      <source>Set its two corners on the page of tool offsets (F8).</source>
+      <translation>Mida sus dos esquinas en la página de correctores (F8).</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/groove_cycle.py" />
@@ -23065,6 +23080,11 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/groove_cycle.py" />
+      <source>is an angle of a flank, 0 to under 90 degrees</source>
+      <translation>es un ángulo de flanco, de 0 a menos de 90 grados</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/groove_cycle.py" />
       <source>is none of 1 to 8 and 11 to 18</source>
       <translation>no es ninguno de 1 a 8 ni de 11 a 18</translation>
     </message>
@@ -23085,8 +23105,8 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/groove_cycle.py" />
-      <source>write a groove with slanted flanks as a contour of CYCLE95</source>
-      <translation>escriba una ranura de flancos inclinados como contorno de CYCLE95</translation>
+      <source>write a groove in a cone as a contour of CYCLE95</source>
+      <translation>escriba una ranura en un cono como contorno de CYCLE95</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/groove_cycle.py" />
