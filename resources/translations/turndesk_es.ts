@@ -24690,8 +24690,8 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/tools_and_edges.py" />
-      <source>%1 does not exist: T%2 has no such cutting edge in the tool offsets.</source>
-      <translation>%1 no existe: T%2 no tiene ese filo en los correctores de herramienta.</translation>
+      <source>%1 does not exist: %2 has no such cutting edge in the tool offsets.</source>
+      <translation>%1 no existe: %2 no tiene ese filo en los correctores.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/tools_and_edges.py" />
@@ -29665,6 +29665,11 @@
     </message>
     <message>
       <location filename="core/proving/cutting_checks.py" />
+      <source>Start it with M3 or M4 before it.</source>
+      <translation>Póngalo en marcha antes con M3 o M4.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/cutting_checks.py" />
       <source>Switch it on with %1 before it.</source>
       <translation>Enciéndala antes con %1.</translation>
     </message>
@@ -29700,6 +29705,11 @@
     </message>
     <message>
       <location filename="core/proving/cutting_checks.py" />
+      <source>This move cuts with no tool: no length and no radius of one count.</source>
+      <translation>Este movimiento corta sin herramienta: no cuenta ninguna longitud ni ningún radio.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/cutting_checks.py" />
       <source>This move cuts with the collet open: the part is held by nothing.</source>
       <translation>Este movimiento corta con la pinza abierta: nada sujeta la pieza.</translation>
     </message>
@@ -29732,6 +29742,11 @@
       <location filename="core/proving/cutting_checks.py" />
       <source>Write T with the tool's number before it.</source>
       <translation>Escriba antes T con el número de la herramienta.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/cutting_checks.py" />
+      <source>Write TOOL CALL before it.</source>
+      <translation>Escriba TOOL CALL delante.</translation>
     </message>
     <message>
       <location filename="core/proving/cutting_checks.py" />
@@ -29820,8 +29835,18 @@
     </message>
     <message>
       <location filename="core/proving/machine_checks.py" />
+      <source>%1 and any G10 or G92</source>
+      <translation>%1 y cualquier G10 o G92</translation>
+    </message>
+    <message>
+      <location filename="core/proving/machine_checks.py" />
       <source>%1 would go to %2 %3 from home%4, %5 %6 beyond the travel limit of %7</source>
       <translation>%1 iría a %2 %3 de la referencia%4, %5 %6 más allá del límite de carrera de %7</translation>
+    </message>
+    <message>
+      <location filename="core/proving/machine_checks.py" />
+      <source>%1, G54 to G59 and TRANS</source>
+      <translation>%1, G54 a G59 y TRANS</translation>
     </message>
     <message>
       <location filename="core/proving/machine_checks.py" />
@@ -29835,8 +29860,8 @@
     </message>
     <message>
       <location filename="core/proving/machine_checks.py" />
-      <source>check the %1 word, the offset of %2 and any G10 or G92</source>
-      <translation>revise la palabra %1, el corrector de %2 y cualquier G10 o G92</translation>
+      <source>check the %1 word, the offset of %2</source>
+      <translation>compruebe la palabra %1 y el corrector de %2</translation>
     </message>
     <message>
       <location filename="core/proving/machine_checks.py" />
