@@ -48,6 +48,8 @@ def control_limits(machine: Machine) -> ControlLimits:
         c_accel=c_axis.amax,
         c_step=c_axis.count,
         c_modulo=machine.c_modulo,
+        c_linear=machine.c_linear,
+        c_travel=c_axis.travel if machine.c_linear else None,
         spindle_is_c=machine.spindle_is_c,
         live_output=machine.live_output,
         control=machine.control,

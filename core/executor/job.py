@@ -78,6 +78,7 @@ def make_job(source: Source, setup: Setup, whole: Job | None = None) -> Job:
             sorted(setup.limits.m_ignored),
             setup.limits.control,
             setup.limits.third_axis,
+            setup.limits.c_linear,
         ),
         (setup.limits.max_feed, setup.limits.max_rpm, setup.limits.resolution),
         (setup.limits.unclamp_while_turning, setup.limits.start_with_collet_open),

@@ -23200,6 +23200,11 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/linear_moves.py" />
+      <source>This axis is linear; write AC( ) or IC( ).</source>
+      <translation>Este eje es lineal; escriba AC( ) o IC( ).</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/linear_moves.py" />
       <source>Write %1=AC( ) or %2=IC( ).</source>
       <translation>Escriba %1=AC( ) o %2=IC( ).</translation>
     </message>
@@ -24470,8 +24475,8 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/third_axis.py" />
-      <source>the end point %1 lies beyond -360 to +360 of the machine</source>
-      <translation>el punto final %1 está fuera de -360 a +360 de la máquina</translation>
+      <source>the end point %1 lies beyond %2 to %3 of the machine</source>
+      <translation>el punto final %1 queda fuera de %2 a %3 de la máquina</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/thread_chain_cycle.py" />
@@ -24747,6 +24752,11 @@
       <location filename="core/interpreter/sinumerik/transformations.py" />
       <source>%1 needs a block of its own.</source>
       <translation>%1 necesita su propio bloque.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/transformations.py" />
+      <source>%1 turns the part by C, and the third axis of this machine is linear.</source>
+      <translation>%1 gira la pieza con C, y el tercer eje de esta máquina es lineal.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/transformations.py" />

@@ -94,7 +94,10 @@ class State:
         self.live_speed = 0.0  # S of the live tool, rpm
         self.live_rpm = 0.0  # by which it turns, signed
         wraps = setup.limits.c_enabled and setup.limits.c_modulo
-        self.modal = Modal(absolute=True, metric=True, diameter=True, rapid_rate=0.0, wraps_c=wraps)
+        slide = setup.limits.c_enabled and setup.limits.c_linear
+        self.modal = Modal(
+            absolute=True, metric=True, diameter=True, rapid_rate=0.0, wraps_c=wraps, linear_c=slide
+        )
 
     def adopt(self, modal: Modal) -> None:
         """Make ``modal`` the state in force; where it says nothing new, blocks go on sharing the old one."""
@@ -114,6 +117,10 @@ class State:
     def length(self, statement: Statement, word: Word) -> float:
         """A length in mm: as written under G71, inches under G70."""
         return self.number(statement, word) * (1.0 if self.modal.metric else MM_PER_INCH)
+
+    def third(self, statement: Statement, word: Word) -> float:
+        """The value of a word of the third axis: degrees, or of a slide mm."""
+        return self.length(statement, word) if self.modal.linear_c else self.number(statement, word)
 
     def number(self, statement: Statement, word: Word) -> float:
         """The number of a word, or what its formula comes to. Raises ProgramError where that has no value."""
