@@ -73,6 +73,7 @@ def make_job(source: Source, setup: Setup, whole: Job | None = None) -> Job:
         sorted(setup.tools.items()),
         sorted(setup.secondary.items()),
         sorted(setup.zero.items()),
+        sorted(setup.r.items()),
         (
             sorted(setup.limits.m_outputs.items()),
             sorted(setup.limits.m_ignored),

@@ -103,6 +103,7 @@ class Setup:
     tools: Mapping[int, ToolOffset] = field(default_factory=dict)  # by T; edges by ``tool_edges.edge_key``
     secondary: Mapping[int, SecondaryOffset] = field(default_factory=dict)
     zero: Mapping[int, ZeroOffset] = field(default_factory=dict)  # 54 to 59; one that is missing is all 0
+    r: Mapping[int, float] = field(default_factory=dict)  # of SINUMERIK, as the operator set them
     limits: ControlLimits = field(default_factory=ControlLimits)
     block_delete: bool = False
     strict: bool = False

@@ -14959,6 +14959,36 @@
       <translation>unidades, idioma, puesto, ventana</translation>
     </message>
     <message>
+      <location filename="app/special/r_parameters.py" />
+      <source>A PROGRAM IS UNDER WAY: R PARAMETERS CHANGE BETWEEN CYCLES</source>
+      <translation>UN PROGRAMA ESTÁ EN MARCHA: LOS PARÁMETROS R CAMBIAN ENTRE CICLOS</translation>
+    </message>
+    <message>
+      <location filename="app/special/r_parameters.py" />
+      <source>Every SINUMERIK program begins with these; what it sets itself holds until its end.</source>
+      <translation>Cada programa SINUMERIK empieza con estos; lo que pone él mismo vale hasta su final.</translation>
+    </message>
+    <message>
+      <location filename="app/special/r_parameters.py" />
+      <source>NO VALUE</source>
+      <translation>SIN VALOR</translation>
+    </message>
+    <message>
+      <location filename="app/special/r_parameters.py" />
+      <source>One that nobody has set counts as 0, with a warning.</source>
+      <translation>El que nadie ha puesto cuenta como 0, con un aviso.</translation>
+    </message>
+    <message>
+      <location filename="app/special/r_parameters.py" />
+      <source>R PARAMETERS GO FROM {low} TO {high}</source>
+      <translation>LOS PARÁMETROS R VAN DE {low} A {high}</translation>
+    </message>
+    <message>
+      <location filename="app/special/r_parameters.py" />
+      <source>R0 to R299 of SINUMERIK programs</source>
+      <translation>R0 a R299 de los programas SINUMERIK</translation>
+    </message>
+    <message>
       <location filename="app/special/setup_sheet.py" />
       <source>1 ERROR: this program will not run as it stands</source>
       <translation>1 ERROR: este programa no puede ejecutarse así</translation>
@@ -24960,8 +24990,8 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/variables.py" />
-      <source>%1 has no value: the program has not set it.</source>
-      <translation>%1 no tiene valor: el programa no se lo ha dado.</translation>
+      <source>%1 has no value, and counts as 0: neither the program nor the operator has set it.</source>
+      <translation>%1 no tiene valor y cuenta como 0: ni el programa ni el operador lo ha puesto.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/variables.py" />
@@ -25000,8 +25030,8 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/variables.py" />
-      <source>Write %1=… before it.</source>
-      <translation>Escriba antes %1=…</translation>
+      <source>Write %1=… before it, or set it as R PARAMETERS (F10).</source>
+      <translation>Escriba %1=… delante, o póngalo en PARÁMETROS R (F10).</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/variables.py" />

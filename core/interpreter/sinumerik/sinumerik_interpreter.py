@@ -72,7 +72,7 @@ _BY_STATE = frozenset(
     {
         *("14040", "arc-radius", "arc-no-chord", "10720", "corner-too-large", "corner-next"),
         *("10860", "g95-spindle-stopped", "dwell-spindle-stopped", "speed-missing", "surface-speed-missing"),
-        *("r-unset", "word-unused", str(NOT_DEFINED)),
+        *("word-unused", str(NOT_DEFINED)),
     }
 )
 

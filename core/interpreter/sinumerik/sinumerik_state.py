@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from enum import IntEnum
 
 from core.interpreter.actions import Action, Dwell
@@ -15,8 +16,9 @@ from core.interpreter.sinumerik.programmed_frame import ProgrammedFrame
 from core.interpreter.sinumerik.sinumerik_statement import Statement
 from core.interpreter.sinumerik.system_variables import position_asked, system_value
 from core.interpreter.sinumerik.third_axis import wrapped
-from core.interpreter.sinumerik.variables import Refuse, Variables
+from core.interpreter.sinumerik.variables import UNSET, Refuse, Variables
 from core.interpreter.units import MM_PER_INCH
+from core.language.diagnostics import Diagnostic, ProgramError, Severity
 from core.language.formulas import Formula, Parameter
 from core.language.sinumerik.sinumerik_words import Line, Word
 
@@ -88,6 +90,7 @@ class State:
         self.names: list[str] = []  # of tools that the table does not have, by their order
         self.told: set[str] = set()  # functions without effect that have been told
         self.variables = Variables()
+        self.variables.r.update(setup.r)
         self.modal_call: Line | None = None  # of MCALL
         self.transformation: PlaneInForce | None = None  # TRANSMIT or TRACYL
         self.master = 1  # SETMS: 2 is the live tool, whose S, M3 and G95 are meant then
@@ -138,12 +141,24 @@ class State:
                 read = self.position(axis) if axis else system_value(asked.letters, self.modal, self.edge)
                 if read is not None:
                     return read
-            return self.variables.value(asked, lambda index: worth(index, parameter), refuse)
+            try:
+                return self.variables.value(asked, lambda index: worth(index, parameter), refuse)
+            except ProgramError as problem:
+                if problem.diagnostic.code != UNSET:
+                    raise
+                self._tell_unset(problem.diagnostic)
+                return 0.0
 
         try:
             return worth(formula, parameter)
         except NoValueError as problem:
             raise refuse("arithmetic", f"{problem}.", "Correct the formula.") from None
+
+    def _tell_unset(self, found: Diagnostic) -> None:
+        """Say once of each R parameter that it counts as 0."""
+        if found.hint not in self.told:  # it names the parameter, whatever line asks for it
+            self.told.add(found.hint)
+            self.log.add(replace(found, severity=Severity.WARNING))
 
     def rpm_at(self, x: float) -> float:
         """Commanded speed with the tip at radius ``x`` of the program; signed, 0 with the spindle stopped."""
