@@ -534,6 +534,8 @@ class MachinePorts:
     # What is not known now. The ports go on to tell the last that was known of it, and nobody may take that
     # for the present: a spindle of which nothing is heard may turn. Known again once its wire tells it anew.
     unknown: Callable[[], frozenset[Unknown]] = frozenset
+    # Seconds by which a slow wire delays a command to the spindle and the measured speed that shows it.
+    spindle_lag: Callable[[], float] = float
     touch: TouchInput | None = None  # None: where a touch was is known to a tick of the executor
     # Stops slides and spindle, outputs safe, by a way of its own: for the watchdog, from any thread and again
     # and again, when the executor is dead or stuck. It never waits for what the executor may hold.

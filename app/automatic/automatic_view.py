@@ -9,6 +9,7 @@ from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk.machine_status import MachineStatus
+from app.desk.page_entry import editor_barred, program_barred, searchto_barred
 from app.desk.program_loading import Loaded
 from app.desk.prompt_line import MOVING, NONE_NAMED, UNDER_WAY
 from app.path.measuring import measuring_words
@@ -127,6 +128,8 @@ class AutomaticPage(Page):
             self.space.show_instant(running(scene, snapshot), plane_words(snapshot.swivel))
             return
         self.path.show_tip(tip_of(snapshot, loaded.job))
+        first_move = self.desk.first_move
+        self.path.show_approach(first_move.legs(snapshot) if first_move is not None else None)
         self.path.advance()
 
     @property
@@ -137,6 +140,18 @@ class AutomaticPage(Page):
     def lively(self) -> bool:
         """The part is being played."""
         return self.path.player is not None and self.path.player.playing
+
+    def barred(self) -> frozenset[str]:
+        """Return the keys of another program, of the editor and of SEARCHTO while they would be refused."""
+        snapshot, loaded = self.desk.snapshot(), self.desk.session.now
+        asking = self.files.isVisible()
+        named = bool(self.files.wanted) if asking else loaded.path is not None
+        found = {
+            "F2": "" if asking else program_barred(snapshot),
+            "F3": editor_barred(snapshot, named=named),
+            "F6": searchto_barred(snapshot, loaded),
+        }
+        return frozenset(key for key, why in found.items() if why)
 
     def key_actions(self) -> KeyActions:
         """What the page itself does, by key."""

@@ -5,10 +5,12 @@ from __future__ import annotations
 import argparse
 import json
 import re
+import sqlite3
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING
 
+from app.cli.meant_changes import demand_meant
 from app.cli.store_command import opened_store
 from app.cli.who_changes import who_changes
 from app.desk.arithmetic import EntryError, value_of
@@ -18,7 +20,9 @@ from app.offsets.offset_acts import act_of
 from app.offsets.offset_values import stated_fields
 from app.offsets.offsets_file import ALIASES, TOOL_KEYS, out_of_range, shown
 from core.access.access_table import Act
+from core.store import offset_tables
 from core.store.offset_fields import MM_PER_INCH, Field, Sort
+from core.store.offset_tables import Reason
 from core.store.store_rows import (
     FIELDS,
     OFFSETS,
@@ -131,22 +135,32 @@ def _set(args: argparse.Namespace) -> int:
         name: value for name, value in values.items() if kind is Kind.TOOL and name in FIELDS[Kind.SHAPE]
     }
     offset = {name: value for name, value in values.items() if name not in shape}
-    rows, acts = list[Row](), [act_of(kind, offset)] if offset else []
+    acts = [act_of(kind, offset)] if offset else []
     acts += [Act.SHAPES] if shape else []
     with opened_store() as store:
-        reason = {"why": args.why, "who": who_changes(store, args, *acts)}
+        reason = Reason(args.why, who_changes(store, args, *acts))
         gone = shape.get("kind") == NO_SHAPE
         if shape and not gone:
             _check_shape(store, number, shape, offset)
-        if offset:
-            rows.append(store.set_offset(kind, number, values=offset, **reason).result())
-        if gone:
-            store.remove_shape(number, **reason).result()
-        elif shape:
-            rows.append(store.set_offset(Kind.SHAPE, number, values=shape, **reason).result())
+        changes = {each: values for each, values in ((kind, offset), (Kind.SHAPE, shape)) if values}
+        demand_meant(store, args, {each: {number: values} for each, values in changes.items()})
+        rows = store.write(lambda connection: _set_all(connection, number, changes, reason)).result()
     name = _name(kind, number)
     sys.stdout.write("".join(f"{_line(name, row)}\n" for row in rows) or f"{name} has no shape\n")
     return EXIT_OK
+
+
+def _set_all(
+    connection: sqlite3.Connection, number: int, changes: Mapping[Kind, Mapping[str, Value]], reason: Reason
+) -> list[Row]:
+    """Set the offset and the shape of one tool in one transaction: both or neither."""
+    rows = list[Row]()
+    for kind, values in changes.items():
+        if values.get("kind") == NO_SHAPE:
+            offset_tables.remove(connection, kind, number, reason)
+        else:
+            rows.append(offset_tables.change(connection, kind, number, reason, values))
+    return rows
 
 
 def _check_shape(store: Store, number: int, shape: dict[str, Value], offset: dict[str, Value]) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
+from app.cli.meant_changes import add_consent_options
 from app.cli.who_changes import add_as_option
 from core.store.store_rows import Kind
 
@@ -37,6 +38,7 @@ def add_parser(subparsers: SubParsers) -> None:
         "G54 to G59 in mm and degrees: x z c; of a mill, mm, degrees and minutes, TOOL: "
         "name L R R2 DL DR DR2 cut t-angle time2 stop, PRESET: x y z a b c rot doc",
     )
+    add_consent_options(change)
     clear = actions.add_parser("clear", help="clear T3, D4 or G54: that one; T, D or G: all of them")
     clear.add_argument("offset", metavar="T|T3|D|D4|G|G54")
     history = actions.add_parser("history", help="every change, newest first")

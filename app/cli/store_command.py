@@ -5,11 +5,12 @@ from __future__ import annotations
 import argparse
 import json
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from app.cli.meant_changes import Changes, add_consent_options, demand_meant
 from app.cli.who_changes import COMMAND_LINE, add_as_option, note_change, who_changes, who_may
 from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError
 from app.desk.data_folder import data_folder
@@ -19,6 +20,7 @@ from core.coded_error import error_code
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
     from core.store.store import Store
+    from core.store.store_rows import SecondaryRow, ToolRow
 
 
 def add_parser(subparsers: SubParsers) -> None:
@@ -35,6 +37,8 @@ def add_parser(subparsers: SubParsers) -> None:
         action.add_argument("path", metavar=what)
         if name in {"restore", "import"}:
             add_as_option(action)
+        if name == "import":
+            add_consent_options(action)
     actions.add_parser("upgrade", help="bring the store of an older TurnDesk up to date, as the screen does")
     verify = actions.add_parser("verify", help="look at every page, reference and program text")
     verify.add_argument("--json", action="store_true", help="machine-readable output alone on stdout")
@@ -114,6 +118,7 @@ def _import(args: argparse.Namespace) -> int:
         programs = store_export.program_files(folder)
         mill, why = store_export.mill_rows(folder), f"import of {folder.name}"
         named = who_changes(store, args, Act.RESTORE)
+        demand_meant(store, args, {**_values_of(tools, secondary), **mill})
         who = "import" if named == COMMAND_LINE else named
         store.import_all(programs, tools, secondary, why, zero, shapes, mill, who=who).result()
     counts = f"{len(programs)}, tool offsets: {len(tools)}, secondary offsets: {len(secondary)}"
@@ -121,6 +126,16 @@ def _import(args: argparse.Namespace) -> int:
         counts += f", tools of a mill: {len(mill[Kind.MILL_TOOL])}, presets: {len(mill[Kind.PRESET])}"
     sys.stdout.write(f"taken from {folder}: programs: {counts}\n")
     return EXIT_OK
+
+
+def _values_of(tools: Mapping[int, ToolRow], secondary: Mapping[int, SecondaryRow]) -> Changes:
+    """Return the imported rows as changes of all their fields."""
+    from core.store.store_rows import Kind
+
+    return {
+        Kind.TOOL: {number: row._asdict() for number, row in tools.items()},
+        Kind.SECONDARY: {number: row._asdict() for number, row in secondary.items()},
+    }
 
 
 def _upgrade(_args: argparse.Namespace) -> int:

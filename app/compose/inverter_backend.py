@@ -89,6 +89,7 @@ def _attended(
         wakeup=None,  # nobody rings for what the inverter does by itself
         halt=partial(halt_with, ports, spindle),
         unknown=partial(unknown_with, ports, spindle),
+        spindle_lag=spindle.lag,
     )
     return thread, joined
 

@@ -45,14 +45,18 @@ INTERRUPTED = frozenset({State.HOLD, State.BLOCK_END, State.PROGRAM_STOP})
 UNDER_WAY = MOVING | INTERRUPTED
 
 
-def prompt(snapshot: Snapshot, loaded: Loaded, start: str, release: str) -> str:
-    """The standing prompt; ``start`` and ``release`` name what starts a cycle and frees the E-stop here."""
+def prompt(snapshot: Snapshot, loaded: Loaded, start: str, release: str, *, field_open: bool = False) -> str:
+    """The standing prompt; ``start`` and ``release`` name what starts a cycle and frees the E-stop here.
+
+    ``field_open``: letters are text.
+    """
     go_on = f"TO GO ON {start}; R GIVES THE PROGRAM UP"
     standing = {
         State.ESTOP: _estop(release),
         State.DISABLED: "DRIVES ARE OFF: PRESS D FOR DRIVES ON",
-        State.FAULT: alarm_of(snapshot, release),
+        State.FAULT: alarm_of(snapshot, release, field_open=field_open),
         State.RUN: HOW_TO_HOLD,
+        State.JOG: HOW_TO_HOLD,
         State.WAIT: HOW_TO_HOLD,
         State.HOLDING: "COMING TO REST",
         State.HOLD: go_on,
@@ -72,11 +76,13 @@ def announced(snapshot: Snapshot, *, starts_here: bool = True) -> str:
     return "".join(f"{text} · " for text in told)
 
 
-def alarm_of(snapshot: Snapshot, release: str) -> str:
+def alarm_of(snapshot: Snapshot, release: str, *, field_open: bool = False) -> str:
     """What goes before anything a page has to say: an alarm, an E-stop; empty when there is none."""
     if snapshot.state is State.FAULT:
         if not snapshot.alarms:
             return "ALARM: PUT THE CAUSE RIGHT, THEN PRESS R TO ACKNOWLEDGE"
+        if field_open:
+            return f"WHAT TO DO: {snapshot.alarms[0].remedy}  ·  F1 LEAVES THE PAGE, THEN R ACKNOWLEDGES"
         return f"WHAT TO DO: {snapshot.alarms[0].remedy}  ·  R ACKNOWLEDGES, F7 LISTS"
     return _estop(release) if snapshot.state is State.ESTOP else ""
 

@@ -86,6 +86,7 @@ class Key(NamedTuple):
 
     label: str
     action: Callable[[], None]
+    barred: bool = False  # it would be refused now
 
 
 @dataclass(slots=True)

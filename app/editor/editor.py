@@ -14,9 +14,9 @@ from pathlib import Path
 
 from app.desk.desk import Desk
 from app.desk.latest import Latest
+from app.desk.page_entry import editor_barred
 from app.desk.program_loading import Loaded, LoadingSteps
 from app.desk.prompt_line import UNDER_WAY
-from app.desk.readouts import TURNING
 from app.desk.translation import tr
 from app.editor import editor_messages as messages
 from app.editor.document import (
@@ -31,8 +31,6 @@ from app.editor.document import (
 from app.editor.drafts import Drafts
 from app.editor.live_proof import LiveProof
 from app.editor.versions import Archive
-from core.executor.snapshot import Snapshot, State
-from core.ports import Unknown
 
 
 class Stage(StrEnum):
@@ -307,36 +305,16 @@ class Editor:
 
 
 # --- coming in and going, beside the machine --------------------------------------------------------------
-# The control cancels the spindle-on command when its editor is entered, so that nobody writes beside a
-# turning chuck. No command of the executor does just that (Reset gives the program up as well), so entering
-# is refused until the spindle stands. While a cycle runs the machine has its program as it was loaded:
-# another one may be written and proved meanwhile, and Pause, Scroll Lock and Esc stop as everywhere.
-
-
-def refusal(snapshot: Snapshot) -> str:
-    """Why not, in the words of the prompt line; empty when the editor may be entered."""
-    if snapshot.state in {State.JOG, State.HOME}:
-        return messages.SLIDES
-    if snapshot.state in UNDER_WAY:
-        return ""
-    if snapshot.rpm_command:
-        return messages.SPINDLE_ON
-    if Unknown.SPINDLE in snapshot.unknown:
-        return messages.SPINDLE_UNKNOWN
-    return messages.COASTING if abs(snapshot.rpm_actual) > TURNING else ""
-
-
 def enter(desk: Desk, editor: Editor) -> bool:
     """Go into the editor: with the program of the name that was typed, or else with that on the desk.
 
     A name that no program has is offered as a new file. False when it is refused; the desk says why.
     """
-    why = refusal(desk.snapshot())
     name, now = editor.wanted.strip(), desk.session.now
     editor.wanted = ""
     path = desk.program_folders.find(name) if name else now.path
-    if why or not (name or path):
-        desk.say(why or messages.NO_PROGRAM)
+    if why := editor_barred(desk.snapshot(), named=bool(name or path)):
+        desk.say(why)
         return False
     desk.clear()
     editor.left = partial(_take_up, desk)

@@ -12,6 +12,7 @@ from app.desk.arithmetic import EntryError
 from app.desk.desk import Desk
 from app.desk.formats import NOTHING, duration
 from app.desk.machine_status import Tone
+from app.desk.page_entry import program_barred
 from app.desk.prompt_line import UNDER_WAY
 from app.desk.sheet import STEPS, Entry, Key, Row, Sheet, refused
 from app.desk.translation import tr
@@ -27,6 +28,7 @@ from core.store.program_settings import notes_key
 from core.store.store_errors import StoreError
 
 NONE_YET = "NO JOB WAITS: F3 ADDS THE PROGRAM ON THE DESK, F10 OF THE LIST OF PROGRAMS (F1, F6) ANY OTHER"
+NO_PROGRAM = "CHOOSE A PROGRAM FIRST (F1, F2), OR MARK ONE IN THE LIST OF PROGRAMS (F1, F6) AND PRESS F10"
 _WIDE = 46  # letters of a cell
 
 
@@ -172,6 +174,10 @@ class JobsModel:
         """What the keys do now."""
         if self.asking:
             return "TYPE IT AND PRESS RETURN; ESC KEEPS EVERYTHING AS IT IS"
+        if self.job is None:
+            return NONE_YET if self.desk.session.now.name else NO_PROGRAM
+        if self.load_barred:
+            return "NO JOB IS LOADED WHILE THE MACHINE MOVES OR A PROGRAM IS UNDER WAY; ESC FOR AUTOMATIC"
         return "F2 PUTS THE MARKED JOB ON THE DESK; NOTHING STARTS BEFORE THE PALMS; ESC FOR AUTOMATIC"
 
     # --- keys ----------------------------------------------------------------------------------------
@@ -180,22 +186,28 @@ class JobsModel:
         """Function keys of this moment; none while something is asked, which Return and Esc end."""
         if self.asking:
             return {}
+        none = self.job is None
+        notes_barred = none or self.desk.snapshot().state in UNDER_WAY
         return {
-            "F3": Key("ADD", self.add),
-            "F4": Key("COUNT", partial(self._ask, "count")),
-            "F5": Key("UP", partial(self.move, -1)),
-            "F6": Key("DOWN", partial(self.move, 1)),
-            "F8": Key("NOTE", partial(self._ask, "note")),
-            "F9": Key("REMOVE", self.remove),
+            "F3": Key("ADD", self.add, barred=not self.desk.session.now.name),
+            "F4": Key("COUNT", partial(self._ask, "count"), barred=none),
+            "F5": Key("UP", partial(self.move, -1), barred=none),
+            "F6": Key("DOWN", partial(self.move, 1), barred=none),
+            "F8": Key("NOTE", partial(self._ask, "note"), barred=notes_barred),
+            "F9": Key("REMOVE", self.remove, barred=none),
             "F10": Key("CLEAR", self.clear),
         }
 
+    @property
+    def load_barred(self) -> str:
+        """Why the marked job cannot be put on the desk; empty when it can."""
+        return NONE_YET if self.job is None else program_barred(self.desk.snapshot())
+
     def may_load(self) -> bool:
         """Whether the marked job can be put on the desk; why not is said."""
-        if self.job is None:
-            self.desk.say(NONE_YET)
-            return False
-        return self.desk.may_choose()
+        if why := self.load_barred:
+            self.desk.say(why)
+        return not why
 
     def load(self) -> None:
         """The marked job becomes the one under way. Its cycle is started at the palms, by nobody here."""
@@ -207,9 +219,7 @@ class JobsModel:
         """The program on the desk as one more job: how many parts is asked."""
         name = self.desk.session.now.name
         if not name:
-            self.desk.say(
-                "CHOOSE A PROGRAM FIRST (F1, F2), OR MARK ONE IN THE LIST OF PROGRAMS (F1, F6) AND PRESS F10"
-            )
+            self.desk.say(NO_PROGRAM)
             return
         self.add_program(name)
 

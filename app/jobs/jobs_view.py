@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import partial
 
 from PySide6.QtGui import QResizeEvent
@@ -9,6 +10,7 @@ from PySide6.QtWidgets import QWidget
 
 from app.desk.machine_status import MachineStatus
 from app.desk.program_loading import Loaded
+from app.desk.sheet import Key
 from app.jobs.jobs_model import JobsModel
 from app.screen import page_table
 from app.screen.entry_panel import KeyPad
@@ -34,17 +36,25 @@ class JobsPage(ListPage):
         self.letters = LetterPad(self.look, self.touched, self)
         self._asked = ""
 
+    def barred(self) -> frozenset[str]:
+        """Return those of the model, and F2 while no job can be loaded."""
+        return super().barred() | ({"F2"} if self.model.load_barred else set())
+
+    def page_keys(self) -> Mapping[str, Key]:
+        """Return those of the model."""
+        return self.model.keys()
+
     def labels(self) -> tuple[str, ...]:
         """F2 beside those of the model."""
-        return self.labels_of({"F2": "LOAD"}, self.model.keys())
+        return self.labels_of({"F2": "LOAD"}, self.page_keys())
 
     def key_actions(self) -> KeyActions:
         """The function keys of the queue."""
-        keys = self.model.keys()
+        keys = self.page_keys()
         return {"F2": self._load, **{name: partial(self._do, name) for name in keys}}
 
     def _do(self, name: str) -> None:
-        self.model.keys()[name].action()
+        self.page_keys()[name].action()
 
     def _load(self) -> None:
         """The page first: what is asked about an interrupted job belongs to the page that stays."""

@@ -168,7 +168,10 @@ class DriveTests:
     def toggle_figures(self) -> None:
         """F5: the figures of the last test, its window, what is chosen for the next."""
         self.desk.clear()
-        self.part = following((None, Part.RESPONSE, Part.WINDOW), self.part) if self.found else None
+        if self.found is None:
+            self.desk.say(tr("NO TEST WAS PLAYED YET: THERE ARE NO FIGURES"))
+        else:
+            self.part = following((None, Part.RESPONSE, Part.WINDOW), self.part)
 
     def choose(self, row: int) -> None:
         """A finger on one of the rows."""
@@ -347,6 +350,8 @@ class DriveTests:
             return why
         if self.hold.held is not None:
             return tr("KEEP IT HELD UNTIL IT HAS COME BACK")
+        if self.found is None:
+            return tr("AN ARROW ASKS FOR THE TRAVEL; THE SAME ARROW, HELD, PLAYS THE TEST")
         return tr("AN ARROW ASKS FOR THE TRAVEL; THE SAME ARROW, HELD, PLAYS THE TEST; F5 SHOWS ITS FIGURES")
 
     def drawing(self) -> Drawing:

@@ -78,6 +78,10 @@ class DriveTestPage(HeldKeysPage):
             "F9": partial(self.host.go, page_table.JOG),
         }
 
+    def barred(self) -> frozenset[str]:
+        """Return the key of the figures until a test was played."""
+        return frozenset() if self.model.found is not None else frozenset({"F5"})
+
     def asks(self) -> str:
         """The travel that the next press would make."""
         return self.model.asks()

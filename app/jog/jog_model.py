@@ -20,7 +20,7 @@ from app.jog.tilted_jog import TiltedJog
 from app.jog.tool_setting import TOOL, ToolSetting
 from app.offsets.mill_touch import MillTouch
 from core.executor.commands import JogStop
-from core.executor.snapshot import Snapshot, State
+from core.executor.snapshot import ACTIVE, Snapshot, State
 from core.machine.machine_model import Machine
 
 LEASE = 0.25  # s: no jog is held longer without renewal, whatever the machine file says
@@ -148,10 +148,12 @@ class JogModel:
     def _prompt_of_jog(self, snapshot: Snapshot) -> str:
         wheel = self.wheel.choice[0] if self.wheel.choice else ""
         why = jog_prompt(snapshot.state, self.home.lost(snapshot), wheel, self.speeds.step)
-        if why or not self.on_mill:
-            return why or tr(
-                "HOLD AN ARROW TO MOVE, WITH SHIFT FOR RAPID; T CHOOSES A TOOL, X AND Z TOUCH IT OFF"
-            )
+        if why:
+            return why
+        if not self.on_mill and not self.tool.number:
+            return tr("HOLD AN ARROW TO MOVE, WITH SHIFT FOR RAPID; T CHOOSES A TOOL")
+        if not self.on_mill:
+            return tr("HOLD AN ARROW TO MOVE, WITH SHIFT FOR RAPID; T CHOOSES A TOOL, X AND Z TOUCH IT OFF")
         if self.tilt.on:
             return tr(
                 "HOLD A KEY TO MOVE ALONG X' Y' Z' OF WHAT IS TILTED, SHIFT FOR RAPID; F5 TURNS 3D-ROT OFF"
@@ -363,7 +365,9 @@ def why_no_jog(state: State) -> str:
         State.FAULT: tr("AN ALARM STANDS: PUT ITS CAUSE RIGHT, THEN PRESS R"),
         State.HOME: tr("THE SLIDES ARE LOOKING FOR HOME: H STOPS THEM"),
     }
-    if state in prompt_line.INTERRUPTED | {State.RUN, State.WAIT, State.HOLDING}:
+    if state in ACTIVE:
+        return tr("A PROGRAM IS UNDER WAY: LET IT END, OR PRESS PAUSE, THEN R, BEFORE JOGGING")
+    if state in prompt_line.INTERRUPTED:
         return tr("A PROGRAM IS UNDER WAY: LET IT END, OR GIVE IT UP WITH R, BEFORE JOGGING")
     return words.get(state, "")
 

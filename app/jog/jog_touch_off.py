@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from app.desk.arithmetic import EntryError, value_of
 from app.desk.translation import tr
 from app.offsets.offset_history import OffsetHistory
+from app.offsets.offset_questions import OffsetQuestions
 from app.offsets.offset_values import TOOL_FIELDS, Mode, to_mm, word
 from app.offsets.tool_fields import NewTool
 from core.executor.snapshot import Snapshot, State
@@ -87,18 +88,28 @@ class TouchOff:
 
         Raises EntryError for a text that is no value.
         """
-        place, book = self.place(text, history.mode), history.book
+        place, book, ask = self.place(text, history.mode), history.book, OffsetQuestions(history)
         if number in book.tools:
-            x, z = (place, None) if self.name == "x" else (None, place)
-            return book.touch_off(number, Touch(x, z, self.alone), self._reason(text, history.mode))
+            return ask.touch_off(
+                number, self.touch(place), self._reason(text, history.mode), self._tip(place)
+            )
         values = new.add(number, self.name, place)
+        new.tip = self._tip(place) if self.name == "x" else new.tip
         if len(values) < 2:
             return ""
         x, z = (float(values[name]) for name in ("x", "z"))
-        why = book.touch_off(number, Touch(x, z), self.cause or tr("touched off, new tool"))
+        why = ask.touch_off(number, Touch(x, z), self.cause or tr("touched off, new tool"), new.tip)
         if not why:
             new.drop()
         return why
+
+    def touch(self, place: float) -> Touch:
+        """Return the touch of this axis, with part zero at ``place``, machine mm."""
+        return Touch(place, None, self.alone) if self.name == "x" else Touch(None, place, self.alone)
+
+    def _tip(self, place: float) -> float | None:
+        """Return X of the tip from part zero when it touched, mm; None if a touch did not measure X."""
+        return self.at - place if self.name == "x" and self.found is None else None
 
     def moved(self, snapshot: Snapshot) -> bool:
         """Whether the slide has left the place of the touch. Of a cut the skim cut itself knows."""

@@ -36,13 +36,13 @@ class JogPage(HeldKeysPage):
         "MENU",
         "STEP",
         "SPEED",
-        "READOUT",
+        "UNDO",
         "TOUCH X",
         "TOUCH Z",
         "ALARMS",
         "TOOLS",
         "SECCMP",
-        "UNDO",
+        "READOUT",
     )
 
     model: JogModel
@@ -69,7 +69,7 @@ class JogPage(HeldKeysPage):
     def labels(self) -> tuple[str, ...]:
         """A mill touches off on the pages of tools and presets."""
         labels = super().labels()
-        return (*labels[:4], "3D-ROT", "", *labels[6:9], "") if self.model.on_mill else labels
+        return (*labels[:3], "", "3D-ROT", "", *labels[6:]) if self.model.on_mill else labels
 
     def other_key(self, event: QKeyEvent) -> bool:
         """Home asks, and again homes."""
@@ -84,14 +84,26 @@ class JogPage(HeldKeysPage):
         common: KeyActions = {
             "F2": model.next_step,
             "F3": model.next_speed,
-            "F4": self.desk.next_readout,
             "F8": partial(self.host.go, page_table.TOOLS),
             "F9": partial(self.host.go, page_table.SECCMP),
+            "F10": self.desk.next_readout,
         }
         if model.on_mill:
             return {**common, "F5": model.turn_tilt}
         touch = {"F5": lambda: model.ask(TOUCH_X), "F6": lambda: model.ask(TOUCH_Z)}
-        return {**common, **touch, "F10": model.tool.undo}
+        return {**common, **touch, "F4": model.tool.undo}
+
+    def barred(self) -> frozenset[str]:
+        """Return the keys of touching off, of undo and of the tilted plane while they would be refused."""
+        model, snapshot = self.model, self.desk.snapshot()
+        if model.on_mill:
+            return frozenset() if model.tilt.turns(snapshot) else frozenset({"F5"})
+        found = {
+            "F5": model.tool.barred(TOUCH_X, snapshot),
+            "F6": model.tool.barred(TOUCH_Z, snapshot),
+            "F4": model.tool.undo_barred() or not model.tool.history.undoable(model.tool.number),
+        }
+        return frozenset(key for key, why in found.items() if why)
 
     def has_field(self) -> bool:
         """A question about the tool, or the spindle speed."""
@@ -140,12 +152,12 @@ class JogPage(HeldKeysPage):
         foot = tool.note() or (
             tr("Return enters it, Esc leaves it as it was")
             if self.model.asked
-            else tr("T tool · X Z touch · W wear · N nose · Q tip · K remark · M master · F10 undo")
+            else tr("T tool · X Z touch · W wear · N nose · Q tip · K remark · M master · F4 undo")
         )
         if self.model.on_mill:
             foot = ""
         text = tool.touching.cause if tool.by_setter else tool.text
-        self.asked.asked = EntryWords("", tool.question(), text, tool.old_to_new(), foot, tool.large)
+        self.asked.asked = EntryWords("", tool.question(), text, tool.old_to_new(), foot)
         self.strip.show_strip(snapshot, tool.history.last_in_words, foot)
 
     def resizeEvent(self, _event: QResizeEvent) -> None:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from app.desk.translation import tr
 from core.executor.jog_line import Direction
-from core.executor.snapshot import Snapshot
+from core.executor.snapshot import BY_HAND, Snapshot
 from core.geometry.rotary_axes import Kinematics, Rotary
 from core.geometry.rotation_frames import Matrix, product, turned
 from core.interpreter.working_plane import PlaneSystem
@@ -85,6 +85,10 @@ class TiltedJog:
         else:
             self.on = not self.on
             self.say("")
+
+    def turns(self, snapshot: Snapshot) -> bool:
+        """Return whether the key does something now."""
+        return self.on or (self.frame is not None and snapshot.state in BY_HAND)
 
     def off(self) -> None:
         """The page goes: the arrows move along the machine's axes when it comes back."""

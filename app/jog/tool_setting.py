@@ -13,6 +13,7 @@ from app.jog.jog_touch_off import TOUCH_X, TOUCH_Z, TOUCHES, TouchOff
 from app.offsets.offset_acts import CORRECTIONS
 from app.offsets.offset_book import OffsetBook
 from app.offsets.offset_history import OffsetHistory, refusal
+from app.offsets.offset_questions import OffsetQuestions, follower_names
 from app.offsets.offset_values import (
     TOOL_FIELDS,
     Mode,
@@ -31,7 +32,6 @@ from core.tool_edges import edge_name, edge_number
 
 TOOL = "tool"  # asked: its number
 Pair = tuple[float, float]
-LARGE = 0.5  # mm: a setter that finds a tip so far from where it was is to be wondered at
 _AFTER = {"wear_x": "wear_z"}  # what is asked after an answer
 
 
@@ -71,9 +71,16 @@ class ToolSetting:
         return self.asked in TOUCHES and self.touching.found is not None
 
     def found(self, what: str, value: float, cause: str) -> None:
-        """The tool setter has found where the tip stands on part zero, machine mm: ask whether to keep it."""
+        """Ask whether to keep what the tool setter has found, machine mm: the tip's place on part zero.
+
+        A suspicious value of a tool that is set is asked once, as every suspicious value.
+        """
         self.asked, self.text = what, ""
         self.touching.set(what, value, cause)
+        if self.row is not None and OffsetQuestions(self.history).doubts(
+            self.number, self.touching.touch(value)
+        ):
+            self._enter()
 
     def measured(self, what: str, at: float) -> None:
         """A cut that was made with the slide there, machine mm, is to be measured: ask for its size."""
@@ -87,11 +94,6 @@ class ToolSetting:
         if not self.by_setter or self.row is None or self.touching.found is None:
             return None
         return self.touching.found - self.row.offset["xz".index(self.touching.name)]
-
-    @property
-    def large(self) -> bool:
-        """Whether what was found is so far from what the tool had that something may be wrong."""
-        return abs(self.moved or 0.0) > LARGE
 
     def question(self) -> str:
         """What is asked now; empty when nothing is."""
@@ -114,8 +116,8 @@ class ToolSetting:
         if self.masters and self.touching.alone:
             return tr("T{number} ALONE: THE OTHERS STAY (L: ALL FOLLOW)").format(number=edge_number(number))
         if self.masters:
-            return tr("T{number} IS THE MASTER: ALL TOOLS FOLLOW (L: IT ALONE)").format(
-                number=edge_number(number)
+            return tr("T{number} IS THE MASTER: {others} FOLLOW (L: IT ALONE)").format(
+                number=edge_number(number), others=follower_names(self.book.tools, number) or tr("no tools")
             )
         if new.number and new.number == number:
             text = tr("T{number} IS SET WHEN {axis} IS TOUCHED TOO")
@@ -200,7 +202,7 @@ class ToolSetting:
         """Why this is not asked of the tool now; empty when it may be."""
         why = self.book.locked or refusal(snapshot, correction=what in CORRECTIONS[Kind.TOOL])
         if why or not self.number:
-            return why or tr("WHICH TOOL? PRESS T AND TYPE ITS NUMBER FIRST")
+            return why or _which_tool()
         if what in TOUCHES:
             return jog_touch_off.refusal(what, snapshot)
         if self.row is None:
@@ -273,18 +275,24 @@ class ToolSetting:
         why = "" if keeps else self.fields.save(self.number, name, text)
         if not why:
             self.close()
-            self.asked = _AFTER.get(name, "")
+            self.asked = "" if self.desk.asked else _AFTER.get(name, "")
         return why
 
     def master(self) -> None:
         """The chosen tool becomes the master; being it already, none is."""
         why = self.barred("master", self.desk.snapshot())
+        self.close()
         self.history.answer(why or self.fields.master(self.number))
 
     def undo(self) -> None:
-        """Take the last change of the tools back."""
+        """Ask whether the last change of the chosen tool is taken back."""
         self.close()
-        self.history.undo(self.book.locked or refusal(self.desk.snapshot(), correction=False))
+        self.history.answer(self.undo_barred() or OffsetQuestions(self.history).undo(Kind.TOOL, self.number))
+
+    def undo_barred(self) -> str:
+        """Return why the last change of the chosen tool is not taken back now; empty when it may be."""
+        why = self.book.locked or refusal(self.desk.snapshot(), correction=False)
+        return why or ("" if self.number else _which_tool())
 
     def escape(self) -> bool:
         """Close the question, forget half a tool; False when there was nothing."""
@@ -293,6 +301,10 @@ class ToolSetting:
             self.desk.say(tr("T{number} IS AS IT WAS").format(number=edge_number(self.number)))
         self.forget()
         return was
+
+
+def _which_tool() -> str:
+    return tr("WHICH TOOL? PRESS T AND TYPE ITS NUMBER FIRST")
 
 
 def _wear_that_ends(row: ToolRow | None, name: str, mode: Mode) -> str:

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from app.desk import prompt_line
+from app.desk.page_entry import mdi_barred
 from app.desk.prepared_line import PreparedLine, ProveLine
 from app.desk.translation import tr
 from app.mdi.line_completion import LineCompletion
@@ -39,10 +40,9 @@ class MdiModel:
 
     def opens(self) -> bool:
         """Whether MDI may be opened now; says why not."""
-        if self.snapshot().state in CYCLE:
-            self.say(tr("A PROGRAM IS UNDER WAY: LET IT END, OR STOP IT AND PRESS R, BEFORE MDI"))
-            return False
-        return True
+        if why := mdi_barred(self.snapshot()):
+            self.say(why)
+        return not why
 
     def opened(self) -> None:
         """From now on Cycle Start begins lines, and no program."""

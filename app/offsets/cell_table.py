@@ -80,6 +80,11 @@ class CellTable(OffsetTable):
         return self.numbers[self.row]
 
     @property
+    def chosen(self) -> int | None:
+        """Undo refers to the chosen row."""
+        return self.number
+
+    @property
     def name(self) -> str:
         """The field of the chosen column."""
         return self.columns[self.column]
@@ -265,7 +270,7 @@ class CellTable(OffsetTable):
 
     def keep(self, values: Mapping[str, Value], why: str) -> str:
         """Have fields of the chosen row kept; answers why not, or nothing."""
-        return self.book.change(self.kind, self.number, values, why)
+        return self.questions.change(self.kind, self.number, values, why)
 
     def _reason(self, typed: str) -> str:
         return f"{self.field.word} {typed}".strip()

@@ -178,6 +178,10 @@ class ZeroOffsetsPage(CellTablePage):
         """A SINUMERIK lathe has no secondary offsets."""
         return (*self.LABELS[:8], "", "") if self.desk.language == "sinumerik" else self.LABELS
 
+    def barred_by(self) -> dict[str, object]:
+        """Return also why the position of the machine is not taken."""
+        return {**super().barred_by(), "F2": self.model.here_barred()}
+
     def key_actions(self) -> KeyActions:
         """The position of the machine."""
         return {**super().key_actions(), "F2": self.model.here}
@@ -192,6 +196,10 @@ class MillToolsPage(CellTablePage):
 
     def __init__(self, host: Host, parent: QWidget) -> None:
         super().__init__(host, parent, MillTools(host.desk))
+
+    def barred_by(self) -> dict[str, object]:
+        """Return also why no length is touched off."""
+        return {**super().barred_by(), "F2": self.model.here_barred()}
 
     def key_actions(self) -> KeyActions:
         """The length of a tool whose tip touches."""
@@ -213,6 +221,11 @@ class PresetsPage(CellTablePage):
 
     def __init__(self, host: Host, parent: QWidget) -> None:
         super().__init__(host, parent, Presets(host.desk))
+
+    def barred_by(self) -> dict[str, object]:
+        """Return also why the workpiece is not touched off, and why no preset comes into force."""
+        model = self.model
+        return {**super().barred_by(), "F2": model.here_barred(), "F3": model.activate_barred()}
 
     def key_actions(self) -> KeyActions:
         """Where the tip touches the workpiece, and which preset is in force."""

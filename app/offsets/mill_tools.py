@@ -80,15 +80,18 @@ class MillTools(CellTable):
         self.lives.set_used(self.number, 60.0 * float(values[USED]))
         return ""
 
+    def here_barred(self) -> str:
+        """Return why no length is touched off now; empty when one is."""
+        if self.name != "length":
+            return tr("CHOOSE THE COLUMN L FIRST: F2 TOUCHES THE LENGTH OFF")
+        nose = MillTouch.of(self.desk).nose_height()
+        return nose if isinstance(nose, str) else self.barred(self.desk.snapshot())
+
     def here(self) -> None:
         """F2: the tip stands at the height of the preset that was typed, or 0: the length follows."""
-        if self.name != "length":
-            self.desk.say(tr("CHOOSE THE COLUMN L FIRST: F2 TOUCHES THE LENGTH OFF"))
-            return
-        touch = MillTouch.of(self.desk)
-        nose = touch.nose_height()
-        if isinstance(nose, str):
-            self.desk.say(nose)
+        nose = MillTouch.of(self.desk).nose_height()
+        if isinstance(nose, str) or self.here_barred():
+            self.desk.say(self.here_barred())
             return
         reads = self.text.strip() or "0"
         self.save(lambda: self.checked(nose - value_of(reads)), tr("at {value}").format(value=reads))

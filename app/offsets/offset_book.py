@@ -162,14 +162,22 @@ class OffsetBook:
         """All offsets of this kind at once."""
         return self._post(act_of(kind), lambda store, who: store.clear_offsets(kind, why, who=who))
 
-    def undo(self, kind: Kind) -> str:
-        """Take the last change of this kind back."""
-        return self._post(act_of(kind), lambda store, who: store.undo_offset(kind=kind, who=who))
+    def undoable(self, kind: Kind, number: int | None) -> tuple[Change, ...]:
+        """Return what undo would take back; None: the last step of the table. Raises StoreError."""
+        return () if self.store is None else self.store.undoable(kind, number)
 
-    def _post(self, act: Act, write: Callable[[Store, str], Future[Any]]) -> str:
+    def undo(self, kind: Kind, number: int | None, step: int) -> str:
+        """Take exactly this step back."""
+        return self._post(act_of(kind), lambda store, who: store.undo_step(kind, number, step, who=who))
+
+    def barred(self, act: Act) -> str:
+        """Return why this change cannot be posted now; empty if it can."""
         if self.store is None or self.busy:
             return self.locked or SAVING
-        if why := self.access.refusal(act):
+        return self.access.refusal(act)
+
+    def _post(self, act: Act, write: Callable[[Store, str], Future[Any]]) -> str:
+        if (why := self.barred(act)) or self.store is None:
             return why
         try:
             self._saving = write(self.store, self.access.who)

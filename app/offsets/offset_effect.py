@@ -165,14 +165,20 @@ class EffectDisplay:
             effect.ask_part(effect.compare, now.job, *self._asked)
             self.of_part = True
 
+    def barred(self) -> str:
+        """Return why no effect can be shown now; empty when one can, or is shown."""
+        if self.open:
+            return ""
+        if self.effect is None or self.table.desk.session.now.job is None:
+            return tr("LOAD A PROGRAM FIRST: THE EFFECT IS SHOWN ON ITS PATH")
+        if self._pair() is None:
+            return tr("NOTHING HAS CHANGED HERE YET: TYPE A VALUE OR CHANGE ONE, THEN PRESS F6")
+        return ""
+
     def _open(self) -> None:
-        effect, job = self.effect, self.table.desk.session.now.job
-        if effect is None or job is None:
-            self.table.desk.say(tr("LOAD A PROGRAM FIRST: THE EFFECT IS SHOWN ON ITS PATH"))
-            return
-        pair = self._pair()
-        if pair is None:
-            self.table.desk.say(tr("NOTHING HAS CHANGED HERE YET: TYPE A VALUE OR CHANGE ONE, THEN PRESS F6"))
+        effect, job, pair = self.effect, self.table.desk.session.now.job, self._pair()
+        if effect is None or job is None or pair is None:
+            self.table.desk.say(self.barred())
             return
         self.table.desk.clear()
         effect.ask(job, *pair)

@@ -5,6 +5,7 @@ And when an offset may change: corrections at any time at which no hand moves th
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass, field
 
 from app.desk.desk import Desk
@@ -70,6 +71,8 @@ class OffsetHistory:
     listed: tuple[Change, ...] | None = None  # the history while it is looked at
     _seen: int = 0
     _newest: int = 0  # id of the newest change that was read
+    _asked_of: tuple[int, int | None] | None = None  # changes of the book, and row, that ``_undoable`` is of
+    _undoable: bool = True
 
     def __post_init__(self) -> None:
         self._seen = self.book.changes
@@ -131,11 +134,14 @@ class OffsetHistory:
         """The history instead of the table, or the table again."""
         self.listed = None if self.listed is not None else self._read()
 
-    def undo(self, why_not: str) -> None:
-        """Take the last change of this table back, unless there is a reason not to."""
-        if not why_not:
-            self.desk.clear()
-        self.answer(why_not or self.book.undo(self.kind))
+    def undoable(self, number: int | None) -> bool:
+        """Return whether a change of this row can be taken back. It asks the store once per change."""
+        key = self.book.changes, number
+        if self._asked_of != key:
+            self._asked_of, self._undoable = key, True
+            with suppress(StoreError):  # undo itself reports it
+                self._undoable = bool(self.book.undoable(self.kind, number))
+        return self._undoable
 
     def answer(self, why: str) -> None:
         """Say why not, where there is a reason."""

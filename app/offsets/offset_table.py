@@ -15,6 +15,7 @@ from app.desk.sheet import edited
 from app.desk.translation import tr
 from app.offsets.offset_book import OffsetBook
 from app.offsets.offset_history import OffsetHistory, refusal
+from app.offsets.offset_questions import OffsetQuestions
 from app.offsets.offset_values import Mode
 from core.executor.snapshot import Snapshot
 from core.store.store_rows import Kind, SecondaryRow, ToolRow
@@ -44,6 +45,16 @@ class OffsetTable(ABC):
     def mode(self) -> Mode:
         """The control's unit, and whether its X is a diameter."""
         return self.history.mode
+
+    @property
+    def questions(self) -> OffsetQuestions:
+        """The changes that are asked before they take effect."""
+        return OffsetQuestions(self.history)
+
+    @property
+    def chosen(self) -> int | None:
+        """The number of the chosen row, which undo refers to; None if no row is chosen."""
+        return None
 
     # --- what each table has of its own --------------------------------------------------------------
 
@@ -142,10 +153,10 @@ class OffsetTable(ABC):
         self.text = edited(self.text, key, longest)
 
     def undo(self) -> None:
-        """Take back what is being entered; where nothing is, the last change of this table."""
+        """Drop what is being entered; if nothing is, ask about undoing the last change of the chosen row."""
         why = self.undo_barred()
         if why or not self.take_back():
-            self.history.undo(why)
+            self.history.answer(why or self.questions.undo(self.kind, self.chosen))
 
     def clear(self) -> None:
         """C: clear the whole table, after asking."""

@@ -160,15 +160,25 @@ class OffsetPage(ModelPage):
     def key_actions(self) -> KeyActions:
         """Undo, history, effect, and the other tables."""
         around = self.effect.look_keys() if self.effect_model.open else {}
+        zero = {"F10": partial(self._go, page_table.ZERO)} if self.labels()[9] else {}
         return {
             **around,
+            **zero,
             "F4": self.model.undo,
             "F5": self._toggle_history,
             "F6": self._turn_effect,
             "F8": partial(self._go, page_table.TOOLS),
             "F9": partial(self._go, page_table.SECCMP),
-            "F10": partial(self._go, page_table.ZERO),
         }
+
+    def barred(self) -> frozenset[str]:
+        """Return the keys of the table that would be refused now."""
+        return frozenset(key for key, why in self.barred_by().items() if why)
+
+    def barred_by(self) -> dict[str, object]:
+        """Return what speaks against each key now; empty where nothing does."""
+        nothing = not self.model.text and not self.model.history.undoable(self.model.chosen)
+        return {"F4": self.model.undo_barred() or nothing, "F6": self.effect_model.barred()}
 
     def labels(self) -> tuple[str, ...]:
         """Two keys to one table are one key."""

@@ -143,15 +143,28 @@ class Presets(CellTable):
             raise EntryError(tr("THE TWO POINTS ARE NEARER THAN 1 MM: TOUCH THE EDGE FURTHER ON"))
         return self.checked(remainder(degrees(atan2(dy, dx)) - reads, 180.0))
 
+    def activate_barred(self) -> str:
+        """Return why the chosen preset does not come into force now; empty when it does."""
+        if why := self.barred(self.desk.snapshot()):
+            return why
+        if self.stored is None:
+            return tr("PRESET {number} WAS NEVER SET: TOUCH IT OFF OR TYPE IT").format(number=self.number)
+        return ""
+
+    def here_barred(self) -> str:
+        """Return why the workpiece is not touched off now; empty when it is."""
+        if self.name in _ROTARY:
+            place: object = MillTouch.of(self.desk).angle(_ROTARY[self.name])
+        elif self.name in {"x", "y", "z", "rotation"}:
+            place = MillTouch.of(self.desk).tip(zeros_of(self.row_now))
+        else:
+            place = tr("CHOOSE X, Y, Z, A ROTARY AXIS OR ROT FIRST: F2 TOUCHES THE WORKPIECE OFF")
+        return place if isinstance(place, str) else self.barred(self.desk.snapshot())
+
     def activate(self) -> None:
         """F3: the chosen preset is in force; that of the machine file where it is already."""
-        if why := self.barred(self.desk.snapshot()):
+        if why := self.activate_barred():
             self.desk.say(why)
-            return
-        if self.stored is None:
-            self.desk.say(
-                tr("PRESET {number} WAS NEVER SET: TOUCH IT OFF OR TYPE IT").format(number=self.number)
-            )
             return
         number = 0 if self.book.preset == self.number else self.number
         if why := self.book.choose_preset(number):

@@ -73,6 +73,11 @@ class SecondaryOffsets(OffsetTable):
         return self.book.secondary.get(self.number) if self.number else None
 
     @property
+    def chosen(self) -> int | None:
+        """The offset whose number was entered; None: undo refers to the last change of the table."""
+        return self.number or None
+
+    @property
     def preview(self) -> SecondaryRow | None:
         """What it would become if the text were entered; None while no number is chosen."""
         if not self.number:
@@ -102,7 +107,9 @@ class SecondaryOffsets(OffsetTable):
         return f"{leave}        {tr('Press C to clear all offsets')}"
 
     def hint(self, snapshot: Snapshot) -> str:
-        """That every value may be a sum, or from when a correction counts."""
+        """Return what is typed now, or from when a correction counts."""
+        if self.step is Step.NUMBER and not counts_from(snapshot):
+            return tr("TYPE THE NUMBER OF AN OFFSET AND PRESS RETURN")
         return counts_from(snapshot) or tr(
             "EVERY VALUE TAKES ARITHMETIC, SUCH AS .5-.002; RETURN ALONE KEEPS THE VALUE"
         )
@@ -215,7 +222,7 @@ class SecondaryOffsets(OffsetTable):
             self.drop()
             return
         reason = ("MM " if self.mode.metric else "") + " ".join(filter(None, typed))
-        why = self.book.change(self.kind, self.number, new._asdict(), reason)
+        why = self.questions.change(self.kind, self.number, new._asdict(), reason)
         if why:
             self.desk.say(why)
         else:

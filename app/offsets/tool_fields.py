@@ -11,6 +11,7 @@ from app.desk.arithmetic import CHARACTERS, LONGEST, EntryError
 from app.desk.sheet import refused
 from app.desk.translation import tr
 from app.offsets.offset_history import OffsetHistory
+from app.offsets.offset_questions import OffsetQuestions
 from app.offsets.offset_table import OffsetTable
 from app.offsets.offset_values import TOOL_FIELDS, heading, shown_value, value_added, value_typed, word
 from core.store.offset_fields import Sort
@@ -24,16 +25,19 @@ class NewTool:
 
     number: int = 0
     values: dict[str, Value] = field(default_factory=dict)
+    tip: float | None = None  # X of the tip from part zero when it was touched, mm
 
     def add(self, number: int, name: str, value: Value) -> dict[str, Value]:
         """One of the two; answers what there is of this tool now."""
-        self.values = {**(self.values if number == self.number else {}), name: value}
+        if number != self.number:
+            self.drop()
+        self.values = {**self.values, name: value}
         self.number = number
         return self.values
 
     def drop(self) -> None:
         """It is not to be set after all."""
-        self.number, self.values = 0, {}
+        self.number, self.values, self.tip = 0, {}, None
 
     @property
     def missing(self) -> str:
@@ -63,7 +67,7 @@ class ToolFields:
             self.history.desk.say(tr("T{number} IS AS IT WAS").format(number=edge_number(number)))
             return ""
         typed = f"{'MM ' if mode.metric else ''}{word(name)} {'+ ' if adding else ''}{text.strip()}"
-        return self.history.book.change(Kind.TOOL, number, {name: value}, typed)
+        return OffsetQuestions(self.history).change(Kind.TOOL, number, {name: value}, typed)
 
     def _first(self, number: int, name: str, value: Value) -> str:
         """X and Z of a tool that was never set are saved together."""
@@ -74,19 +78,16 @@ class ToolFields:
             text = tr("NOW {axis}: T{number} IS SET WHEN BOTH ARE THERE")
             self.history.desk.say(text.format(axis=word(self.new.missing), number=edge_number(number)))
             return ""
-        why = self.history.book.change(Kind.TOOL, number, values, tr("entered by hand"))
+        why = OffsetQuestions(self.history).change(Kind.TOOL, number, values, tr("entered by hand"))
         if not why:
             self.new.drop()
         return why
 
     def master(self, number: int) -> str:
-        """A tool becomes the one that the others are relative to; being it already, none is."""
-        row = self.history.book.tools.get(number)
-        if row is None:
+        """Ask whether this tool becomes the master; or, if it is the master, whether no tool is."""
+        if number not in self.history.book.tools:
             return self.never_set(number)
-        if row.master:
-            return self.history.book.choose_master(0, tr("no master"))
-        return self.history.book.choose_master(number, tr("chosen as master"))
+        return OffsetQuestions(self.history).choose_master(number)
 
 
 class ToolEntry(OffsetTable):
@@ -99,6 +100,11 @@ class ToolEntry(OffsetTable):
     def number(self) -> int:
         """The tool at which the pages of tools stand."""
         return self.book.at
+
+    @property
+    def chosen(self) -> int | None:
+        """Undo refers to this tool."""
+        return self.number
 
     @property
     def tool(self) -> ToolRow | None:

@@ -162,15 +162,27 @@ class ToolOffsets(ToolEntry):
 
     def add(self) -> None:
         """F2: what is typed is added to what is there."""
-        if self.tool is None or not self.text.strip():
-            self.desk.say(tr("TYPE WHAT IS TO BE ADDED FIRST, THEN PRESS F2"))
+        if why := self.add_barred():
+            self.desk.say(why)
             return
         self._save(adding=True)
 
+    def add_barred(self) -> str:
+        """Return why nothing is added now; empty when it is."""
+        if self.tool is None or not self.text.strip():
+            return tr("TYPE WHAT IS TO BE ADDED FIRST, THEN PRESS F2")
+        return ""
+
+    def relative_barred(self) -> str:
+        """Return why X and Z cannot be shown from the master; empty when they can."""
+        if not self.relative and not self.book.master:
+            return tr("NO TOOL IS THE MASTER: CHOOSE ONE IN ITS COLUMN WITH RETURN")
+        return ""
+
     def turn_relative(self) -> None:
         """F3: X and Z from home, or from the master."""
-        if not self.relative and not self.book.master:
-            self.desk.say(tr("NO TOOL IS THE MASTER: CHOOSE ONE IN ITS COLUMN WITH RETURN"))
+        if why := self.relative_barred():
+            self.desk.say(why)
             return
         self.relative = not self.relative
 

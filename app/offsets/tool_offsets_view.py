@@ -172,6 +172,11 @@ class ToolOffsetsPage(OffsetPage):
         super().__init__(host, parent, ToolOffsets(host.desk))
         self.table = ToolTable(self.look, self.model, self)
 
+    def barred_by(self) -> dict[str, object]:
+        """Return also why nothing is added, and why X and Z are not shown from a master."""
+        model = self.model
+        return {**super().barred_by(), "F2": model.add_barred(), "F3": model.relative_barred()}
+
     def key_actions(self) -> KeyActions:
         """Add to what is there; X and Z from the master; the tool's shape; the rest as on F9."""
         own: KeyActions = {

@@ -193,7 +193,9 @@ class ToolShapes(ToolEntry):
             return ""
         self._check(name, value)
         typed = f"{'MM ' if self.mode.metric else ''}{word(name)} {self.text.strip()}"
-        return self.book.change(Kind.TOOL if of_offset else Kind.SHAPE, self.number, {name: value}, typed)
+        return self.questions.change(
+            Kind.TOOL if of_offset else Kind.SHAPE, self.number, {name: value}, typed
+        )
 
     def _check(self, name: str, value: Value) -> None:
         """What is wrong with this very field is refused; what it does to the others is shown."""
@@ -208,11 +210,15 @@ class ToolShapes(ToolEntry):
         if wrong:
             raise EntryError(wrong[0].text)
 
+    def remove_barred(self) -> str:
+        """Return why the shape of the tool is not removed now; empty when it is."""
+        if self.row is None:
+            return tr("T{number} HAS NO SHAPE").format(number=edge_number(self.number))
+        return self.cell_barred()
+
     def remove(self) -> None:
         """F3: the tool has no shape any more, after asking."""
-        if self.row is None:
-            self.desk.say(tr("T{number} HAS NO SHAPE").format(number=edge_number(self.number)))
-        elif why := self.cell_barred():
+        if why := self.remove_barred():
             self.desk.say(why)
         else:
             number = self.number

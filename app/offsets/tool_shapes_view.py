@@ -115,6 +115,10 @@ class ToolShapePage(OffsetPage):
         super().__init__(host, parent, ToolShapes(host.desk))
         self.table = ShapeTable(self.look, self.model, self)
 
+    def barred_by(self) -> dict[str, object]:
+        """Return also why the shape of the tool is not removed."""
+        return {**super().barred_by(), "F3": self.model.remove_barred()}
+
     def key_actions(self) -> KeyActions:
         """No shape any more; no effect on the path is drawn of these."""
         shared = {key: act for key, act in super().key_actions().items() if key != "F6"}

@@ -59,17 +59,22 @@ class ZeroOffsets(CellTable):
             return tr("A PROGRAM IS UNDER WAY: G54 TO G59 CHANGE BETWEEN CYCLES ONLY")
         return super().barred(snapshot, correction=correction)
 
+    def here_barred(self) -> str:
+        """Return why the position of the machine is not taken now; empty when it is."""
+        snapshot, axis = self.desk.snapshot(), self.name.upper()
+        if axis not in snapshot.axes:
+            return tr("THIS MACHINE HAS NO AXIS {axis}").format(axis=axis)
+        if not snapshot.homed[snapshot.axes.index(axis)]:
+            return tr("{axis} DOES NOT KNOW ITS POSITION: HOME IT FIRST").format(axis=axis)
+        return self.barred(snapshot)
+
     def here(self) -> None:
         """F2: the machine stands where the program shall read what was typed, or 0: the offset follows."""
+        if why := self.here_barred():
+            self.desk.say(why)
+            return
         snapshot = self.desk.snapshot()
-        axis = self.name.upper()
-        if axis not in snapshot.axes:
-            self.desk.say(tr("THIS MACHINE HAS NO AXIS {axis}").format(axis=axis))
-            return
-        place = snapshot.axes.index(axis)
-        if not snapshot.homed[place]:
-            self.desk.say(tr("{axis} DOES NOT KNOW ITS POSITION: HOME IT FIRST").format(axis=axis))
-            return
+        place = snapshot.axes.index(self.name.upper())
         reads = self.text.strip() or "0"
         words = tr("reads {value}").format(value=reads)
         self.save(lambda: self._touched(snapshot.actual[place], value_of(reads)), words)

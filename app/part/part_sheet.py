@@ -140,7 +140,8 @@ class PartSheet:
             }
         found = self.finding
         word = "UNDO" if found is not None and found.silenced else "SILENCE"
-        return {"F2": Key("STOCK", self.turn), "F4": Key(word, self.silence)}
+        silenced = Key(word, self.silence, barred=bool(self._not_silenced() or self._locked()))
+        return {"F2": Key("STOCK", self.turn), "F4": silenced}
 
     def turn(self) -> None:
         """To the other table."""
@@ -249,6 +250,8 @@ class PartSheet:
         if self.writing:
             return tr("TYPE THE NAME OF THE FILE; RETURN TAKES IT, ESC LEAVES IT AS IT WAS")
         if self.section is Section.FINDINGS:
+            if self.keys()["F4"].barred:
+                return tr("UP AND DOWN SHOW THE PLACE OF A FINDING; F2: STOCK")
             return tr("UP AND DOWN SHOW THE PLACE OF A FINDING; F2: STOCK, F4 SILENCES A CHECK")
         if self.marked_field is StockField.KIND:
             return tr("LEFT AND RIGHT TURN THE KIND OF STOCK; F6: NOTHING IS SAID ANY MORE")
@@ -258,17 +261,21 @@ class PartSheet:
 
     def _barred(self) -> bool:
         """Whether nothing may be changed now; says why."""
+        if why := self._locked():
+            self.desk.say(why)
+        return bool(why)
+
+    def _locked(self) -> str:
+        """Return why nothing may be changed now; empty when it may."""
         if not self.name:
-            self.desk.say(tr("LOAD A PROGRAM FIRST: ITS STOCK IS KEPT WITH IT"))
-        elif self.desk.lathe is not None and self.desk.lathe.kind != "lathe":
-            self.desk.say(tr("NO PART IS PROVED ON A MILL"))
-        elif self.desk.snapshot().state in UNDER_WAY:
-            self.desk.say(tr("WHAT THE PART IS PROVED ON CHANGES BETWEEN TWO CYCLES ONLY"))
-        elif self.worker.busy or self.loaded.busy:
-            self.desk.say(tr("THE PROGRAM IS BEING PROVED: WAIT A MOMENT"))
-        else:
-            return False
-        return True
+            return tr("LOAD A PROGRAM FIRST: ITS STOCK IS KEPT WITH IT")
+        if self.desk.lathe is not None and self.desk.lathe.kind != "lathe":
+            return tr("NO PART IS PROVED ON A MILL")
+        if self.desk.snapshot().state in UNDER_WAY:
+            return tr("WHAT THE PART IS PROVED ON CHANGES BETWEEN TWO CYCLES ONLY")
+        if self.worker.busy or self.loaded.busy:
+            return tr("THE PROGRAM IS BEING PROVED: WAIT A MOMENT")
+        return ""
 
     def turn_kind(self, by: int = 1) -> None:
         """The next kind of stock; what it still lacks is asked for, and until then the stock is as before."""
@@ -336,16 +343,24 @@ class PartSheet:
 
     # --- silenced ------------------------------------------------------------------------------------
 
+    def _not_silenced(self) -> str:
+        """Return why the check of the marked finding cannot be silenced; empty when it can."""
+        found = self.finding
+        if found is None:
+            return tr("MARK THE FINDING WHOSE CHECK IS TO BE SILENCED")
+        if found.check not in self.checks:
+            return tr("ONLY CHECKS OF THE PART ARE SILENCED; THIS IS ONE OF THE PROGRAM")
+        if found.check in self.of_machine:
+            return tr("THE MACHINE FILE SILENCES {check}: [checks]").format(check=found.check)
+        return ""
+
     def silence(self) -> None:
         """F4: ask why the check of the marked finding is silenced, or let it speak again."""
         found = self.finding
         self.drop()
-        if found is None:
-            self.desk.say(tr("MARK THE FINDING WHOSE CHECK IS TO BE SILENCED"))
-        elif found.check not in self.checks:
-            self.desk.say(tr("ONLY CHECKS OF THE PART ARE SILENCED; THIS IS ONE OF THE PROGRAM"))
-        elif found.check in self.of_machine:
-            self.desk.say(tr("THE MACHINE FILE SILENCES {check}: [checks]").format(check=found.check))
+        why = self._not_silenced()
+        if found is None or why:
+            self.desk.say(why)
         elif self._barred():
             return
         elif found.silenced:

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import partial
 
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk.machine_status import MachineStatus
+from app.desk.page_entry import editor_barred
 from app.desk.program_loading import Loaded
+from app.desk.sheet import Key
 from app.part.part_sheet import PartSheet, Section
 from app.part.part_tables import table
 from app.path.part_player import player_of
@@ -46,9 +49,19 @@ class PartPage(ListPage):
         self._shown: Diagnostic | None = None  # whose place the part view stands at
         model.shows = self._show
 
+    def page_keys(self) -> Mapping[str, Key]:
+        """Return those of the model."""
+        return self.model.keys()
+
     def labels(self) -> tuple[str, ...]:
         """Those of the table that is shown, and the page's own."""
-        return self.labels_of({"F3": "EDIT", "F5": "FIT", "F8": "TOOLS"}, self.model.keys())
+        return self.labels_of({"F3": "EDIT", "F5": "FIT", "F8": "TOOLS"}, self.page_keys())
+
+    def barred(self) -> frozenset[str]:
+        """Return those of the table, and F3 while the editor cannot be entered."""
+        named = self.desk.session.now.path is not None
+        closed = editor_barred(self.desk.snapshot(), named=named)
+        return super().barred() | ({"F3"} if closed else set())
 
     def lively(self) -> bool:
         """The part is being played."""
@@ -58,7 +71,7 @@ class PartPage(ListPage):
         """Keys of the table, of the time line and of looking around."""
         path = self.path
         return {
-            **{name: key.action for name, key in self.model.keys().items()},
+            **{name: key.action for name, key in self.page_keys().items()},
             "F3": partial(self.host.go, page_table.EDITOR),
             "F5": path.fit,
             "F8": partial(self.host.go, page_table.TOOLS),

@@ -136,6 +136,12 @@ class CopyRenameDelete:
             self.question = question
             self.entry.offer(without_ending(here.name))
 
+    @property
+    def fixed(self) -> bool:
+        """Whether the marked program cannot be renamed or deleted now."""
+        here = self.marked_program()
+        return here is None or bool(self._fixed(here))
+
     def _fixed(self, program: Program) -> str:
         """Why a program stays as it is; empty when it may be changed."""
         if program.sample:

@@ -11,6 +11,7 @@ from app.desk import formats
 from app.desk.desk import Desk
 from app.desk.latest import Latest
 from app.desk.machine_status import Tone
+from app.desk.page_entry import BY_HAND
 from app.desk.persistence import Persistence
 from app.desk.prompt_line import UNDER_WAY
 from app.desk.sheet import STEPS, Entry, Key, Row, Sheet, following
@@ -103,8 +104,8 @@ class ProgramList:
         return {
             "F2": Key("SORT", self.sort),
             "F4": Key("COPY", lambda: self.changer.ask(COPY)),
-            "F5": Key("RENAME", lambda: self.changer.ask(RENAME)),
-            "F6": Key("DELETE", self.changer.delete),
+            "F5": Key("RENAME", lambda: self.changer.ask(RENAME), barred=self.changer.fixed),
+            "F6": Key("DELETE", self.changer.delete, barred=self.changer.fixed),
             "F8": Key("IMPORT", lambda: self._transfer(out=False)),
             "F9": Key("EXPORT", lambda: self._transfer(out=True)),
         }
@@ -196,6 +197,8 @@ class ProgramList:
             return "TYPE A NAME, OR PRESS BACKSPACE TO EDIT THIS ONE. RETURN: ACCEPT    ESC: CANCEL"
         if self.find.text and not self.listed:
             return tr("NO PROGRAM HAS THAT IN ITS NAME: F3 BEGINS A NEW ONE")
+        if self.desk.snapshot().state in BY_HAND:
+            return "TYPE A PART OF A NAME; PAUSE HOLDS THE FEED; ESC FOR AUTOMATIC"
         if self.desk.snapshot().state in UNDER_WAY:
             return "TYPE A PART OF A NAME; F3 OPENS IT IN THE EDITOR; PAUSE HOLDS THE FEED; ESC FOR AUTOMATIC"
         return "TYPE A PART OF A NAME, OR MARK IT WITH ARROWS; RETURN LOADS IT; ESC FOR AUTOMATIC"

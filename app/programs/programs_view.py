@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -10,7 +11,9 @@ from PySide6.QtGui import QImage, QResizeEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk.machine_status import MachineStatus
+from app.desk.page_entry import editor_barred
 from app.desk.program_loading import Loaded
+from app.desk.sheet import Key
 from app.editor.editor import Editor
 from app.jobs.jobs_model import JobsModel
 from app.path.path_view import PathView
@@ -107,19 +110,28 @@ class ProgramsPage(ListPage):
         self._with_letters = False
         self.table.touch_entry = self._turn_letters
 
+    def barred(self) -> frozenset[str]:
+        """Return those of the list, and F3 while the editor cannot be entered."""
+        closed = not self.model.transfer.open and editor_barred(self.desk.snapshot())
+        return super().barred() | ({"F3"} if closed else set())
+
+    def page_keys(self) -> Mapping[str, Key]:
+        """Return those of the model."""
+        return self.model.keys()
+
     def labels(self) -> tuple[str, ...]:
         """Those of the list or of the chooser."""
         own = {} if self.model.transfer.open else {"F3": "EDIT", "F10": "JOB"}
-        return self.labels_of(own, self.model.keys())
+        return self.labels_of(own, self.page_keys())
 
     def key_actions(self) -> KeyActions:
         """The function keys of the list, or of the chooser over it."""
-        keys = self.model.keys()
+        keys = self.page_keys()
         own = {} if self.model.transfer.open else {"F3": self._edit, "F10": self._job}
         return {**own, **{name: partial(self._do, name) for name in keys}}
 
     def _do(self, name: str) -> None:
-        self.model.keys()[name].action()
+        self.page_keys()[name].action()
 
     def _edit(self) -> None:
         """The marked program, or a new one of the name that is typed; to look at it does not load it."""

@@ -12,7 +12,8 @@ from app.desk.desk import Desk
 from app.desk.machine_status import Tone
 from app.desk.sheet import Key, Row, Sheet
 from app.desk.translation import tr
-from app.offsets.offset_history import refusal
+from app.offsets.offset_history import OffsetHistory, refusal
+from app.offsets.offset_questions import OffsetQuestions
 from app.quality.correction_effect import CorrectionEffect
 from app.quality.gauge_line import Gauge, NoGauge, Reading
 from app.quality.parts_book import feature_of
@@ -57,7 +58,7 @@ class ReadingsSection(QualitySection):
         self.gauge = gauge or NoGauge()
         self._part = 0  # 0: the last that was made
         self.effect = CorrectionEffect(desk)
-        self._last: tuple[Kind, str] | None = None  # the correction that was taken over last, and its reason
+        self._last: tuple[Kind, int, str] | None = None  # the last accepted correction: its row, its reason
 
     @property
     def count(self) -> int:
@@ -88,7 +89,7 @@ class ReadingsSection(QualitySection):
         way = (
             "What a feature is off is typed into DL and DR of the tool table, F8 of the main menu."
             if self.of_mill
-            else "F8 proposes a correction, F9 takes the last one back."
+            else "F8 proposes a correction, F4 undoes the last one."
         )
         notes = (words or self._gauge_words(), way)
         title = f"READINGS  ·  {self.program}" if self.program else "READINGS"
@@ -112,11 +113,11 @@ class ReadingsSection(QualitySection):
 
     def keys(self) -> Mapping[str, Key]:
         """Part number, gauge, file, correction."""
-        correct = {"F8": Key("CORRECT", self.propose), "F9": Key("UNDO", self.undo)}
+        correct = {"F8": Key("CORRECT", self.propose), "F4": Key("UNDO", self.undo)}
         return {
             "F2": Key(tr("PART −"), partial(self._step, -1)),
             "F3": Key(tr("PART +"), partial(self._step, 1)),
-            "F4": Key("TAKE OUT", self.take_out),
+            "F9": Key("TAKE OUT", self.take_out),
             "F5": Key("NO GAUGE" if self.gauge.open else "GAUGE", self.turn_gauge),
             "F6": Key("CSV", self.write_file),
             **({} if self.of_mill else correct),
@@ -184,7 +185,7 @@ class ReadingsSection(QualitySection):
             self.marked = (self.marked + 1) % max(1, self.count)
 
     def take_out(self) -> None:
-        """F4: the newest reading of the marked feature counts no more, after asking."""
+        """F9: the newest reading of the marked feature counts no more, after asking."""
         feature = self.feature
         taken = self.data.readings_of(feature.id) if feature is not None else ()
         if feature is None or not taken:
@@ -285,25 +286,24 @@ class ReadingsSection(QualitySection):
         if why:
             self.desk.say(why)
             return
-        self._last = change.kind, change.why
+        self._last = change.kind, change.number, change.why
         self.desk.done(tr("{words}; IT COUNTS FROM THE NEXT PART").format(words=change.words))
 
     def undo(self) -> None:
-        """F9: the correction that was taken over last is taken back, while no other change came after it."""
+        """F4: ask whether the last accepted correction is taken back, while no other change came after it."""
         why = self._undo_barred()
         if not why and self._last is not None:
-            why = self.desk.book.undo(self._last[0])
+            kind, number, _reason = self._last
+            questions = OffsetQuestions(OffsetHistory(self.desk, kind, self.mode))
+            why = questions.undo(kind, number, tr("THE CORRECTION IS TAKEN BACK"))
         if why:
             self.desk.say(why)
-            return
-        self._last = None
-        self.desk.done(tr("THE CORRECTION IS TAKEN BACK"))
 
     def _undo_barred(self) -> str:
         """Why nothing is taken back here; empty when it is."""
         if self._last is None:
             return tr("NO CORRECTION WAS TAKEN OVER HERE; F8 AND F9 OF THE MAIN MENU HAVE THE HISTORY")
-        kind, reason = self._last
+        kind, _number, reason = self._last
         last = self.desk.book.history(kind, 1)
         if not last or last[0].why != reason:
             return tr("ANOTHER CHANGE CAME AFTER IT; F8 AND F9 OF THE MAIN MENU HAVE THE HISTORY")

@@ -166,12 +166,18 @@ class Scope:
 
     # --- live and frozen -----------------------------------------------------------------------------
 
+    @property
+    def has_samples(self) -> bool:
+        """Whether there is something to freeze, or something frozen."""
+        live = self.live is not None and bool(np.isfinite(self.live.last))
+        return self.frozen is not None or live
+
     def freeze_key(self) -> None:
         """F2: freeze what is seen, or let the curves roll again."""
         self.desk.clear()
         if self.frozen is not None:
             self.go_live()
-        elif self.live is None or not np.isfinite(self.live.last):
+        elif not self.has_samples:
             self.desk.say(NO_SAMPLES)
         else:
             self._freeze_at(None, self.window.span)

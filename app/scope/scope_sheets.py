@@ -9,7 +9,7 @@ from app.desk import formats
 from app.desk.arithmetic import EntryError, line_of, value_of
 from app.desk.sheet import STEPS, Entry, Key, Row, Sheet, refused
 from app.desk.translation import tr
-from app.scope.scope_model import Scope, Side
+from app.scope.scope_model import NO_SAMPLES, Scope, Side
 from app.scope.scope_trigger import When
 from app.scope.signals import Signal
 
@@ -244,6 +244,8 @@ class ScopeSheets:
         if self.scope.side is Side.READINGS:
             if self.scope.cursors.shown:
                 return tr("ARROWS MOVE THE CURSOR, TAB TAKES THE OTHER; Z ZOOMS, CTRL+ARROWS PAN AND STRETCH")
+            if not self.scope.has_samples:
+                return NO_SAMPLES
             return tr("UP AND DOWN CHOOSE A CURVE; Z ZOOMS, CTRL+ARROWS PAN AND STRETCH; F2 FREEZES")
         if self.scope.side is Side.CURVES:
             return tr("RETURN SHOWS THE MARKED CURVE, OR TAKES IT AWAY; ESC GOES BACK TO THE CURVES")

@@ -201,18 +201,18 @@ class ScopePage(ListPage):
 
     def labels(self) -> tuple[str, ...]:
         """Those of the records while they are listed."""
-        return self.labels_of({}, self._keys())
+        return self.labels_of({}, self.page_keys())
 
-    def _keys(self) -> Mapping[str, Key]:
+    def page_keys(self) -> Mapping[str, Key]:
         scope, open_ = self.scope, self.sheets.open
         if scope.side is Side.FILES:
             pictured = {"F6": Key("PICTURE", self._picture), "F9": Key("BACK", partial(open_, Side.FILES))}
             return {**self.sheets.keys(), **pictured}
         return {
-            "F2": Key("FREEZE" if scope.is_live else "LIVE", scope.freeze_key),
+            "F2": Key("FREEZE" if scope.is_live else "LIVE", scope.freeze_key, barred=not scope.has_samples),
             "F3": Key("TRIGGER", partial(open_, Side.TRIGGER)),
             "F4": Key("CURVES", partial(open_, Side.CURVES)),
-            "F5": Key("CURSORS", scope.cursors_key),
+            "F5": Key("CURSORS", scope.cursors_key, barred=scope.is_live),
             "F6": Key("FIT", scope.fit),
             "F8": Key("ANALYSE", self._analyse),
             "F9": Key("RECORDS", partial(open_, Side.FILES)),
@@ -222,7 +222,7 @@ class ScopePage(ListPage):
         """Function keys, zoom and pan."""
         scope = self.scope
         return {
-            **{name: key.action for name, key in self._keys().items()},
+            **{name: key.action for name, key in self.page_keys().items()},
             "Zoom in": partial(scope.zoom, 1),
             "Zoom out": partial(scope.zoom, -1),
             "Pan left": partial(scope.pan_steps, -1),

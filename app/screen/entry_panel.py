@@ -24,7 +24,6 @@ class EntryWords:
     text: str = ""
     change: str = ""
     foot: str = ""
-    warn: bool = False  # the change is to be wondered at
     refused: bool = field(init=False)  # the next character replaces the text
 
     def __post_init__(self) -> None:
@@ -43,7 +42,7 @@ class EntryPanel(Panel):
         painter.write(QRectF(room.x(), room.y(), 27 * u, 3.2 * u), asked.which, 1.9, "text", bold=False)
         left = 28 * u if asked.which else 0.0
         change = QRectF(room.x() + left, room.y(), room.width() - left, 3.2 * u)
-        painter.write(change, asked.change, 2.0, "pause" if asked.warn else "accent")
+        painter.write(change, asked.change, 2.0, "accent")
         self._ask(painter, QRectF(room.x(), room.y() + 3.5 * u, room.width(), 4.8 * u))
         room.setTop(room.bottom() - 3.0 * u)
         painter.write(room, asked.foot, 1.8, "soft", bold=False)

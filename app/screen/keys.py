@@ -69,6 +69,7 @@ REPEATING = frozenset(
 )
 # What stops the machine does so with any modifier.
 _STOPS = {Key.Key_H: "H", Key.Key_Space: "H", Key.Key_E: "E"}
+STOP_LETTERS = frozenset(_STOPS.values())
 NO = "No"  # N while a question is asked, and its target: it never does anything
 OF_AUTOMATIC = frozenset({"A", "C", "O", "P", "S", "/"})
 """Keys that change how a cycle runs: keys of the Automatic page alone."""

@@ -9,13 +9,17 @@ from PySide6.QtCore import QRectF
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QWidget
 
+from app.desk.machine_status import MachineStatus
+from app.desk.page_entry import editor_barred, mdi_barred
+from app.desk.program_loading import Loaded
 from app.screen import page_table
 from app.screen.keys import OF_MENU
 from app.screen.look import CENTRE, Look, Painter
 from app.screen.page_base import Host, KeyActions, Page
 from app.screen.page_table import PageEntry, menu_keys, menu_of
-from app.screen.panel import Panel
+from app.screen.panel import Panel, Shown
 from app.screen.window_layout import FINGER
+from core.executor.snapshot import Snapshot
 
 COLUMNS = 2
 
@@ -36,6 +40,20 @@ class MenuPage(Page):
     def labels(self) -> tuple[str, ...]:
         """Those of the entries that this machine has."""
         return self._labels
+
+    def barred(self) -> frozenset[str]:
+        """Return the keys of editor and MDI while they would be refused."""
+        snapshot, named = self.desk.snapshot(), self.desk.session.now.path is not None
+        found = {
+            page_table.EDITOR: editor_barred(snapshot, named=named),
+            page_table.MDI: mdi_barred(snapshot),
+        }
+        return frozenset(key for key, each in self._keys.items() if found.get(each.name))
+
+    def refresh(self, snapshot: Snapshot, view: MachineStatus, loaded: Loaded) -> None:
+        """Dim the tiles of pages that do not open now."""
+        super().refresh(snapshot, view, loaded)
+        self.list.barred = self.barred()
 
     def key_actions(self) -> KeyActions:
         """The function keys of the entries."""
@@ -67,6 +85,7 @@ class _Tiles(Panel):
     """The entries in two columns."""
 
     title = page_table.MENU
+    barred: Shown[frozenset[str]] = Shown(frozenset())  # keys of pages that do not open now
 
     def __init__(
         self, look: Look, press: Callable[[str], None], entries: Sequence[PageEntry], parent: QWidget
@@ -87,9 +106,11 @@ class _Tiles(Panel):
 
     def _tile(self, painter: Painter, box: QRectF, entry: PageEntry) -> None:
         u = self.look.u
-        painter.box(box, "accent", 0.2, "key")
-        painter.write(QRectF(box.x() + u, box.y(), 8 * u, box.height()), entry.key, 3.4, "accent", at=CENTRE)
+        barred = entry.key in self.barred
+        ink = "soft" if barred else "accent"
+        painter.box(box, "frame" if barred else "accent", 0.2, "panel" if barred else "key")
+        painter.write(QRectF(box.x() + u, box.y(), 8 * u, box.height()), entry.key, 3.4, ink, at=CENTRE)
         text = box.adjusted(10.5 * u, 0.14 * box.height(), -1.5 * u, -0.14 * box.height())
         text.setHeight(text.height() / 2)
-        painter.write(text, entry.name, 3.0, "text")
+        painter.write(text, entry.name, 3.0, "soft" if barred else "text")
         painter.write(text.translated(0, text.height()), entry.use, 1.9, "soft", bold=False)

@@ -25,7 +25,17 @@ from app.desk.prompt_line import MOVING, UNDER_WAY
 from app.desk.translation import spoken, tr
 from app.screen.event_times import EventTimes
 from app.screen.keyboard import Keyboard, key_of, letter_of
-from app.screen.keys import ANSWER, NO, OF_AUTOMATIC, PALMS, REPEATING, TYPED_AGAIN, name_of, typed_of
+from app.screen.keys import (
+    ANSWER,
+    NO,
+    OF_AUTOMATIC,
+    PALMS,
+    REPEATING,
+    STOP_LETTERS,
+    TYPED_AGAIN,
+    name_of,
+    typed_of,
+)
 from app.screen.language import speak_in
 from app.screen.look import Look, dress
 from app.screen.page_table import AUTOMATIC
@@ -347,10 +357,13 @@ class MainWindow(QWidget):
         return True
 
     def _kept_from(self, frame: Frame, event: QKeyEvent) -> bool:
-        """Whether an entry has the keyboard and does not take a character: it is no other key then."""
+        """Whether an entry has the keyboard and does not take a character: it is no other key then.
+
+        Neither do Ctrl+H, Ctrl+Space and Ctrl+E stop the machine there.
+        """
         text = event.text()
         if not text.isprintable() or not text or not frame.has_field():
-            return False
+            return frame.has_field() and name_of(key_of(event), event.modifiers()) in STOP_LETTERS
         if not event.isAutoRepeat():
             self._untaken = tr("AN ENTRY HAS THE KEYBOARD, AND DOES NOT TAKE {key} HERE").format(key=text)
             frame.desk.say(self._untaken)

@@ -7,6 +7,7 @@ spindle, lamps, dock, prompt and function keys belong to the ``Frame``. To plug 
 ``NAME``      its name in ``app.screen.page_table``; the title line shows it.
 ``LABELS``    ten labels of up to eight characters for the function keys; an empty one is no key. F1 is MENU.
 ``labels()``  the same, where they change with what the page is doing.
+``barred()``  the function keys that would be refused now: they are drawn dim, and say why when pressed.
 ``STARTS``    whether cycles are started while it is shown; only the Automatic page's palms start anything.
 ``key_actions()``  what its keys do, by the names of ``app.screen.keys``. They go before the frame's own
               keys; H, E, D, R and the pots work on every page without a caret, F1 on all pages.
@@ -82,6 +83,10 @@ class Page(QWidget):
     def labels(self) -> tuple[str, ...]:
         """The labels of this moment; asked for once a frame."""
         return tuple(label_on(self.desk.language, label) for label in self.LABELS)
+
+    def barred(self) -> frozenset[str]:
+        """Return the function keys that would be refused now; asked for once a frame."""
+        return frozenset()
 
     def key_actions(self) -> KeyActions:
         """Keys of this page alone."""

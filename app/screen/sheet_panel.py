@@ -219,6 +219,14 @@ class ListPage(ModelPage):
         named.update((name, key.label) for name, key in keys.items())
         return tuple(named.get(f"F{number}", "") for number in range(1, 11))
 
+    def page_keys(self) -> Mapping[str, Key]:
+        """Return the function keys of the model."""
+        return {}
+
+    def barred(self) -> frozenset[str]:
+        """Return those of the model that would be refused now."""
+        return frozenset(name for name, key in self.page_keys().items() if key.barred)
+
     def prompt(self) -> str:
         """The prompt line of the model."""
         return self.model.prompt()

@@ -27,6 +27,8 @@ class StationDock(FingerPanel):
     title = "OPERATOR STATION"
     _shown: Shown[object] = Shown(())
     _auto = Shown(True)
+    mute: Shown[frozenset[str]] = Shown(frozenset())  # letters that do not act now, and are not shown
+    barred = Shown(False)  # Cycle Start would be refused
 
     def __init__(self, look: Look, desk: Desk, parent: QWidget | None = None) -> None:
         super().__init__(look, parent)
@@ -36,7 +38,8 @@ class StationDock(FingerPanel):
     def show_station(self, snapshot: Snapshot) -> None:
         """Where its switches and buttons stand."""
         desk = self._desk
-        self._auto = snapshot.spindle_auto
+        refused = desk.barred() or desk.first_move_refusal(snapshot)
+        self._auto, self.barred = snapshot.spindle_auto, bool(refused)
         palms = frozenset(desk.hands.palms.down)
         pots = (desk.hands.spindle_pot.wanted, desk.hands.feed_pot.wanted)
         latched = desk.settings.now.latched and desk.one_hand
@@ -68,7 +71,8 @@ class StationDock(FingerPanel):
         self._switch(painter)
         spindle, feed = desk.hands.spindle_pot, desk.hands.feed_pot
         self._label(painter, self._row(26.2, 2.4), "SPINDLE SPEED", formats.percent(spindle.wanted), "text")
-        self._pot(painter, self._spindle_box(), (",", "."), spindle, desk.hands.turn_spindle_pot)
+        keys = ("−", "+") if "," in self.mute else (",", ".")
+        self._pot(painter, self._spindle_box(), keys, spindle, desk.hands.turn_spindle_pot)
         self._label(painter, self._row(36.1, 2.4), "FEED RATE", formats.percent(feed.wanted), "text")
         self._pot(painter, self._feed_box(), ("−", "+"), feed, desk.override)
         self._hold(painter)
@@ -101,7 +105,7 @@ class StationDock(FingerPanel):
         painter.box(box, "estop_ground", 0.14, "estop_ground" if pressed else "")
         ink, third = "estop_plate" if pressed else "estop_ground", QRectF(box)
         third.setHeight(box.height() / 3)
-        for number, word in enumerate(("TWIST", "OUT", "U")):
+        for number, word in enumerate(("TWIST", "OUT", "" if "U" in self.mute else "U")):
             row = third.translated(0, number * third.height())
             painter.write(row, word, 1.7, ink, at=CENTRE, margin=0.6)
         self.controls.append(Control(box, self._twist_begins, None, self._twist_ends))
@@ -119,7 +123,9 @@ class StationDock(FingerPanel):
             self._desk.hands.estop(pressed=False)
 
     def _switch(self, painter: Painter) -> None:
-        self._label(painter, self._row(16.4, 2.4), "SPINDLE SWITCH", "A", "accent")
+        self._label(
+            painter, self._row(16.4, 2.4), "SPINDLE SWITCH", "" if "A" in self.mute else "A", "accent"
+        )
         box = self._row(18.9, 6.5)
         half = box.width() / 2
         for number, word in enumerate(("OFF", "AUTO")):
@@ -172,7 +178,7 @@ class StationDock(FingerPanel):
             row = QRectF(room.x(), top + number * high, room.width(), high)
             painter.write(row, line, 2.3, "text", fit=False)
         inner.setHeight(inner.height() / 2)
-        painter.write(inner, "H", 2.2, "accent", at=RIGHT)
+        painter.write(inner, "" if "H" in self.mute else "H", 2.2, "accent", at=RIGHT)
         painter.write(inner.translated(0, inner.height()), "PAUSE", 1.5, "accent", at=RIGHT)
         press, release = partial(desk.hands.hold, down=True), partial(desk.hands.hold, down=False)
         self.controls.append(Control(box, lambda _at: press(), None, release, always=True))
@@ -212,11 +218,12 @@ class StationDock(FingerPanel):
         look, u = self.look, self.look.u
         size = min(box.width(), box.height()) - 0.8 * u
         head = QRectF(box.center().x() - size / 2, box.center().y() - size / 2, size, size)
-        painter.setPen(look.pen("run", 0.3))
+        ink = "frame" if self.barred else "run"
+        painter.setPen(look.pen(ink, 0.3))
         painter.setBrush(look.colour("key"))
         painter.drawEllipse(head)
         inset = (1.7 if down else 0.9) * u
         painter.setPen(Qt.PenStyle.NoPen)
-        painter.setBrush(look.colour("lit" if down else "run"))
+        painter.setBrush(look.colour("lit" if down else ink))
         painter.drawEllipse(head.adjusted(inset, inset, -inset, -inset))
         painter.write(head, key, 2.3, "on_lit" if down else "on_state", at=CENTRE)

@@ -113,8 +113,10 @@ class PromptLine(Panel):
 
     def draw(self, painter: Painter) -> None:
         area = self.area()
-        upper = QRectF(area.x(), area.y(), area.width(), PROMPT_SHARE * area.height())
         painter.fill(area, "panel")
+        if self.question and self.asked:
+            area.setRight(self._targets(painter, area))  # as high as a finger needs them
+        upper = QRectF(area.x(), area.y(), area.width(), PROMPT_SHARE * area.height())
         self._state(painter, area.adjusted(0, upper.height(), 0, 0))
         both = bool(self.answer and self.question)
         half = upper.width() / 2
@@ -138,8 +140,6 @@ class PromptLine(Panel):
         u = self.look.u
         ground, sign = ANSWERS[sort]
         painter.fill(area, ground)
-        if sort is Sort.ASKED and self.asked:
-            area.setRight(self._targets(painter, area))
         painter.write(
             QRectF(area.x(), area.y(), SIGN * u, area.height()), sign, 3.0, "on_state", at=CENTRE, raw=True
         )
@@ -152,7 +152,7 @@ class PromptLine(Panel):
         for number, (word, key) in enumerate((("YES", ANSWER), ("NO", NO))):
             box = QRectF(left + number * TARGET * u, area.y(), (TARGET - 0.6) * u, area.height())
             self.key(painter, box, word, 2.1, partial(self._press, key))
-        return left
+        return left - 0.6 * u
 
 
 class CommentLine(Panel):
@@ -171,6 +171,7 @@ class FunctionKeys(Panel):
     """F1 to F10 with labels of up to eight characters; each is a target for a finger too."""
 
     labels: Shown[tuple[str, ...]] = Shown(("",) * 10)  # an empty one is no key
+    barred: Shown[frozenset[str]] = Shown(frozenset())  # keys that would be refused now: drawn dim
 
     def __init__(self, look: Look, press: Callable[[int], None], parent: QWidget | None = None) -> None:
         super().__init__(look, parent)
@@ -184,11 +185,12 @@ class FunctionKeys(Panel):
             if not label:
                 continue
             box = QRectF((number - 1) * wide, 0, wide - gap, self.height())
-            painter.fill(box, "key")
+            barred = f"F{number}" in self.barred
+            painter.fill(box, "panel" if barred else "key")
             upper = QRectF(box.x(), box.y() + 0.5 * u, box.width(), 2.4 * u)
-            painter.write(upper, f"F{number}", 1.8, "accent", at=CENTRE)
+            painter.write(upper, f"F{number}", 1.8, "soft" if barred else "accent", at=CENTRE)
             lower = QRectF(box.x(), box.y() + 3.0 * u, box.width(), 3.2 * u)
-            painter.write(lower, label, 2.1, "text", at=CENTRE, margin=1.0)
+            painter.write(lower, label, 2.1, "soft" if barred else "text", at=CENTRE, margin=1.0)
             self.place(box, partial(self._press, number))
 
 

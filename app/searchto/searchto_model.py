@@ -8,7 +8,8 @@ from enum import Enum, auto
 from typing import TYPE_CHECKING
 
 from app.desk.latest import Watch
-from app.desk.program_loading import Loaded, Phase, ProgramLoader, Proved
+from app.desk.page_entry import searchto_barred
+from app.desk.program_loading import Loaded, ProgramLoader, Proved
 from app.desk.translation import tr
 from app.searchto.searchto_cursor import LineCursor
 from app.searchto.searchto_finder import Answer, LineFinder
@@ -48,6 +49,7 @@ class SearchtoModel:
     say: Callable[[str], None]
     clear: Callable[[], None]
     rebuild: Callable[[Job, Watch], Search]  # what goes through a program; called on the worker
+    prove: Callable[[Job, Watch], Proved]  # what proves a restart and checks its first move; likewise
     choices: Choices = field(default_factory=Choices)
     cursor: LineCursor = field(default_factory=LineCursor)
     stage: SearchtoStage = SearchtoStage.CHOOSE
@@ -67,7 +69,7 @@ class SearchtoModel:
     _going_out: bool = False
 
     def __post_init__(self) -> None:
-        self.finder = LineFinder(self.rebuild, self.session.workshop.prove, self._found, self._not_searched)
+        self.finder = LineFinder(self.rebuild, self.prove, self._found, self._not_searched)
 
     # --- opened and left -----------------------------------------------------------------------------
 
@@ -78,7 +80,7 @@ class SearchtoModel:
 
     def opens(self) -> bool:
         """Whether it may be opened now; says why not."""
-        why = self._why_closed(self.snapshot(), self.session.now)
+        why = searchto_barred(self.snapshot(), self.session.now)
         if why:
             self.say(why)
         return not why
@@ -105,15 +107,6 @@ class SearchtoModel:
     def close(self) -> None:
         """End the thread that searches."""
         self.finder.worker.close()
-
-    def _why_closed(self, snapshot: Snapshot, loaded: Loaded) -> str:
-        if snapshot.state in CYCLE:
-            return tr("A PROGRAM IS UNDER WAY: LET IT END, OR STOP IT AND PRESS R, BEFORE SEARCHTO")
-        if loaded.source is None or loaded.job is None:
-            return tr("CHOOSE A PROGRAM FIRST (F2)")
-        if loaded.phase is not Phase.READY:
-            return tr("THE PROGRAM IS NOT PROVED WITHOUT ERRORS: SEARCHTO NEEDS THAT")
-        return ""
 
     def _forget(self) -> None:
         """Nothing is shown and nothing is ready."""
@@ -174,11 +167,40 @@ class SearchtoModel:
         else:
             self.search()
 
+    def barred_keys(self) -> frozenset[str]:
+        """Return the function keys that would be refused now."""
+        found: set[str] = set()
+        if not self._has_text:
+            found |= {"F2", "F3"}
+        if self._out_by_hand:
+            found.add("F4")
+        if not self._decided and self.stage not in {SearchtoStage.PROVING, SearchtoStage.READY}:
+            found.add("F10")
+        return frozenset(found)
+
+    @property
+    def _has_text(self) -> bool:
+        return bool(self.cursor.text) and self.cursor.number is None
+
+    @property
+    def _out_by_hand(self) -> bool:
+        """Whether the machine is a mill: there every restart draws the tool out."""
+        job = self.session.now.job
+        return job is not None and job.setup.kinematics is not None
+
+    @property
+    def _decided(self) -> bool:
+        """Whether a way out, or a good line, is shown."""
+        whole = self.session.now.job is not None
+        return (
+            self.stage is SearchtoStage.SHOWN and whole and (self._cut is not None or self.plan is not None)
+        )
+
     def find(self, way: int) -> None:
         """The next or the previous line that holds the text."""
         self._forget()
         self.clear()
-        if not self.cursor.text or self.cursor.number is not None:
+        if not self._has_text:
             self.say(tr("TYPE A TEXT FIRST; A QUOTATION MARK BEFORE FIGURES MAKES THEM ONE"))
         elif not self.cursor.find(way):
             self.say(tr("{text} IS IN NO LINE").format(text=self.cursor.wanted))
@@ -203,14 +225,13 @@ class SearchtoModel:
 
     def way_out(self) -> None:
         """Only the way out of the part, and no going on."""
-        job = self.session.now.job
         self._forget()
         self.clear()
-        if job is not None and job.setup.kinematics is not None:
+        if self._out_by_hand:
             self.say(
                 tr("ON A MILL THE TOOL IS DRAWN OUT ALONG ITS AXIS BEFORE EVERY RESTART, OR BY HAND IN JOG")
             )
-        elif job is not None:
+        elif (job := self.session.now.job) is not None:
             self.stage, self._of = SearchtoStage.SEARCHING, job
             self.finder.cut(job)
 
@@ -344,7 +365,7 @@ class SearchtoModel:
             return
         self.stage, self._job, self._accepted = SearchtoStage.READY, job, False
         starts = Starts.RESTART if self.leaving is None else Starts.LINE
-        self.post(Prepare(starts, job, proved.proof))
+        self.post(Prepare(starts, job, proved.proof, proved.clearance))
 
 
 def searchto_prompt(

@@ -141,6 +141,10 @@ class SearchtoPage(ModelPage):
         self._whole = False  # rows that are equal are shown too
         self._stood: tuple[object, int] = (None, 0)  # picture and blocks that the part was shown after
 
+    def barred(self) -> frozenset[str]:
+        """Return the keys of the model that would be refused now."""
+        return self.model.barred_keys()
+
     def key_actions(self) -> KeyActions:
         """Keys of this page alone."""
         model = self.model

@@ -200,6 +200,12 @@ class SharingModel:
 
     def prompt(self) -> str:
         """What the keys do now."""
+        if self.sharing is None:
+            return NO_PLACE
+        if self.version is None:
+            return "UP AND DOWN MARK A PROGRAM, F5 LOOKS AGAIN; ESC FOR AUTOMATIC"
+        if not self._both:
+            return "F2 TAKES THE MARKED VERSION; NOTHING IS TAKEN UNASKED; ESC FOR AUTOMATIC"
         return (
             "F2 TAKES THE MARKED VERSION, F3 KEEPS WHAT IS HERE; NOTHING IS TAKEN UNASKED; ESC FOR AUTOMATIC"
         )
@@ -209,10 +215,10 @@ class SharingModel:
     def keys(self) -> Mapping[str, Key]:
         """Function keys of this moment."""
         return {
-            "F2": Key("TAKE", self.take),
-            "F3": Key("KEEP", self.keep),
+            "F2": Key("TAKE", self.take, barred=self.version is None or self.program is None),
+            "F3": Key("KEEP", self.keep, barred=not self._both),
             "F4": Key("VERSION", self.next_version),
-            "F5": Key("LOOK", self.ask_for_a_look),
+            "F5": Key("LOOK", self.ask_for_a_look, barred=self.sharing is None),
         }
 
     def take(self) -> None:
@@ -243,10 +249,16 @@ class SharingModel:
         change = f"program {version.program} taken as {version.desk} has it"
         self._work(lambda: sharing.take(version), done, change)
 
+    @property
+    def _both(self) -> bool:
+        """Whether the marked program was changed here and on another desk."""
+        here = self.program
+        return here is not None and self.shared.states.get(here[0]) == "both"
+
     def keep(self) -> None:
         """What is here stands against what was changed elsewhere, after asking."""
         here = self.program
-        if here is None or self.shared.states.get(here[0]) != "both":
+        if here is None or not self._both:
             self.desk.say("THERE IS NOTHING TO SETTLE: NO OTHER DESK HAS CHANGED IT TOO")
             return
         if self.desk.refused(Act.PROGRAMS):

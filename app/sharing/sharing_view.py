@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import partial
 
 from PySide6.QtGui import QResizeEvent
@@ -9,6 +10,7 @@ from PySide6.QtWidgets import QWidget
 
 from app.desk.machine_status import MachineStatus
 from app.desk.program_loading import Loaded
+from app.desk.sheet import Key
 from app.editor.versions_view import VersionList
 from app.screen import page_table
 from app.screen.page_base import Host, KeyActions
@@ -32,18 +34,22 @@ class SharedProgramsPage(ListPage):
         self.versions.title = "ELSEWHERE"
         self.versions.show()
 
+    def page_keys(self) -> Mapping[str, Key]:
+        """Return those of the model."""
+        return self.model.keys()
+
     def labels(self) -> tuple[str, ...]:
         """Those of the model, and looking further down in the comparison."""
-        return self.labels_of({"F6": "UP", "F8": "DOWN"}, self.model.keys())
+        return self.labels_of({"F6": "UP", "F8": "DOWN"}, self.page_keys())
 
     def key_actions(self) -> KeyActions:
         """The function keys."""
-        keys = self.model.keys()
+        keys = self.page_keys()
         scroll = {"F6": partial(self._scroll, -1), "F8": partial(self._scroll, 1)}
         return {**scroll, **{name: partial(self._do, name) for name in keys}}
 
     def _do(self, name: str) -> None:
-        self.model.keys()[name].action()
+        self.page_keys()[name].action()
 
     def _scroll(self, pages: int) -> None:
         self.versions.look_at(pages * self.versions.lines)

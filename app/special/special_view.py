@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import partial
 
 from PySide6.QtCore import QRectF
@@ -11,6 +11,7 @@ from PySide6.QtWidgets import QWidget
 
 from app.desk.machine_status import MachineStatus
 from app.desk.program_loading import Loaded
+from app.desk.sheet import Key
 from app.screen import page_table
 from app.screen.entry_panel import KeyPad
 from app.screen.letter_keys import LetterPad
@@ -136,9 +137,13 @@ class SpecialPage(ListPage):
         self.model.inside = True
         super().touched(key)
 
+    def page_keys(self) -> Mapping[str, Key]:
+        """Return those of the function that is shown."""
+        return self.model.current.keys()
+
     def labels(self) -> tuple[str, ...]:
         """Those of the function that is shown, beside the page's own."""
-        return self.labels_of({}, self.model.current.keys())
+        return self.labels_of({}, self.page_keys())
 
     def key_actions(self) -> KeyActions:
         """The keys of the function that is shown; pressing one goes into it."""

@@ -145,8 +145,8 @@ class SerialTransfer(SpecialFunction):
         if self.under_way is not None:
             return {"F6": Key("CANCEL", self.cancel)}
         return {
-            "F4": Key("SEND", self.send),
-            "F5": Key("RECEIVE", self.receive),
+            "F4": Key("SEND", self.send, barred=self._chosen() is None or not self.settings.port),
+            "F5": Key("RECEIVE", self.receive, barred=not self.settings.port),
             "F8": Key("PORTS", self.opened),
         }
 

@@ -69,6 +69,7 @@ class Executor:
 
     ``passes`` makes a pass through a job with the circumstances of the start; tests give their own.
     ``note`` is told what job a power cut would leave interrupted now, ``left`` is what the last one left.
+    With ``checks_starts`` no cycle starts before a worker has given its verdict on the first move.
     ``tell`` is handed what the scope records of each tick, and must only put it into a queue.
     """
 
@@ -81,6 +82,8 @@ class Executor:
         note: Note = _discard,
         left: InterruptedJob | None = None,
         tell: Callable[[Tick], None] | None = None,
+        *,
+        checks_starts: bool = False,
     ) -> None:
         self._commands: queue.SimpleQueue[tuple[float, Command]] = queue.SimpleQueue()
         self._ports = ports
@@ -89,7 +92,7 @@ class Executor:
         self._missed = False  # the scope could not be told something
         self._late = 0.0  # s, the worst since the last that was handed over
         spindle = SpindleControl(
-            ports.spindle, machine.spindle, ports.lock, _lay_out(ports), ports.orientation
+            ports.spindle, machine.spindle, ports.lock, _lay_out(ports), ports.orientation, ports.spindle_lag
         )
         outputs = CommandedOutputs(ports.io, machine.outputs)
         self._context = MachineContext(
@@ -104,6 +107,7 @@ class Executor:
         )
         self._station = StationWatch()
         self._control = MachineControl(self._context, passes, note, left)
+        self._control.status.checks_starts = checks_starts
         self._handler = CommandHandler(self._context, self._control, self._station)
         self._lamps = SignalLamps(self._context, ports.io)
         self._publisher = Publisher()
@@ -282,6 +286,8 @@ class Executor:
             control.feed_hold("GUARD OPEN")  # a jog in setting is the builder's to limit
         if signals.start:
             control.start()
+        elif signals.late_start:
+            self._context.log("refused", "CycleStart came too late to be obeyed")
         if signals.turned_on:
             control.spindle_switch()
         control.follow_wheel()

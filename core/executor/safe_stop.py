@@ -15,6 +15,7 @@ from core.executor.machine_context import MachineContext
 from core.ports import DriverError, Stop
 
 _log = logging.getLogger(__name__)
+_SLIDES = "the slides"
 _AGAIN = 0.1  # s until a step that could not be done is tried again
 
 Step = tuple[str, Callable[[], None]]
@@ -38,7 +39,7 @@ class SafeStop:
         """Brake all axes, spindle off, outputs safe."""
         off = reaction is Reaction.OFF
         brake = partial(self._brake, Stop.RAMP_OFF if off else Stop.RAMP_HOLD)
-        self._begin([("the slides", brake), *self._functions(coast=off)])
+        self._begin([(_SLIDES, brake), *self._functions(coast=off)])
 
     def functions_off(self) -> None:
         """Spindle off and outputs safe; the slides are somebody else's."""
@@ -55,6 +56,13 @@ class SafeStop:
         """Once a tick: what could not be done is tried again, ten times a second."""
         if self._failed and self._context.now - self._tried_at >= _AGAIN:
             self._carry_out(self._failed)
+
+    def finish(self) -> None:
+        """Before nobody tries again: once more, and slides that cannot be braked lose their power."""
+        if self._failed:
+            self._carry_out(self._failed)
+        if any(name == _SLIDES for name, _ in self._failed):
+            self._done("the drives", partial(self._context.ports.axes.enable, False))
 
     def forget(self) -> None:
         """The operator has acknowledged it."""

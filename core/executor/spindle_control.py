@@ -114,7 +114,8 @@ def _least_squares(u: list[float], y: list[float], degree: int) -> list[float]:
     return shape
 
 
-_GRACE = 1.0  # s in which a drive must have begun to obey a lower speed
+_GRACE = 1.0  # s in which a drive must have begun to obey another speed,
+_REACTS = 0.5  # of which its own delay takes at most so much; the rest is for an ordinary wire
 _OVER = 0.1  # fraction and
 _OVER_RPM = 50.0  # rpm above what ought to be
 _STOOD = 0.2  # s of standing still although it was told to turn: it has stopped, and
@@ -150,10 +151,13 @@ class SpindleControl:
         lock: SpindleHold | None = None,
         lay_out: Callable[[float], None] = lambda _: None,
         orientation: SpindleOrientation | None = None,
+        lag: Callable[[], float] = float,
     ) -> None:
-        """``lay_out`` hears before each speed up to how many rpm the radius may take it."""
+        """``lay_out`` hears before each speed up to how many rpm the radius may take it; ``lag`` returns the
+        seconds by which the wire delays a command and the speed that shows it.
+        """
         self._port = port
-        self._lay_out = lay_out
+        self._lay_out, self._lag = lay_out, lag
         self._lock = lock
         self.orientation = Orientation(orientation, model.orient_rpm)
         self._model = model
@@ -288,7 +292,8 @@ class SpindleControl:
             self.command = 0.0
             self._port.coast()
         else:
-            self._note_fall(0.0, self._now)
+            if self.command != 0.0:  # told again, it has no more time to obey
+                self._note_fall(0.0, self._now)
             self.command = 0.0
             self._port.run(0.0)
 
@@ -439,13 +444,18 @@ class SpindleControl:
     def _owed(self, now: float) -> float:
         """Speed that an obeying drive has at least after the command rose, rpm."""
         since, speed = self._rose
-        return speed + self._model.accel * max(now - since - _GRACE, 0.0)
+        return speed + self._model.accel * max(now - since - self._grace, 0.0)
 
     def _allowed(self, now: float) -> float:
         """Highest speed that an obeying drive can still have after the command fell."""
         since, speed = self._fell
-        ramp = speed - self._model.decel * max(now - since - _GRACE, 0.0)
+        ramp = speed - self._model.decel * max(now - since - self._grace, 0.0)
         return max(abs(self.command), ramp, self.orientation.turns_at) * (1.0 + _OVER) + _OVER_RPM
+
+    @property
+    def _grace(self) -> float:
+        """Seconds after a command in which the measured speed need not show it."""
+        return max(_GRACE, self._lag() + _REACTS)
 
     _now = 0.0
     _radius = 0.0

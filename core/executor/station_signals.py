@@ -31,6 +31,7 @@ class StationSignals(NamedTuple):
     lost: str = ""  # what of the station is gone, so that the cycle must be held: a sentence
     wheel_trouble: str = ""  # why handwheel and jog buttons are not believed
     spindle_load: float | None = None  # per cent
+    late_start: bool = False  # both palms, but while nobody looked: it starts nothing
 
 
 class OverridePot:
@@ -90,7 +91,8 @@ class StationWatch:
             self._feed.read(state.feed_pot, now)
             self._spindle.read(state.spindle_pot, now)
         live = not silent and now - self._spoke <= _AWAY
-        edge = live and state.start and not self._started
+        pressed = state.start and not self._started and not silent
+        edge = live and pressed
         turned = live and state.spindle_auto and not self._auto
         self._started = state.start
         if not silent:
@@ -110,6 +112,7 @@ class StationWatch:
             lost=state.trouble,
             wheel_trouble=state.wheel_trouble,
             spindle_load=state.spindle_load,
+            late_start=pressed and not live,
         )
 
     def may_start(self, now: float) -> bool:

@@ -21,6 +21,9 @@ from core.executor.snapshot import ACTIVE, CYCLE, STOPPED, State
 from core.executor.start_conditions import Starting
 from core.ports import AxisSample, Trip, Unknown, code_of
 
+_MOVING = ACTIVE | {State.JOG, State.HOME}
+_UNHEARD = 0.25  # s for which a driver may have nothing of the slides before it reports why
+
 
 class Supervisor:
     """Watches drives, axes and collet."""
@@ -41,7 +44,9 @@ class Supervisor:
             raise AlarmError(code_of(sample.fault, "axis"), sample.fault)
         if Unknown.SLIDES in context.unknown:
             self._axes.forget()  # heard again, they may stand elsewhere
+            self._unheard(moving=state in _MOVING)
             return
+        self._unheard_since = None
         self._numbers(sample)
         self.max_following_error = max(self.max_following_error, *map(abs, sample.following_error[:2]))
         self._axes.look(sample, unpowered=state is State.DISABLED)
@@ -53,6 +58,13 @@ class Supervisor:
             self._collet_lost()
         else:
             self._open_since = None
+
+    def _unheard(self, *, moving: bool) -> None:
+        """A driver reports a fault too; nothing moves on where it does not."""
+        now = self._context.now
+        since = self._unheard_since = now if self._unheard_since is None else self._unheard_since
+        if moving and now - since > _UNHEARD:
+            raise AlarmError("drive-silent", "nothing is heard of the slides")
 
     def _numbers(self, sample: AxisSample) -> None:
         """No comparison ever trips on what is no number."""
@@ -71,6 +83,7 @@ class Supervisor:
             raise AlarmError("collet-lost")
 
     _open_since: float | None = None
+    _unheard_since: float | None = None
 
 
 # --- outputs and the feeder -----------------------------------------------------------------------------

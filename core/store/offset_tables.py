@@ -320,27 +320,49 @@ def _next_step(connection: sqlite3.Connection, log: _Log) -> int:
     return int(last) + 1
 
 
-def _last_step(connection: sqlite3.Connection, log: _Log, kind: Kind | None) -> tuple[int | None, str]:
-    """The last step that is not undone yet, None without one, and when it was."""
+def _last_step(
+    connection: sqlite3.Connection, log: _Log, kind: Kind | None, number: int | None = None
+) -> tuple[int | None, str]:
+    """Return the last step that is not undone yet and its time; None without one. ``number``: of this row."""
     step, at = connection.execute(
         f"SELECT max(step), max(at) FROM {log.name}"
         f" WHERE undoes IS NULL AND {log.kind} = coalesce(?, {log.kind})"
+        f" AND {log.key} = coalesce(?, {log.key})"
         f" AND step NOT IN (SELECT undoes FROM {log.name} WHERE undoes IS NOT NULL)",
-        (kind.value if kind else None,),
+        (kind.value if kind else None, number),
     ).fetchone()
     return step, at or ""
 
 
 def _undo(connection: sqlite3.Connection, reason: Reason, log: _Log, kind: Kind | None) -> tuple[Change, ...]:
-    step = _last_step(connection, log, kind)[0]
+    rows = _step_to_undo(connection, log, kind)
+    if not rows:
+        raise StoreError(log.nothing_left, "nothing-to-undo")
+    return apply(connection, rows[0].kind, backward(rows), reason, undoes=rows[0].step)
+
+
+def _step_to_undo(
+    connection: sqlite3.Connection, log: _Log, kind: Kind | None, number: int | None = None
+) -> tuple[Change, ...]:
+    step = _last_step(connection, log, kind, number)[0]
     rows = _select(connection, log, "WHERE step = ? ORDER BY id", (step,)) if step is not None else ()
     first = rows[0].id if rows else 0
     for entry in row_sums.broken(connection, log.name, first):  # of this step, or a later one that it hides
         raise _damaged_entry(entry)
-    if not rows:
-        raise StoreError(log.nothing_left, "nothing-to-undo")
-    backward = {row.number: (row.new, row.old) for row in rows}
-    return apply(connection, rows[0].kind, backward, reason, undoes=step)
+    return rows
+
+
+def backward(rows: Sequence[Change]) -> Changes:
+    """Return these changes in the opposite direction."""
+    return {row.number: (row.new, row.old) for row in rows}
+
+
+def undoable(connection: sqlite3.Connection, kind: Kind, number: int | None) -> tuple[Change, ...]:
+    """Return the changes of the step that ``undo_step`` would take back; none when nothing is left.
+
+    ``number`` restricts it to the last step that changed this row; None: the last step of the table.
+    """
+    return _step_to_undo(connection, _log_of(kind), kind, number)
 
 
 def history(connection: sqlite3.Connection, kind: Kind | None, limit: int) -> tuple[Change, ...]:

@@ -15,6 +15,7 @@ from core.store import (
     event_log,
     job_queue,
     offset_tables,
+    offset_undo,
     people,
     program_records,
     program_texts,
@@ -307,6 +308,16 @@ class Store:
         Without ``kind`` the last of tool and secondary offsets together.
         """
         return self.write(lambda c: offset_tables.undo(c, Reason(why, who), kind))
+
+    def undoable(self, kind: Kind, number: int | None = None) -> tuple[Change, ...]:
+        """Return what ``undo_step`` would take back: the last step of a row, or of the whole table."""
+        return self._asked(offset_tables.undoable, kind, number)
+
+    def undo_step(
+        self, kind: Kind, number: int | None, step: int, why: str = "undo", *, who: str = "operator"
+    ) -> Future[tuple[Change, ...]]:
+        """Take back exactly this step. The future raises StoreError if its rows have changed since."""
+        return self.write(lambda c: offset_undo.undo_step(c, Reason(why, who), kind, number, step))
 
     def undo_last(self, why: str = "undo", *, who: str = "operator") -> Future[tuple[Change, ...]]:
         """Takes the youngest change of all tables back; again: the one before. StoreError without one."""

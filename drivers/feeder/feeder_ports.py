@@ -132,6 +132,11 @@ class FeederSpindle(_OnLine):
         shown = self._line.look()
         return number(shown, "speed") if shown else 0.0
 
+    def lag(self) -> float:
+        """Return the seconds by which the wire to the spindle's drive delays commands and speeds."""
+        shown = self._line.look()
+        return number(shown, "spindle_lag") if shown else 0.0
+
     def angle(self) -> tuple[float, float] | None:
         """(time, turns) from the encoder, or None without one."""
         shown = self._line.look().get("angle")
@@ -281,11 +286,12 @@ class FeederTrips(_OnLine):
 
 def feeder_ports(line: Line) -> MachinePorts:
     """The ports of whatever the feeder drives. Raises DriverError when it does not answer."""
-    hello = line.greet()
+    hello, spindle = line.greet(), FeederSpindle(line)
     return MachinePorts(
         clock=line.clock,
         axes=FeederAxes(line, hello),
-        spindle=FeederSpindle(line),
+        spindle=spindle,
+        spindle_lag=spindle.lag,
         io=FeederIO(line),
         station=FeederStation(line),
         warnings=tuple(texts(hello.get("warnings"))),

@@ -395,6 +395,7 @@ class Feeder:
         return {
             "sample": {**sample._asdict(), **with_code("fault", sample.fault, "axis")},
             "speed": ports.spindle.speed(),
+            "spindle_lag": ports.spindle_lag(),
             "angle": ports.spindle.angle(),
             **with_code("spindle", ports.spindle.fault(), "spindle"),
             "inputs": dict(ports.io.inputs()),

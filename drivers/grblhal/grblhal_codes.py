@@ -21,6 +21,7 @@ CURES = {"G96": "G97", "G51": "G50", "G43": "G49", "G92": "G92.1", "M50": "M48",
 DOOR = "the controller's safety door is open"
 HOMING_REQUIRED = 11
 LOCKED = 255  # ours: it is locked and tells no number
+ERROR_LOCKED = 9  # error: locked by an alarm or a jog
 LOST = frozenset((1, 3))  # alarms behind which nobody knows where the slides are
 TORN = frozenset((10, 17))  # and those that end the steps of a moving slide at once, and do not say so
 CRITICAL = frozenset((1, 2, 10, 17))  # only a reset ends them; settings cannot be written before

@@ -373,6 +373,8 @@ class Controller:
         ask = self.stream.answered(error)
         if ask is None:
             self.damaged("ok" if not error else f"error:{error}")
+        elif error == grblhal_codes.ERROR_LOCKED and ask.line.startswith("M66"):
+            return  # a question about an input: the next report says what has locked it
         elif error and first and not self.busy:
             # Sticky: what is behind it is answered with the same error and not executed.
             self.fail(grblhal_codes.error_text(error, ask.line), "controller-refuses")

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from core.table_schema import Driver, DriverTable, Field, FileReading, Finding, Kind, expected_table, written
 
-_SETTINGS, _WHEEL = "grblhal.settings", "io.analog.handwheel"
+_SETTINGS, _WHEEL, _GUARD = "grblhal.settings", "io.analog.handwheel", "io.in.guard.at"
 _FIELDS = (
     Field("port", Kind.TEXT),
     Field("baud", Kind.WHOLE, low=110, high=4_000_000, default=115_200),
@@ -63,6 +63,8 @@ def _rules(file: FileReading) -> Iterator[Finding]:
     values, settings = file.values, _settings(file)
     if "handwheel" in file.names("io.analog") and values.says("machine.backend", "grblhal"):
         yield Finding(_WHEEL, "", "this backend has no input that counts; take it out")
+    if values.says("machine.backend", "grblhal"):
+        yield from _guard(file)
     for axis in file.axes:
         if axis in _AXES:
             yield from _outside(file, settings, axis)
@@ -71,6 +73,15 @@ def _rules(file: FileReading) -> Iterator[Finding]:
             yield Finding(f"{_SETTINGS}.{number}", written(settings[number]), f"expected {value}: {why}")
     if values.says("grblhal.x_mode", "G7"):
         yield Finding("grblhal.x_mode", '"G7"', 'expected "G8": a reset would change what X means')
+
+
+def _guard(file: FileReading) -> Iterator[Finding]:
+    """A guard that stops the cycle at an input that is not read while the axes move."""
+    values, path = file.values, "interlocks.guard_stops"
+    stops = values.has(path, _GUARD) and values.flag(path)
+    if stops and values.text(_GUARD).startswith("in."):
+        expected = 'expected the door input, "pn.D": auxiliary inputs are read at a standstill only'
+        yield Finding(_GUARD, written(values.text(_GUARD)), expected, "broken-rule")
 
 
 def _outside(file: FileReading, settings: Mapping[int, float | str], axis: str) -> Iterator[Finding]:

@@ -36,11 +36,13 @@ class GrblInputs:
         """By the names of the machine file; one that has never been read, or that the board has not, is not
         in here.
         """
-        pins = self._c.report.pins if self._c.report is not None else ""
-        states = dict(self._read)
+        states, report = dict(self._read), self._c.report
+        if report is None:
+            return states
         for name, wired in self._c.config.inputs.items():
-            if wired.terminal.startswith(_PIN) and self._c.has_pin(wired.terminal.removeprefix(_PIN)):
-                states[name] = wired.terminal.removeprefix(_PIN) in pins
+            letter = wired.terminal.removeprefix(_PIN)
+            if wired.terminal.startswith(_PIN) and self._c.has_pin(letter):
+                states[name] = (letter in report.pins) != wired.active_low
         return states
 
     def lacking(self) -> dict[str, str]:

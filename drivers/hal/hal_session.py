@@ -31,6 +31,9 @@ _LOOK = 0.05  # s between two looks whether another session is down
 _LARGEST = 1 << 17
 _ALIVE = "alive"  # a file that the bridge has locked while it lives
 _IN_ORDER = "ended"  # a file of the bridge's, when it has not died but ended
+# What streamer and bridge share outlives them when the last of them is killed. halrun -U removes HAL's other
+# shared memory only, and streamer refuses a segment that is smaller than it needs.
+CLEAR_STREAMS = "for key in 0x48535430 0x48535431; do ipcrm -M $key 2>/dev/null; done; true\n"
 
 # What halrun says, and what it means for whoever stands before the control.
 _PLAIN = {
@@ -158,8 +161,10 @@ class HalSession:
         left = _LINGER + config.ahead + config.watchdog + ramp
         linger = f'[ -e "{folder / _IN_ORDER}" ] || sleep {left:.2f}\n'
         (folder / "linger.sh").write_text(linger, encoding="utf-8")
+        (folder / "clear.sh").write_text(CLEAR_STREAMS, encoding="utf-8")
         start = () if only_check else ("start",)
         lines = (
+            f"loadusr -w /bin/sh {folder / 'clear.sh'}",
             session,
             f"loadusr -Wn {BRIDGE} {PYTHON} {_SCRIPT} {folder / 'bridge.json'}",
             *start,

@@ -16,7 +16,9 @@ from drivers.inverter.inverter_obedience import PRESS, STANDS, Obedience
 from drivers.inverter.modbus_rtu import NoAnswerError, RefusedError
 from drivers.serial_line import WireError
 
-LOST = 1.0  # s without a look after which the inverter counts as lost
+LOST = 1.0  # s without an answer after which the inverter counts as lost
+DEAD = LOST + 0.5  # s: by then the attendant itself has reported the silence
+_PARTS = 2.0  # s after a look for which single answers count, before the next look has to be whole
 _AGAIN = 1.0  # s between two attempts to open a port that has gone
 _MOST = 60  # rounds in which a warm-up must have come to its end
 _RESTARTS = 3.0  # s in which an inverter may be silent after a reset
@@ -24,10 +26,11 @@ _RESTARTS = 3.0  # s in which an inverter may be silent after a reset
 
 @dataclass(frozen=True, slots=True)
 class Seen:
-    """The last look and its time."""
+    """The last look and its time; ``asked``: a command from before then was sent before the look began."""
 
     t: float
     look: Look
+    asked: float = 0.0
 
 
 class Attendant:
@@ -46,7 +49,8 @@ class Attendant:
         self._obedience = Obedience()
         self._family: Family | None = None
         self._retry = 0.0
-        self._began = clock.now()  # the exchange that is under way
+        self._began = self._began_before = clock.now()  # the exchange that is under way, and the last one
+        self._answered = clock.now()  # when an answer has last come in an exchange without a failure
         self._reset = False
         self.grace = 0.0  # until then silence is no trouble
         self.seen: Seen | None = None
@@ -71,10 +75,21 @@ class Attendant:
     @property
     def unheard(self) -> bool:
         """Whether nothing is known of the inverter now: its port is gone, or it has not answered of late."""
-        now = self._clock.now()
-        if self._family is None or self.seen is None:
-            return True
-        return now - self.seen.t > LOST and now > self.grace
+        return self._family is None or self.seen is None or self.silent_for > LOST
+
+    @property
+    def silent_for(self) -> float:
+        """Return the seconds since a look, or an answer on the way to one; 0 while it may be silent."""
+        seen, now = self.seen, self._clock.now()
+        if seen is None or now <= self.grace:
+            return 0.0
+        return now - max(seen.t, min(self._answered, seen.t + _PARTS))
+
+    @property
+    def lag(self) -> float:
+        """Return the seconds by which the line delays a command and the look that shows it."""
+        seen = self.seen
+        return self._clock.now() - seen.asked if seen is not None else 0.0
 
     def connect(self) -> None:
         """Open, stop, check, look until it is trusted. Raises DriverError."""
@@ -100,6 +115,7 @@ class Attendant:
         except (NoAnswerError, RefusedError) as error:
             self.missed = str(error)
             self._told = None  # whether it has heard is not known: it is told again
+            self._answered = 0.0  # what else it has answered makes no look
         self._supervise()
 
     def clear(self) -> None:
@@ -150,7 +166,7 @@ class Attendant:
         self._prepare()
 
     def _exchange(self) -> None:
-        self._began = self._clock.now()
+        self._began_before, self._began = self._began, self._clock.now()
         if self._reset:
             self._clear_now()
         self._tell()
@@ -180,10 +196,11 @@ class Attendant:
             self._familiar.command(want)
             if self._stop_waits():
                 return  # it came meanwhile: the next round says it first
-        self._told = want
+        self._told, self._answered = want, self._clock.now()
 
     def _look(self) -> None:
         for look in self._familiar.looks():
+            self._answered = self._clock.now()
             if look is not None:
                 self._judge(look)
             elif self._stop_waits():
@@ -191,7 +208,7 @@ class Attendant:
 
     def _judge(self, look: Look) -> None:
         now = self._clock.now()
-        self.seen = Seen(now, look)
+        self.seen = Seen(now, look, self._began_before)
         if self._reset:
             return  # a look from before the operator's word
         if look.trip:
@@ -208,9 +225,8 @@ class Attendant:
 
     def _supervise(self) -> None:
         """Nothing seen for too long is trouble, also when nothing was wanted of it."""
-        now = self._clock.now()
-        silent = now - self.seen.t if self.seen is not None else LOST
-        if silent >= LOST and now >= self.grace and not self.trouble:
+        never = self.seen is None and self._clock.now() >= self.grace
+        if (never or self.silent_for >= LOST) and not self.trouble:
             why = self.missed or "the inverter does not answer"
             self._latch(f"{why}: {PRESS}" if self._may_turn() else why, "inverter-silent")
 

@@ -10,14 +10,12 @@ from core.ports import Clock, DriverError, Fault
 from drivers.inverter.delta_vfdb import DeltaVfdB
 from drivers.inverter.hitachi_wj200 import HitachiWj200
 from drivers.inverter.huanyang_hy import HuanyangHy
-from drivers.inverter.inverter_attendant import LOST, Attendant
+from drivers.inverter.inverter_attendant import DEAD, Attendant
 from drivers.inverter.inverter_family import Family
 from drivers.inverter.inverter_obedience import PRESS, Agreement
 from drivers.inverter.inverter_table import InverterConfig
 from drivers.inverter.modbus_rtu import Modbus
 from drivers.serial_line import Wire
-
-_DEAD = LOST + 0.5  # s: the attendant itself must have told of a silence by now
 
 
 class Encoder(Protocol):
@@ -105,6 +103,10 @@ class InverterSpindle:
         seen = self._attendant.seen
         return seen.look.signed / self._config.hz_per_rpm if seen else 0.0
 
+    def lag(self) -> float:
+        """Return the seconds by which the line delays a command and the speed that shows it."""
+        return self._attendant.lag
+
     @property
     def load(self) -> float:
         """Per cent of the motor's rated current that the inverter gives; nan where nobody tells."""
@@ -134,12 +136,8 @@ class InverterSpindle:
             return self._unmeasured
         if not self._alive():
             return Fault(f"nobody attends the inverter any more: {PRESS}", "inverter-silent")
-        seen = attendant.seen
-        now = self._clock.now()
-        if seen is not None and now - seen.t > _DEAD and now > attendant.grace:
-            return Fault(
-                f"nothing has been heard of the inverter for {_DEAD:g} s: {PRESS}", "inverter-silent"
-            )
+        if attendant.silent_for > DEAD:
+            return Fault(f"nothing has been heard of the inverter for {DEAD:g} s: {PRESS}", "inverter-silent")
         return ""
 
     def _wrong(self, encoder: Encoder) -> bool:

@@ -108,11 +108,13 @@ class SpindleMotor:
         return round(self.turns * edges) / edges
 
     def order(self, now: float, rpm: float, coast: bool = False) -> None:
-        """A command that the inverter obeys after its latency."""
+        """Accept a command, obeyed after the inverter's latency; a stop cancels speeds that still wait."""
         if self.faults.ignores_stop and abs(rpm) < abs(self._target):
             return
         limit = self.config.rpm_max
         self.release()
+        if rpm == 0.0:
+            self._orders = deque(waiting for waiting in self._orders if waiting[1] == 0.0)
         self._orders.append((now + self.config.latency, min(max(rpm, -limit), limit), coast))
 
     def cut(self, now: float) -> None:

@@ -5725,11 +5725,6 @@
     </message>
     <message>
       <location filename="app/desk/desk.py" />
-      <source>A PROGRAM IS UNDER WAY: LET IT END, OR STOP IT AND PRESS R, BEFORE CHOOSING ANOTHER</source>
-      <translation>HAY UN PROGRAMA EN CURSO: DEJE QUE TERMINE, O PÁRELO Y PULSE R, ANTES DE ELEGIR OTRO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/desk.py" />
       <source>AN ALARM STANDS: PRESS R TO ACKNOWLEDGE IT FIRST</source>
       <translation>HAY UNA ALARMA: PULSE PRIMERO R PARA RECONOCERLA</translation>
     </message>
@@ -5737,6 +5732,11 @@
       <location filename="app/desk/desk.py" />
       <source>BLOCK DELETE CHANGES WHAT WAS PROVED: ONLY BETWEEN TWO CYCLES</source>
       <translation>EL SALTO DE BLOQUE CAMBIA LO COMPROBADO: SÓLO ENTRE DOS CICLOS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/desk.py" />
+      <source>CHECKING THE FIRST MOVE AGAINST THE PART</source>
+      <translation>COMPROBANDO EL PRIMER MOVIMIENTO CON LA PIEZA</translation>
     </message>
     <message>
       <location filename="app/desk/desk.py" />
@@ -6264,6 +6264,61 @@
       <translation>corrector de herramienta</translation>
     </message>
     <message>
+      <location filename="app/desk/page_entry.py" />
+      <source>A PROGRAM IS UNDER WAY: LET IT END, OR STOP IT AND PRESS R, BEFORE CHOOSING ANOTHER</source>
+      <translation>HAY UN PROGRAMA EN CURSO: DEJE QUE TERMINE, O PÁRELO Y PULSE R, ANTES DE ELEGIR OTRO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/page_entry.py" />
+      <source>A PROGRAM IS UNDER WAY: LET IT END, OR STOP IT AND PRESS R, BEFORE MDI</source>
+      <translation>HAY UN PROGRAMA EN CURSO: DEJE QUE TERMINE, O PÁRELO Y PULSE R, ANTES DE MDI</translation>
+    </message>
+    <message>
+      <location filename="app/desk/page_entry.py" />
+      <source>A PROGRAM IS UNDER WAY: LET IT END, OR STOP IT AND PRESS R, BEFORE SEARCHTO</source>
+      <translation>HAY UN PROGRAMA EN CURSO: DEJE QUE TERMINE, O PÁRELO Y PULSE R, ANTES DE BUSCAR A</translation>
+    </message>
+    <message>
+      <location filename="app/desk/page_entry.py" />
+      <source>CHOOSE A PROGRAM FIRST (F2)</source>
+      <translation>ELIJA PRIMERO UN PROGRAMA (F2)</translation>
+    </message>
+    <message>
+      <location filename="app/desk/page_entry.py" />
+      <source>CHOOSE A PROGRAM FIRST (F2), OR TYPE THE NAME OF A NEW ONE THERE</source>
+      <translation>ELIJA PRIMERO UN PROGRAMA (F2), O ESCRIBA AHÍ EL NOMBRE DE UNO NUEVO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/page_entry.py" />
+      <source>NOBODY KNOWS WHETHER THE SPINDLE TURNS: PRESS E-STOP, NO EDITING BESIDE IT</source>
+      <translation>NADIE SABE SI GIRA EL HUSILLO: PULSE PARO DE EMERGENCIA, NO EDITE A SU LADO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/page_entry.py" />
+      <source>THE AXES ARE MOVING: STOP THEM (H) BEFORE YOU CHOOSE A PROGRAM</source>
+      <translation>LOS EJES SE MUEVEN: PÁRELOS (H) ANTES DE ELEGIR UN PROGRAMA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/page_entry.py" />
+      <source>THE PROGRAM IS NOT PROVED WITHOUT ERRORS: SEARCHTO NEEDS THAT</source>
+      <translation>EL PROGRAMA NO ESTÁ COMPROBADO SIN ERRORES: BUSCAR A LO NECESITA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/page_entry.py" />
+      <source>THE SLIDES ARE BEING MOVED BY HAND: LET THEM COME TO REST BEFORE EDITING</source>
+      <translation>LOS CARROS SE MUEVEN A MANO: ESPERE A QUE PAREN ANTES DE EDITAR</translation>
+    </message>
+    <message>
+      <location filename="app/desk/page_entry.py" />
+      <source>THE SPINDLE IS ON: SWITCH IT OFF (M05, OR R FOR RESET) AND LET IT COME TO REST BEFORE EDITING</source>
+      <translation>EL HUSILLO ESTÁ ENCENDIDO: APÁGUELO (M05, O R PARA RESET) Y ESPERE QUE SE DETENGA ANTES DE EDITAR</translation>
+    </message>
+    <message>
+      <location filename="app/desk/page_entry.py" />
+      <source>THE SPINDLE STILL COASTS: WAIT UNTIL IT STANDS BEFORE EDITING</source>
+      <translation>EL HUSILLO AÚN GIRA POR INERCIA: ESPERE QUE SE DETENGA ANTES DE EDITAR</translation>
+    </message>
+    <message>
       <location filename="app/desk/persistence.py" />
       <source>nothing is kept here; start turndesk with a folder that can be written (TURNDESK_HOME)</source>
       <translation>aquí no se guarda nada; arranque turndesk con una carpeta en la que se pueda escribir (TURNDESK_HOME)</translation>
@@ -6517,6 +6572,11 @@
       <location filename="app/desk/prompt_line.py" />
       <source>TYPE A NAME, OR MARK A PROGRAM WITH THE ARROWS, BEFORE EDITING</source>
       <translation>ESCRIBA UN NOMBRE, O MARQUE UN PROGRAMA CON LAS FLECHAS, ANTES DE EDITAR</translation>
+    </message>
+    <message>
+      <location filename="app/desk/prompt_line.py" />
+      <source>WHAT TO DO: %1  ·  F1 LEAVES THE PAGE, THEN R ACKNOWLEDGES</source>
+      <translation>QUÉ HACER: %1  ·  F1 SALE DE LA PÁGINA, LUEGO R RECONOCE</translation>
     </message>
     <message>
       <location filename="app/desk/prompt_line.py" />
@@ -6782,6 +6842,61 @@
       <location filename="app/desk/standard_input.py" />
       <source>stdin is closed, so no %1 comes in there; name a file</source>
       <translation>stdin está cerrado, por ahí no llega nada para «%1»; indique un archivo</translation>
+    </message>
+    <message>
+      <location filename="app/desk/start_verdict.py" />
+      <source>F6, THEN F4 SHOWS THE WAY OUT, OR {jog}</source>
+      <translation>F6 Y DESPUÉS F4 MUESTRA LA SALIDA, O {jog}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/start_verdict.py" />
+      <source>JOG IT OUT ALONG THE PATH BY WHICH IT CAME</source>
+      <translation>SÁQUELA EN JOG POR EL CAMINO POR EL QUE ENTRÓ</translation>
+    </message>
+    <message>
+      <location filename="app/desk/start_verdict.py" />
+      <source>JOG {direction} UNTIL IT IS CLEAR</source>
+      <translation>MUEVA {direction} EN JOG HASTA QUE QUEDE LIBRE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/start_verdict.py" />
+      <source>THE CHUCK</source>
+      <translation>EL PLATO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/start_verdict.py" />
+      <source>THE FIRST MOVE TAKES {tool} THROUGH {what}</source>
+      <translation>EL PRIMER MOVIMIENTO HACE QUE {tool} ATRAVIESE {what}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/start_verdict.py" />
+      <source>THE PART</source>
+      <translation>LA PIEZA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/start_verdict.py" />
+      <source>THE PART IN THE CHUCK IS NOT KNOWN: LOOK AT THE FIRST MOVE BEFORE YOU START</source>
+      <translation>NO SE CONOCE LA PIEZA DEL PLATO: MIRE EL PRIMER MOVIMIENTO ANTES DE ARRANCAR</translation>
+    </message>
+    <message>
+      <location filename="app/desk/start_verdict.py" />
+      <source>THE TAILSTOCK</source>
+      <translation>EL CONTRAPUNTO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/start_verdict.py" />
+      <source>{tool} IS INSIDE {what}</source>
+      <translation>{tool} ESTÁ DENTRO DE {what}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/start_watch.py" />
+      <source>START</source>
+      <translation>ARRANQUE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/start_watch.py" />
+      <source>THE FIRST MOVE COULD NOT BE CHECKED: {why}</source>
+      <translation>NO SE PUDO COMPROBAR EL PRIMER MOVIMIENTO: {why}</translation>
     </message>
     <message>
       <location filename="app/desk/stored_shapes.py" />
@@ -7065,11 +7180,6 @@
     </message>
     <message>
       <location filename="app/editor/editor_messages.py" />
-      <source>CHOOSE A PROGRAM FIRST (F2), OR TYPE THE NAME OF A NEW ONE THERE</source>
-      <translation>ELIJA PRIMERO UN PROGRAMA (F2), O ESCRIBA AHÍ EL NOMBRE DE UNO NUEVO</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor_messages.py" />
       <source>F3 SAVE AND LOAD    F1 SAVE ONLY</source>
       <translation>F3 GUARDAR Y CARGAR    F1 SOLO GUARDAR</translation>
     </message>
@@ -7077,11 +7187,6 @@
       <location filename="app/editor/editor_messages.py" />
       <source>F6 LEAVE WITHOUT SAVING    F3 SAVE AND LOAD    ESC CONTINUE EDITING</source>
       <translation>F6 SALIR SIN GUARDAR    F3 GUARDAR Y CARGAR    ESC SEGUIR EDITANDO</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor_messages.py" />
-      <source>NOBODY KNOWS WHETHER THE SPINDLE TURNS: PRESS E-STOP, NO EDITING BESIDE IT</source>
-      <translation>NADIE SABE SI GIRA EL HUSILLO: PULSE PARO DE EMERGENCIA, NO EDITE A SU LADO</translation>
     </message>
     <message>
       <location filename="app/editor/editor_messages.py" />
@@ -7112,21 +7217,6 @@
       <location filename="app/editor/editor_messages.py" />
       <source>THE MACHINE RUNS THE PROGRAM AS IT WAS LOADED, NOT THIS TEXT: ESC FOR FEED HOLD</source>
       <translation>LA MÁQUINA CORRE EL PROGRAMA COMO SE CARGÓ, NO ESTE TEXTO: ESC PARA RETENCIÓN DE AVANCE</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor_messages.py" />
-      <source>THE SLIDES ARE BEING MOVED BY HAND: LET THEM COME TO REST BEFORE EDITING</source>
-      <translation>LOS CARROS SE MUEVEN A MANO: ESPERE A QUE PAREN ANTES DE EDITAR</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor_messages.py" />
-      <source>THE SPINDLE IS ON: SWITCH IT OFF (M05, OR R FOR RESET) AND LET IT COME TO REST BEFORE EDITING</source>
-      <translation>EL HUSILLO ESTÁ ENCENDIDO: APÁGUELO (M05, O R PARA RESET) Y ESPERE QUE SE DETENGA ANTES DE EDITAR</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor_messages.py" />
-      <source>THE SPINDLE STILL COASTS: WAIT UNTIL IT STANDS BEFORE EDITING</source>
-      <translation>EL HUSILLO AÚN GIRA POR INERCIA: ESPERE QUE SE DETENGA ANTES DE EDITAR</translation>
     </message>
     <message>
       <location filename="app/editor/editor_messages.py" />
@@ -7590,6 +7680,11 @@
     </message>
     <message>
       <location filename="app/jobs/jobs_model.py" />
+      <source>NO JOB IS LOADED WHILE THE MACHINE MOVES OR A PROGRAM IS UNDER WAY; ESC FOR AUTOMATIC</source>
+      <translation>NO SE CARGA NINGÚN TRABAJO MIENTRAS LA MÁQUINA SE MUEVE O HAY UN PROGRAMA EN CURSO; ESC: AUTOMÁTICO</translation>
+    </message>
+    <message>
+      <location filename="app/jobs/jobs_model.py" />
       <source>NO JOB WAITS: F3 ADDS THE PROGRAM ON THE DESK, F10 OF THE LIST OF PROGRAMS (F1, F6) ANY OTHER</source>
       <translation>NINGÚN TRABAJO ESPERA: F3 AÑADE EL PROGRAMA DEL PUESTO, F10 DE LA LISTA DE PROGRAMAS (F1, F6) CUALQUIER OTRO</translation>
     </message>
@@ -7755,6 +7850,11 @@
     </message>
     <message>
       <location filename="app/jog/drive_test_model.py" />
+      <source>AN ARROW ASKS FOR THE TRAVEL; THE SAME ARROW, HELD, PLAYS THE TEST</source>
+      <translation>UNA FLECHA PREGUNTA EL RECORRIDO; LA MISMA FLECHA, MANTENIDA, HACE LA PRUEBA</translation>
+    </message>
+    <message>
+      <location filename="app/jog/drive_test_model.py" />
       <source>AN ARROW ASKS FOR THE TRAVEL; THE SAME ARROW, HELD, PLAYS THE TEST; F5 SHOWS ITS FIGURES</source>
       <translation>UNA FLECHA PREGUNTA POR EL RECORRIDO; LA MISMA, MANTENIDA, HACE LA PRUEBA; F5 MUESTRA SUS CIFRAS</translation>
     </message>
@@ -7792,6 +7892,11 @@
       <location filename="app/jog/drive_test_model.py" />
       <source>NO DRIVE TEST: {why}</source>
       <translation>SIN PRUEBA DE ACCIONAMIENTO: {why}</translation>
+    </message>
+    <message>
+      <location filename="app/jog/drive_test_model.py" />
+      <source>NO TEST WAS PLAYED YET: THERE ARE NO FIGURES</source>
+      <translation>AÚN NO SE HIZO NINGUNA PRUEBA: NO HAY VALORES</translation>
     </message>
     <message>
       <location filename="app/jog/drive_test_model.py" />
@@ -8225,6 +8330,11 @@
     </message>
     <message>
       <location filename="app/jog/jog_model.py" />
+      <source>A PROGRAM IS UNDER WAY: LET IT END, OR PRESS PAUSE, THEN R, BEFORE JOGGING</source>
+      <translation>HAY UN PROGRAMA EN CURSO: ESPERE A QUE TERMINE, O PULSE PAUSE Y LUEGO R, ANTES DE MOVER A MANO</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_model.py" />
       <source>AN ENTRY IS OPEN: PRESS RETURN OR ESC FIRST</source>
       <translation>HAY UNA ENTRADA ABIERTA: PULSE PRIMERO RETURN O ESC</translation>
     </message>
@@ -8262,6 +8372,11 @@
       <location filename="app/jog/jog_model.py" />
       <source>HOLD A KEY TO MOVE, WITH SHIFT FOR RAPID; F8 TOUCHES TOOLS OFF, F9 THE WORKPIECE</source>
       <translation>MANTENGA UNA TECLA PARA MOVER, CON MAYÚS. EN RÁPIDO; F8 MIDE HERRAMIENTAS, F9 LA PIEZA</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_model.py" />
+      <source>HOLD AN ARROW TO MOVE, WITH SHIFT FOR RAPID; T CHOOSES A TOOL</source>
+      <translation>MANTENGA UNA FLECHA PARA MOVER, CON MAYÚS EN RÁPIDO; T ELIGE UNA HERRAMIENTA</translation>
     </message>
     <message>
       <location filename="app/jog/jog_model.py" />
@@ -8455,8 +8570,8 @@
     </message>
     <message>
       <location filename="app/jog/jog_view.py" />
-      <source>T tool · X Z touch · W wear · N nose · Q tip · K remark · M master · F10 undo</source>
-      <translation>T herr · X Z tocar · W desgaste · N radio · Q punta · K nota · M maestra · F10 deshacer</translation>
+      <source>T tool · X Z touch · W wear · N nose · Q tip · K remark · M master · F4 undo</source>
+      <translation>T herr · X Z tocar · W desgaste · N radio · Q punta · K nota · M maestra · F4 deshacer</translation>
     </message>
     <message>
       <location filename="app/jog/mill_jog_view.py" />
@@ -8705,13 +8820,18 @@
     </message>
     <message>
       <location filename="app/jog/tool_setting.py" />
-      <source>T{number} IS THE MASTER: ALL TOOLS FOLLOW (L: IT ALONE)</source>
-      <translation>T{number} ES LA MAESTRA: TODAS LAS HERRAMIENTAS LA SIGUEN (L: SÓLO ELLA)</translation>
+      <source>T{number} IS THE MASTER: {others} FOLLOW (L: IT ALONE)</source>
+      <translation>T{number} ES LA MAESTRA: LA SIGUEN {others} (L: SOLO ELLA)</translation>
     </message>
     <message>
       <location filename="app/jog/tool_setting.py" />
       <source>T{number} WAS NEVER SET: TOUCH X AND Z FIRST</source>
       <translation>T{number} NUNCA SE PUSO: TOQUE PRIMERO X Y Z</translation>
+    </message>
+    <message>
+      <location filename="app/jog/tool_setting.py" />
+      <source>no tools</source>
+      <translation>ninguna herramienta</translation>
     </message>
     <message>
       <location filename="app/jog/tool_setting.py" />
@@ -8762,11 +8882,6 @@
       <location filename="app/jog/tool_setting_view.py" />
       <source>none</source>
       <translation>ninguna</translation>
-    </message>
-    <message>
-      <location filename="app/mdi/mdi_model.py" />
-      <source>A PROGRAM IS UNDER WAY: LET IT END, OR STOP IT AND PRESS R, BEFORE MDI</source>
-      <translation>HAY UN PROGRAMA EN CURSO: DEJE QUE TERMINE, O PÁRELO Y PULSE R, ANTES DE MDI</translation>
     </message>
     <message>
       <location filename="app/mdi/mdi_model.py" />
@@ -9117,6 +9232,86 @@
       <location filename="app/offsets/offset_history.py" />
       <source>{names} TAKEN BACK</source>
       <translation>{names} RETIRADAS</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_questions.py" />
+      <source>A LARGE CHANGE</source>
+      <translation>CAMBIO GRANDE</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_questions.py" />
+      <source>BEYOND THE TRAVEL</source>
+      <translation>FUERA DEL RECORRIDO</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_questions.py" />
+      <source>MASTER {before} → NONE, NO TOOL FOLLOWS IT: PRESS Y TO CHANGE, N TO KEEP</source>
+      <translation>MAESTRA {before} → NINGUNA, NADIE LA SIGUE: PULSE Y PARA CAMBIAR, N PARA CONSERVAR</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_questions.py" />
+      <source>MASTER {before} → {tool}. FOLLOWERS: {others}. A TOUCH-OFF OVER {limit} {unit} IS ASKED. PRESS Y TO CHANGE, N TO KEEP</source>
+      <translation>MAESTRA {before} → {tool}. LA SIGUEN: {others}. UNA TOMA DE MÁS DE {limit} {unit} SE PREGUNTA. PULSE Y PARA CAMBIAR, N PARA CONSERVAR</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_questions.py" />
+      <source>OTHER TOOLS FOLLOW</source>
+      <translation>OTRAS HERRAMIENTAS LA SIGUEN</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_questions.py" />
+      <source>THE OFFSETS HAVE CHANGED SINCE THE QUESTION: ENTER IT AGAIN</source>
+      <translation>LOS CORRECTORES HAN CAMBIADO DESDE LA PREGUNTA: INTRODÚZCALO DE NUEVO</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_questions.py" />
+      <source>THE OTHER SIDE OF THE PART</source>
+      <translation>EL OTRO LADO DE LA PIEZA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_questions.py" />
+      <source>THIS TABLE</source>
+      <translation>ESTA TABLA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_questions.py" />
+      <source>UNDO {row}: {change}, AND WITH IT {others}; PRESS Y TO UNDO, N TO KEEP IT</source>
+      <translation>DESHACER {row}: {change}, Y CON ELLO {others}; PULSE Y PARA DESHACER, N PARA CONSERVAR</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_questions.py" />
+      <source>UNDO {row}: {change}; PRESS Y TO UNDO, N TO KEEP IT</source>
+      <translation>DESHACER {row}: {change}; PULSE Y PARA DESHACER, N PARA CONSERVAR</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_questions.py" />
+      <source>chosen as master</source>
+      <translation>elegida como maestra</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_questions.py" />
+      <source>no master</source>
+      <translation>sin maestra</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_questions.py" />
+      <source>{changes}. FOLLOWERS: {others}. PRESS Y TO CHANGE, N TO KEEP</source>
+      <translation>{changes}. LA SIGUEN: {others}. PULSE Y PARA CAMBIAR, N PARA CONSERVAR</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_questions.py" />
+      <source>{changes}: PRESS Y TO CHANGE IT, N TO KEEP THE OLD VALUE</source>
+      <translation>{changes}: PULSE Y PARA CAMBIARLO, N PARA CONSERVAR EL VALOR ANTERIOR</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_questions.py" />
+      <source>{count} MORE</source>
+      <translation>{count} MÁS</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_questions.py" />
+      <source>{row} HAS NO CHANGE TO UNDO</source>
+      <translation>{row} NO TIENE CAMBIOS QUE DESHACER</translation>
     </message>
     <message>
       <location filename="app/offsets/offset_table.py" />
@@ -9535,6 +9730,11 @@
     </message>
     <message>
       <location filename="app/offsets/secondary_offsets.py" />
+      <source>TYPE THE NUMBER OF AN OFFSET AND PRESS RETURN</source>
+      <translation>ESCRIBA EL NÚMERO DE UN CORRECTOR Y PULSE RETURN</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/secondary_offsets.py" />
       <source>X DIAMETER CORRECTION?</source>
       <translation>¿CORRECCIÓN EN DIÁMETRO X?</translation>
     </message>
@@ -9580,18 +9780,8 @@
     </message>
     <message>
       <location filename="app/offsets/tool_fields.py" />
-      <source>chosen as master</source>
-      <translation>elegida como maestra</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/tool_fields.py" />
       <source>entered by hand</source>
       <translation>escrito a mano</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/tool_fields.py" />
-      <source>no master</source>
-      <translation>sin maestra</translation>
     </message>
     <message>
       <location filename="app/offsets/tool_offsets.py" />
@@ -9857,6 +10047,11 @@
       <location filename="app/part/part_sheet.py" />
       <source>TYPE THE REASON, RETURN KEEPS IT WITH THE PROGRAM; ESC LEAVES THE CHECK ON</source>
       <translation>ESCRIBA EL MOTIVO, RETURN LO GUARDA CON EL PROGRAMA; ESC DEJA LA COMPROBACIÓN</translation>
+    </message>
+    <message>
+      <location filename="app/part/part_sheet.py" />
+      <source>UP AND DOWN SHOW THE PLACE OF A FINDING; F2: STOCK</source>
+      <translation>ARRIBA Y ABAJO MUESTRAN EL LUGAR DE UN AVISO; F2: MATERIAL</translation>
     </message>
     <message>
       <location filename="app/part/part_sheet.py" />
@@ -10540,6 +10735,11 @@
     </message>
     <message>
       <location filename="app/programs/program_list.py" />
+      <source>TYPE A PART OF A NAME; PAUSE HOLDS THE FEED; ESC FOR AUTOMATIC</source>
+      <translation>ESCRIBA PARTE DE UN NOMBRE; PAUSE DETIENE EL AVANCE; ESC: AUTOMÁTICO</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_list.py" />
       <source>WHERE</source>
       <translation>DÓNDE</translation>
     </message>
@@ -11065,8 +11265,8 @@
     </message>
     <message>
       <location filename="app/quality/readings_section.py" />
-      <source>F8 proposes a correction, F9 takes the last one back.</source>
-      <translation>F8 propone una corrección, F9 deshace la última.</translation>
+      <source>F8 proposes a correction, F4 undoes the last one.</source>
+      <translation>F8 propone una corrección, F4 deshace la última.</translation>
     </message>
     <message>
       <location filename="app/quality/readings_section.py" />
@@ -13140,18 +13340,8 @@
     </message>
     <message>
       <location filename="app/searchto/searchto_model.py" />
-      <source>A PROGRAM IS UNDER WAY: LET IT END, OR STOP IT AND PRESS R, BEFORE SEARCHTO</source>
-      <translation>HAY UN PROGRAMA EN CURSO: DEJE QUE TERMINE, O PÁRELO Y PULSE R, ANTES DE BUSCAR A</translation>
-    </message>
-    <message>
-      <location filename="app/searchto/searchto_model.py" />
       <source>CHOOSE A GOOD LINE FIRST</source>
       <translation>ELIJA PRIMERO UNA LÍNEA BUENA</translation>
-    </message>
-    <message>
-      <location filename="app/searchto/searchto_model.py" />
-      <source>CHOOSE A PROGRAM FIRST (F2)</source>
-      <translation>ELIJA PRIMERO UN PROGRAMA (F2)</translation>
     </message>
     <message>
       <location filename="app/searchto/searchto_model.py" />
@@ -13207,11 +13397,6 @@
       <location filename="app/searchto/searchto_model.py" />
       <source>THE LINE CANNOT BE SEARCHED: {why}</source>
       <translation>LA LÍNEA NO SE PUEDE BUSCAR: {why}</translation>
-    </message>
-    <message>
-      <location filename="app/searchto/searchto_model.py" />
-      <source>THE PROGRAM IS NOT PROVED WITHOUT ERRORS: SEARCHTO NEEDS THAT</source>
-      <translation>EL PROGRAMA NO ESTÁ COMPROBADO SIN ERRORES: BUSCAR A LO NECESITA</translation>
     </message>
     <message>
       <location filename="app/searchto/searchto_model.py" />
@@ -13835,6 +14020,11 @@
     </message>
     <message>
       <location filename="app/sharing/sharing_model.py" />
+      <source>F2 TAKES THE MARKED VERSION; NOTHING IS TAKEN UNASKED; ESC FOR AUTOMATIC</source>
+      <translation>F2 TOMA LA VERSIÓN MARCADA; NADA SE TOMA SIN PREGUNTAR; ESC: AUTOMÁTICO</translation>
+    </message>
+    <message>
+      <location filename="app/sharing/sharing_model.py" />
       <source>KEEP</source>
       <translation>CONSERVAR</translation>
     </message>
@@ -13907,6 +14097,11 @@
       <location filename="app/sharing/sharing_model.py" />
       <source>THERE IS NOTHING TO SETTLE: NO OTHER DESK HAS CHANGED IT TOO</source>
       <translation>NO HAY NADA QUE DECIDIR: NINGÚN OTRO PUESTO LO HA CAMBIADO TAMBIÉN</translation>
+    </message>
+    <message>
+      <location filename="app/sharing/sharing_model.py" />
+      <source>UP AND DOWN MARK A PROGRAM, F5 LOOKS AGAIN; ESC FOR AUTOMATIC</source>
+      <translation>ARRIBA Y ABAJO MARCAN UN PROGRAMA, F5 MIRA OTRA VEZ; ESC: AUTOMÁTICO</translation>
     </message>
     <message>
       <location filename="app/sharing/sharing_model.py" />
@@ -17815,6 +18010,11 @@
     </message>
     <message>
       <location filename="core/executor/executor.py" />
+      <source>CycleStart came too late to be obeyed</source>
+      <translation>CycleStart llegó demasiado tarde para ser obedecido</translation>
+    </message>
+    <message>
+      <location filename="core/executor/executor.py" />
       <source>feed %1 %</source>
       <translation>avance %1 %</translation>
     </message>
@@ -18295,6 +18495,11 @@
     </message>
     <message>
       <location filename="core/executor/safe_stop.py" />
+      <source>the drives</source>
+      <translation>los accionamientos</translation>
+    </message>
+    <message>
+      <location filename="core/executor/safe_stop.py" />
       <source>the outputs</source>
       <translation>las salidas</translation>
     </message>
@@ -18505,6 +18710,11 @@
     </message>
     <message>
       <location filename="core/executor/start_conditions.py" />
+      <source>the first move is being checked against the part: start again in a moment</source>
+      <translation>se está comprobando el primer movimiento con la pieza: vuelva a arrancar en un momento</translation>
+    </message>
+    <message>
+      <location filename="core/executor/start_conditions.py" />
       <source>the guard is open: close it</source>
       <translation>la guarda está abierta: ciérrela</translation>
     </message>
@@ -18627,6 +18837,11 @@
       <location filename="core/executor/supervision.py" />
       <source>THE MACHINE WAS NOT HEARD</source>
       <translation>NO SE OÍA A LA MÁQUINA</translation>
+    </message>
+    <message>
+      <location filename="core/executor/supervision.py" />
+      <source>nothing is heard of the slides</source>
+      <translation>no se recibe nada de los carros</translation>
     </message>
     <message>
       <location filename="core/executor/thread_path.py" />
@@ -32722,6 +32937,21 @@
       <location filename="core/store/offset_tables.py" />
       <source>there is no offset change to undo</source>
       <translation>no hay cambio de corrector que deshacer</translation>
+    </message>
+    <message>
+      <location filename="core/store/offset_undo.py" />
+      <source>%1 would both be the master; choose no master first</source>
+      <translation>%1 serían maestras a la vez; quite antes la maestra</translation>
+    </message>
+    <message>
+      <location filename="core/store/offset_undo.py" />
+      <source>%1 would have no tool; clear it first</source>
+      <translation>%1 quedarían sin herramienta; bórrelo antes</translation>
+    </message>
+    <message>
+      <location filename="core/store/offset_undo.py" />
+      <source>offset %1 has changed since; undo that change first</source>
+      <translation>el corrector %1 ha cambiado desde entonces; deshaga antes ese cambio</translation>
     </message>
     <message>
       <location filename="core/store/people.py" />

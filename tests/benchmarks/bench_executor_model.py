@@ -14,9 +14,10 @@ from hypothesis import HealthCheck, Phase, seed, settings
 from hypothesis.stateful import run_state_machine_as_test
 
 from core.executor.snapshot import TRANSITIONS
-from tests.executor.model import SEEN, ExecutorModel
+from tests.executor.model import ExecutorModel
+from tests.executor.model_machine import SEEN
 
-STEPS = 50_000
+STEPS = 100_000
 _RUNS, _LONG = 40, 60  # examples of one search, steps of one example
 
 

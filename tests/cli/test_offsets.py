@@ -2,15 +2,22 @@
 
 from __future__ import annotations
 
+import io
 import json
+from importlib.resources import files
 from pathlib import Path
 
 import pytest
 
 from app.cli.main import main
+from app.compose.journal import Journal
+from app.compose.machine_in_use import remember_machine
+from app.compose.screen_desk import desk_and_executor
+from app.compose.stored_offsets import stored_offsets
 from core.coded_error import CodedError
 from core.store.store import Store
 from core.store.store_rows import SecondaryRow, ToolRow
+from drivers.clocks import StepClock
 from tests.coded import recorded_refusals
 
 Captured = pytest.CaptureFixture[str]
@@ -68,7 +75,7 @@ def test_set_and_show_in_inches(capsys: Captured, home: Path) -> None:
 
 def test_second_entry_keeps_what_it_does_not_name(capsys: Captured) -> None:
     main(["offsets", "set", "t03", "x=1", "nose_radius=.015"])
-    main(["offsets", "set", "T3", "x=.5-.002"])
+    main(["offsets", "set", "T3", "x=.5-.002", "--yes"])
     assert shown(capsys) == {"tool": {"3": tool(x=0.498, nose_radius=0.015)}, "secondary": {}}
 
 
@@ -80,7 +87,7 @@ def test_text_has_five_places(capsys: Captured) -> None:
 
 
 def test_clear_undo_and_history(capsys: Captured) -> None:
-    main(["offsets", "set", "D1", "z=.1", "--why", "long part"])
+    main(["offsets", "set", "D1", "z=.1", "--yes", "--why", "long part"])
     main(["offsets", "set", "T1", "x=1"])
     assert main(["offsets", "clear", "D"]) == 0
     assert shown(capsys) == {"tool": {"1": tool(x=1.0)}, "secondary": {}}
@@ -101,7 +108,7 @@ def test_clear_undo_and_history(capsys: Captured) -> None:
 
 
 def test_history_as_text_tells_old_and_new(capsys: Captured) -> None:
-    main(["offsets", "set", "D1", "z=.1"])
+    main(["offsets", "set", "D1", "z=.1", "--yes"])
     capsys.readouterr()
     main(["offsets", "history"])
     line = capsys.readouterr().out
@@ -224,3 +231,161 @@ def test_a_tool_is_cleared_and_comes_back(capsys: Captured) -> None:
     assert main(["offsets", "clear", "T"]) == 0
     capsys.readouterr()
     assert shown(capsys)["tool"] == {}
+
+
+def test_a_value_beyond_the_travel_is_refused_even_with_yes(capsys: Captured) -> None:
+    for consent in ((), ("--yes",)):
+        error = refused(capsys, "set", "T1", "x=-15", "z=0", *consent)
+        assert error.code == "beyond-travel"
+        assert "T1 x not set → -15.00000 in" in str(error)
+    assert shown(capsys) == {"tool": {}, "secondary": {}}
+
+
+@pytest.mark.parametrize(
+    ("entry", "value"),
+    [("x=-1.2", "x +1.20000 → -1.20000 in"), ("z=.1", "z +0.00000 → +0.10000 in"), ("wear_x=.02", "wear_x")],
+)
+def test_a_large_change_needs_consent(capsys: Captured, entry: str, value: str) -> None:
+    assert main(["offsets", "set", "T1", "x=1.2", "z=0"]) == 0
+    capsys.readouterr()
+    before = shown(capsys)
+    error = refused(capsys, "set", "T1", entry)
+    assert error.code == "not-confirmed"
+    assert value in str(error)
+    assert shown(capsys) == before
+    assert main(["offsets", "set", "T1", entry, "--yes"]) == 0
+    assert shown(capsys) != before
+
+
+@pytest.mark.parametrize(("typed", "status"), [("y", 0), ("n", 2), ("", 2)])
+def test_at_a_terminal_a_large_change_is_asked(
+    capsys: Captured, monkeypatch: pytest.MonkeyPatch, typed: str, status: int
+) -> None:
+    assert main(["offsets", "set", "T1", "x=1.2", "z=0"]) == 0
+    terminal = io.StringIO(f"{typed}\n")
+    monkeypatch.setattr(terminal, "isatty", lambda: True)
+    monkeypatch.setattr("sys.stdin", terminal)
+    assert main(["offsets", "set", "T1", "x=2"]) == status
+    assert shown(capsys)["tool"] == {"1": tool(x=2.0 if typed == "y" else 1.2)}
+
+
+def test_a_master_that_others_follow_needs_consent(capsys: Captured) -> None:
+    for name in ("T1", "T2"):
+        assert main(["offsets", "set", name, "x=1", "z=0"]) == 0
+    capsys.readouterr()
+    error = refused(capsys, "set", "T2", "master=1")
+    assert (error.code, "followers: T1" in str(error)) == ("not-confirmed", True)
+    assert main(["offsets", "set", "T2", "master=1", "--yes"]) == 0
+
+
+def exported(folder: Path, offsets: str = "", mill: str = "") -> Path:
+    """Return an exported folder with one program, these tools and these tools of a mill."""
+    (folder / "programs").mkdir(parents=True)
+    (folder / "programs" / "pin.nc").write_bytes(b"M30\n")
+    (folder / "offsets.toml").write_text(offsets)
+    if mill:
+        (folder / "mill_tools.csv").write_text(mill)
+    return folder
+
+
+def imported(monkeypatch: pytest.MonkeyPatch, folder: Path, *options: str) -> str:
+    """Import the folder; return the code of the refusal, empty if the import was done."""
+    refusals = recorded_refusals(monkeypatch)
+    status = main(["store", "import", str(folder), *options])
+    return "" if status == 0 else refusals[-1].code
+
+
+def test_an_import_beyond_the_travel_is_refused_as_a_whole(
+    capsys: Captured, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, home: Path
+) -> None:
+    folder = exported(tmp_path / "out", "[tool.1]\nx = 1.0\nz = 0.0\n[tool.2]\nx = -15.0\nz = 0.0\n")
+    assert imported(monkeypatch, folder, "--yes") == "beyond-travel"
+    assert shown(capsys) == {"tool": {}, "secondary": {}}
+    with Store.open(home, read_only=True) as store:
+        assert store.programs() == ()
+
+
+def test_an_import_of_a_large_change_needs_consent(
+    capsys: Captured, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    assert main(["offsets", "set", "T1", "x=1.2", "z=0"]) == 0
+    folder = exported(tmp_path / "out", "[tool.1]\nx = -1.2\nz = 0.0\n")
+    assert imported(monkeypatch, folder) == "not-confirmed"
+    assert shown(capsys)["tool"] == {"1": tool(x=1.2)}
+    assert imported(monkeypatch, folder, "--yes") == ""
+    assert shown(capsys)["tool"] == {"1": tool(x=-1.2)}
+
+
+def test_an_import_of_a_large_change_of_a_mill_needs_consent(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, home: Path
+) -> None:
+    assert main(["offsets", "set", "TOOL1", "L=80"]) == 0
+    folder = exported(tmp_path / "out", mill="number,length\n1,8.0\n")
+    assert imported(monkeypatch, folder) == "not-confirmed"
+    with Store.open(home) as store:
+        assert store.mill_tools()[1].length == 80.0
+    assert imported(monkeypatch, folder, "--yes") == ""
+
+
+@pytest.mark.parametrize("entry", ["L=8", "DL=.3", "R=6"])
+def test_a_large_change_of_a_tool_of_a_mill_needs_consent(capsys: Captured, home: Path, entry: str) -> None:
+    assert main(["offsets", "set", "TOOL1", "L=80", "R=5"]) == 0
+    capsys.readouterr()
+    assert refused(capsys, "set", "TOOL1", entry).code == "not-confirmed"
+    with Store.open(home) as store:
+        assert store.mill_tools()[1][1:5] == (80.0, 5.0, 0.0, 0.0)
+
+
+# --- the machine in use -------------------------------------------------------------------------------------
+
+
+def shorter(folder: Path) -> Path:
+    """Return a machine file of a lathe whose X travels 2 in from home."""
+    text = files("resources").joinpath("machines", "gt75.toml").read_text("utf-8")
+    path = folder / "short.toml"
+    path.write_text(text.replace("travel = [-4.0, 4.0]", "travel = [-2.0, 2.0]"))
+    return path
+
+
+def test_the_travel_is_that_of_the_machine_of_the_screen(
+    capsys: Captured, tmp_path: Path, home: Path
+) -> None:
+    machine = shorter(tmp_path)
+    assert main(["offsets", "set", "T1", "x=3", "z=0"]) == 0  # the shipped lathe travels 4 in
+    journal = Journal(home)
+    desk, _executor = desk_and_executor(str(machine), stored_offsets, StepClock(), journal)
+    desk.close()
+    journal.close()
+    capsys.readouterr()
+    assert refused(capsys, "set", "T1", "x=3.01").code == "beyond-travel"
+    assert refused(capsys, "set", "T2", "x=3", "z=0", "--yes").code == "beyond-travel"
+    assert main(["offsets", "set", "T1", "x=3.01", "--machine", "gt75"]) == 0
+
+
+def test_without_the_file_of_the_machine_nothing_is_set(capsys: Captured, tmp_path: Path, home: Path) -> None:
+    machine = shorter(tmp_path)
+    journal = Journal(home)
+    remember_machine(str(machine), journal)
+    journal.close()
+    machine.unlink()
+    assert "--machine" in str(refused(capsys, "set", "T1", "x=1", "z=0"))
+    assert shown(capsys) == {"tool": {}, "secondary": {}}
+    assert main(["offsets", "set", "T1", "x=1", "z=0", "--machine", "gt75"]) == 0
+
+
+def test_an_import_takes_the_travel_of_the_machine_that_is_given(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    folder, machine = exported(tmp_path / "out", "[tool.1]\nx = 3.0\nz = 0.0\n"), shorter(tmp_path)
+    assert imported(monkeypatch, folder, "--machine", str(machine)) == "beyond-travel"
+    assert imported(monkeypatch, folder, "--machine", "gt75") == ""
+
+
+# --- all or nothing -----------------------------------------------------------------------------------------
+
+
+def test_a_refused_shape_leaves_the_offset_as_it_was(capsys: Captured) -> None:
+    assert main(["offsets", "set", "T3", "x=1", "z=0", "kind=drill", "diameter=.25"]) == 0
+    before = shown(capsys)
+    assert refused(capsys, "set", "T3", "x=1.01", "point=999").code == "out-of-range"
+    assert shown(capsys) == before

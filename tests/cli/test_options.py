@@ -86,6 +86,10 @@ COVERED = {
     ("offsets show", "--json"): "tests/cli/test_offsets.py",
     ("offsets history", "--json"): "tests/cli/test_offsets.py",
     ("offsets history", "--limit"): "tests/cli/test_offsets.py",
+    ("offsets set", "--yes"): "tests/cli/test_offsets.py",
+    ("offsets set", "--machine"): "tests/cli/test_offsets.py",
+    ("store import", "--machine"): "tests/cli/test_offsets.py",
+    ("store import", "--yes"): "tests/cli/test_offsets.py",
     ("offsets set", "--why"): "tests/cli/test_offsets.py",
     ("offsets clear", "--why"): "tests/cli/test_offsets.py",
     ("offsets undo", "--why"): "tests/cli/test_offsets.py",
@@ -147,7 +151,10 @@ def test_an_option_before_a_command_acts_or_is_refused(
 ) -> None:
     """With a file that is not there: whoever takes the option says so, everybody else refuses the option."""
     has = {each for command, each in options() if command == name}
+    exported = tmp_path / "export"
+    (exported / "programs").mkdir(parents=True)
     rest = {
+        "store import": [str(exported)],
         "offsets set": ["T1", "x=1"],
         "offsets clear": ["D"],
         "machine peer": ["gt75-bench"],

@@ -20,6 +20,8 @@ from app.desk.access import Access
 from app.desk.access_reset import WAIT
 from app.desk.desk import Desk
 from app.editor.editor import Editor
+from app.offsets.offset_history import OffsetHistory
+from app.offsets.offset_questions import OffsetQuestions
 from app.programs.program_list import ProgramList
 from app.quality.parts_watch import PartsWatch
 from app.sharing.sharing import Sharing
@@ -49,6 +51,7 @@ from core.store.store_errors import StoreError
 from core.store.store_file import FILE_NAME
 from core.store.store_rows import Kind
 from core.store.tool_lives import insert_changes
+from core.store.touch_off import Touch
 from drivers.clocks import StepClock
 from tests.texts import begins, pattern, shows
 from tests.texts import text as wording
@@ -89,6 +92,7 @@ NO_CHANGE = {
     "compose/demo_store.py": "a store for trying",
     "compose/dialects_page.py": "a page of the manual",
     "compose/headless_run.py": "inputs of a run that is simulated",
+    "compose/machine_in_use.py": "which machine the screen was opened for",
     "compose/played_machine.py": "the other end of a machine that is simulated",
     "compose/run_log.py": "old files of the machine's own log",
     "compose/thumbnails.py": "pictures that can be made again",
@@ -239,7 +243,7 @@ def test_wear_is_the_operators_and_position_is_not(room: Room) -> None:
     assert shows(
         book.change(Kind.TOOL, 3, {"wear_x": 0.01, "x": 2.0}, "both"), "screen.level-needed", level="SETUP"
     )
-    assert shows(book.undo(Kind.TOOL), "screen.level-needed", level="SETUP")
+    assert shows(book.undo(Kind.TOOL, 3, 1), "screen.level-needed", level="SETUP")
     assert shows(book.clear(Kind.ZERO, "all"), "screen.level-needed", level="SETUP")
     assert shows(book.choose_master(3, "master"), "screen.level-needed", level="SETUP")
     assert book.change(Kind.TOOL, 3, {"wear_x": 0.01}, "too large") == ""
@@ -248,6 +252,23 @@ def test_wear_is_the_operators_and_position_is_not(room: Room) -> None:
     room.settle()
     assert (room.store.tools()[3].wear_x, room.store.tools()[3].x) == (0.01, 1.0)
     assert room.store.secondary()[1].x == -0.01
+
+
+def test_nothing_is_asked_that_the_level_does_not_allow(room: Room) -> None:
+    room.store.set_tool(3, "touched off", x=1.0, z=-1.0).result(LIMIT)
+    room.desk.book.read()
+    room.enter_people()
+    questions = OffsetQuestions(OffsetHistory(room.desk, Kind.TOOL))
+    refusals = (
+        questions.change(Kind.TOOL, 3, {"x": -1.0}, "typed"),
+        questions.touch_off(3, Touch(x=-1.0), "touched off"),
+        questions.choose_master(3),
+        questions.undo(Kind.TOOL, 3),
+    )
+    assert all(shows(why, "screen.level-needed", level="SETUP") for why in refusals)
+    assert not room.desk.asked
+    assert questions.change(Kind.TOOL, 3, {"wear_x": 1.0}, "typed") == ""
+    assert room.desk.asked  # wear is the operator's, and this wear is large
 
 
 def test_pages_without_a_book_refuse_too(room: Room) -> None:

@@ -53,7 +53,8 @@ def test_an_unknown_switch_is_a_mistake(desk: Desk) -> None:
 def test_no_other_program_while_one_is_under_way(desk: Desk, machine: FakeMachine, state: State) -> None:
     at(machine, state)
     assert desk.may_choose() is False
-    assert shows(desk.notice, "screen.program-runs-no-other")
+    by_hand = state is State.JOG
+    assert shows(desk.notice, "screen.axes-move-no-program" if by_hand else "screen.program-runs-no-other")
 
 
 def test_an_unknown_program_is_not_loaded(desk: Desk) -> None:

@@ -179,6 +179,29 @@ def test_spindle_ramps_after_its_latency() -> None:
     assert sim.ports.spindle.speed() == pytest.approx(-750.0)
 
 
+@pytest.mark.parametrize("coast", [False, True])
+def test_a_spindle_stopped_before_its_inverter_has_reacted_never_turns(coast: bool) -> None:
+    sim, clock = simulation()
+    spindle = sim.ports.spindle
+    spindle.run(1500.0)
+    clock.advance(0.01)
+    spindle.coast() if coast else spindle.run(0.0)
+    for _ in range(30):
+        clock.advance(0.005)
+        assert spindle.speed() == 0.0
+
+
+def test_a_stop_that_is_repeated_stops_after_the_latency_of_the_first() -> None:
+    sim, clock = simulation()
+    spindle = sim.ports.spindle
+    spindle.run(600.0)
+    clock.advance(2.0)
+    for _ in range(20):  # as the watchdog does
+        spindle.run(0.0)
+        clock.advance(0.01)
+    assert spindle.speed() == pytest.approx(600.0 - 2500.0 * (0.2 - 0.08))
+
+
 def test_spindle_faults() -> None:
     sim, clock = simulation()
     sim.ports.spindle.run(9000.0)

@@ -1,19 +1,12 @@
 """A model of the executor: what an operator does, what breaks and how late the host is, in any order.
 
-The invariants are looked at after every tick, on the step clock; what the machine really does comes from the
-simulated plant and not from what the executor says. In the end all faults are mended, and the machine must
-make a part: no state may be one that cannot be left.
+The invariants are looked at after every tick, on the step clock. In the end all faults are mended, and the
+machine must make a part: no state may be one that cannot be left.
 """
 
 from __future__ import annotations
 
-import dataclasses
-import math
-import re
-from collections import Counter
-from collections.abc import Callable, Iterator
-from itertools import pairwise
-from typing import Any
+from collections.abc import Callable
 
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, rule
@@ -38,18 +31,13 @@ from core.executor.commands import (
     Wheel,
     WheelOff,
 )
-from core.executor.executor import Executor
-from core.executor.job import Job
-from core.executor.read_ahead import ProgramPass
-from core.executor.snapshot import ACTIVE, BY_HAND, CYCLE, STOPPED, Snapshot, Starts, State
-from core.executor.start_conditions import TIME_TO_READ
-from core.interpreter.elementary_blocks import Block, Kind
-from core.interpreter.job_setup import Setup, ToolOffset
+from core.executor.snapshot import ACTIVE, CYCLE, Starts, State
+from core.interpreter.job_setup import ToolOffset
 from core.ports import DriverError
 from core.proving.prove_program import prove
 from tests.executor.lines import line_job, restart_job
-from tests.executor.rig import TICK, Rig
-from tests.texts import pattern
+from tests.executor.model_machine import MOVES, PORTS, SEEN, Machine
+from tests.executor.rig import TICK
 
 TOOLS = {1: ToolOffset(), 2: ToolOffset(x=1.0, z=-2.0)}
 PROGRAMS = (
@@ -60,7 +48,7 @@ PROGRAMS = (
     "G90G94F300\nX.2\nG04F.3\nM00\nX.3\nM01\nX0Z0\nM30\n",
     "G90G94F300\nG01X.2F30\nG02X.2Z-.2I.2K-.1\nX.3Z-.3\nM30\n",
     "G90G94F300\nT1\nX.3Z.2\nT2\nX.3Z.2\nG01Z.1F20\nM30\n",
-    "G90G94F300\nM05\nM19\nC90\nG01C180F600\nC180\nM05\nM30\n",
+    "G90G94F300\nM05\nM19\nC90\nG01C180F300\nC180\nM05\nM30\n",
     "G90G94F300\nM03S800\nG04F.2\nM04S800\nG01X.2F10\nM05\nM13\nM12\nM02\n",
     "G90G94F300\nG96S200M03\nX1Z.1\nG94G01X.2F20\nG97\nM30\n",
     "G90G94F300\nM03S900\nX.5Z.1\nLS3\nG91G01X-.05F10\nZ-.1\nG00Z.1\nLF\nG90X.5\nM05\nM30\n",
@@ -68,264 +56,12 @@ PROGRAMS = (
 )
 LINES = ("X.2", "Z.2", "G01X.1F20", "M03S500", "M05", "G04F.3", "G91X.05", "G90", "T1", "M08", "M09", "M30")
 SAFE = "G90G94F300\nX.05\nX0\nM30\n"
-STARTS_FROM = {State.IDLE, State.HOLD, State.HOLDING, State.BLOCK_END, State.PROGRAM_STOP}
-MOVES = ACTIVE | {State.JOG, State.HOME}
-SETTLES = 0.6  # s: the drives' own braking from full speed, and the lag behind it
-LONGEST_JOG = 8.0  # s; the handwheel's way is long, and the host may be late by 5 s
-RUNS_OUT = 12.0  # s; the spindle's own ramp from full speed, bogged or not
-POWER_SEEN = 0.2  # s until drives that are off are told
 BOUNCE = 0.31  # s in which a second start is the same press
-STILL = 0.02  # mm in a tick; servo noise and the last of a lag are less
-ON_PATH = 0.005  # mm
-FINE = 0.002  # s between two looks at the setpoints
-_PORTS = ("axes", "spindle", "io")
 _CALLS = {
     "axes": ("sample", "splice", "demand_at", "horizon", "stop", "enable", "clear_fault", "now"),
     "spindle": ("run", "coast", "speed", "angle", "fault"),
     "io": ("inputs", "outputs", "write", "safe"),
 }
-
-
-class Breaking:
-    """A port whose next call of one method raises."""
-
-    def __init__(self, port: object) -> None:
-        self._port = port
-        self.breaks: dict[str, tuple[Exception, int]] = {}
-
-    def __getattr__(self, name: str) -> Any:
-        whole = getattr(self._port, name)
-        if name not in self.breaks:
-            return whole
-
-        def raising(*given: Any, **words: Any) -> Any:
-            error, left = self.breaks[name]
-            if left > 1:
-                self.breaks[name] = (error, left - 1)
-            else:
-                del self.breaks[name]
-            raise error
-
-        return raising
-
-
-class Seen:
-    """What a run of the model has met; for the table of the benchmark."""
-
-    def __init__(self) -> None:
-        self.steps = self.ticks = self.runs = self.parts = 0
-        self.seconds = 0.0
-        self.states: Counter[State] = Counter()
-        self.changes: Counter[tuple[State, State]] = Counter()
-        self.alarms: Counter[str] = Counter()
-        self.rules: Counter[str] = Counter()
-
-
-SEEN = Seen()
-
-
-class Machine(Rig):
-    """A rig whose ports break and that checks every tick."""
-
-    def _passes(self, job: Job, setup: Setup) -> ProgramPass:
-        self.blocks: list[Block] = []
-        whole = super()._passes(job, setup)
-        return whole._replace(blocks=self._kept(whole.blocks))
-
-    def _kept(self, blocks: Iterator[Block]) -> Iterator[Block]:
-        for block in blocks:
-            self.blocks.append(block)
-            yield block
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        ports = self.sim.ports
-        self.broken = {name: Breaking(getattr(ports, name)) for name in _PORTS}
-        axes, spindle, io = (self.broken[name] for name in _PORTS)
-        self.sim = self.sim._replace(ports=dataclasses.replace(ports, axes=axes, spindle=spindle, io=io))
-        self.executor = Executor(self.machine, self.sim.ports, self.events.append, self._passes)
-        self.true_ports = ports
-        self.pressed = self.jogged = self.homed = self.switched = False  # since the tick before
-        self.unexpected = False  # a driver has raised what no driver may
-        self.blind = False  # an encoder may tell what is not so
-        self.jog_asked = 0.0
-        self.stood = -1e9  # when the last state in which slides move was left
-        self.last_press = -1e9  # when a start was last asked for, by palms or from the screen
-        self.fed_badly = self.stopped = self.powerless = 0.0
-        self.announced = 0.0  # s for which the start of the spindle has stood in the snapshot
-        self.before = self.shot
-        self.executor.tick()
-
-    # --- time ---------------------------------------------------------------------------------------------
-
-    def tick(self, dt: float | None = None) -> None:
-        """One tick, and all that must hold after it."""
-        dt = self.every if dt is None else dt
-        before, place = self.shot, self.sim.machine.true_position()
-        self._setpoints(dt)
-        self.clock.advance(dt)
-        queue = self._demand()
-        self.executor.tick()
-        self._spliced(queue)
-        SEEN.ticks += 1
-        SEEN.seconds += dt
-        after = self.shot
-        SEEN.states[after.state] += 1
-        if before.state is not after.state:
-            SEEN.changes[before.state, after.state] += 1
-        for alarm in after.alarms:
-            if alarm not in before.alarms:
-                SEEN.alarms[alarm.code] += 1
-        self._check(before, after, place, dt)
-        self.pressed = self.jogged = self.homed = self.switched = False
-
-    def _demand(self) -> tuple[tuple[float, ...], tuple[float, ...], bool]:
-        axes = self.true_ports.axes
-        return *axes.demand_at(self.clock.now()), axes.sample().enabled
-
-    def _spliced(self, before: tuple[tuple[float, ...], tuple[float, ...], bool]) -> None:
-        """A tick changes neither where the setpoints are nor how fast; only power that goes may."""
-        p, v, on = self._demand()
-        if not (on and before[2]) or self._geared():
-            return
-        for axis, p0, p1, v0, v1 in zip(self.machine.axes, before[0], p, before[1], v, strict=True):
-            assert abs(p1 - p0) < 1e-6, f"{axis.name} leaps by {p1 - p0}"
-            assert abs(v1 - v0) < 1e-3 * axis.vmax + 1e-6, (
-                f"{axis.name} changes its speed at once: {v0} to {v1}"
-            )
-
-    def _setpoints(self, dt: float) -> None:
-        """What is queued for the time until the next tick: within the limits, without a leap."""
-        axes, now = self.true_ports.axes, self.clock.now()
-        if not axes.sample().enabled or self._geared():
-            return
-        steps = min(max(round(dt / FINE), 1), 60)
-        looks = [axes.demand_at(now + k * dt / steps) for k in range(steps + 1)]
-        corner = self.machine.timing.setpoint  # s in which a corner may turn
-        for (p0, v0), (p1, v1) in pairwise(looks):
-            h = dt / steps
-            for axis, a, b, va, vb in zip(self.machine.axes, p0, p1, v0, v1, strict=True):
-                assert abs(vb) <= axis.vmax * 1.001 + 1e-6, f"{axis.name} at {vb}"
-                assert abs(b - a) <= max(abs(va), abs(vb)) * h + axis.amax * h * h + 1e-6, (
-                    f"{axis.name} leaps"
-                )
-                assert abs(vb - va) <= axis.amax * 1.02 * (h + corner) + 1e-3 * axis.vmax, (
-                    f"{axis.name} at {va} then {vb}"
-                )
-
-    def _geared(self) -> bool:
-        gear = self.true_ports.gear
-        return gear is not None and gear.geared() is not None
-
-    # --- invariants ---------------------------------------------------------------------------------------
-
-    def _check(self, old: Snapshot, new: Snapshot, place: tuple[float, ...], dt: float) -> None:
-        if old.state in MOVES and new.state not in MOVES:
-            self.stood = new.t
-        told = any(re.search(pattern("executor.spindle-starts"), said) for said in old.announced)
-        self.announced = self.announced + dt if told else 0.0
-        self._nothing_moves_unasked(old, new, place, dt)
-        self._the_spindle_waits(old, new)
-        self._feeds_as_commanded(new)
-        self._known(new)
-        self._on_the_path(new)
-        self._stopped_is_off(new, dt)
-        self._power_is_seen(old, new, dt)
-        self._jog_ends(new)
-        if not self.unexpected:
-            assert all(alarm.code != "internal" for alarm in new.alarms), new.alarms
-
-    def _nothing_moves_unasked(
-        self, old: Snapshot, new: Snapshot, place: tuple[float, ...], dt: float
-    ) -> None:
-        begins = old.state not in ACTIVE or (old.state is State.HOLDING and new.state is not State.HOLDING)
-        if new.state in ACTIVE and begins:
-            assert self.pressed, f"{old.state} became {new.state} and nobody pressed a start"
-            assert old.state in STARTS_FROM, f"a cycle was started from {old.state}"
-        if new.state is State.JOG and old.state is not State.JOG:
-            assert self.jogged, f"{old.state} became a jog and nobody asked for one"
-        if new.state is State.HOME and old.state is not State.HOME:
-            assert self.homed
-        way = math.dist(self.sim.machine.true_position()[:2], place[:2])
-        if new.state not in MOVES and new.t - self.stood > SETTLES + dt:
-            # How far a slide goes behind an encoder that stands is measured in test_following_error.
-            assert way < STILL or self.blind, f"{way} mm in {new.state}"
-
-    def _the_spindle_waits(self, old: Snapshot, new: Snapshot) -> None:
-        """From no command to one: a word of the program under way, a start that was announced, the switch."""
-        if old.rpm_command != 0.0 or new.rpm_command == 0.0:
-            return
-        fresh = old.spindle_asked == 0.0 and (new.state in ACTIVE or old.state in ACTIVE or self.pressed)
-        word = any(code in new.block_text for code in ("M03", "M04")) and old.state in ACTIVE
-        announced = self.pressed and self.announced > TIME_TO_READ - 1e-6
-        switched = self.switched and new.state in BY_HAND and self.announced > TIME_TO_READ - 1e-6
-        assert fresh or word or announced or switched, (
-            f"the spindle starts by itself in {new.state}: {old.announced}"
-        )
-
-    def _feeds_as_commanded(self, new: Snapshot) -> None:
-        """A cut with the spindle or the coolant not as the program has it ends within half a second."""
-        cutting = new.state is State.RUN and not new.rapid and new.velocity > 0.05 and not new.modal.c_locked
-        bad = cutting and (
-            (
-                new.modal.spindle != 0
-                and abs(self.sim.machine.spindle_rpm()) < 0.3 * abs(new.rpm_command) - 30.0
-            )
-            or (new.modal.spindle != 0 and new.rpm_command == 0.0)
-            or (new.modal.coolant and "coolant" not in new.outputs)
-        )
-        self.fed_badly = self.fed_badly + (new.t - self.before.t) if bad else 0.0
-        self.before = new
-        assert self.fed_badly < 1.2, f"it cuts in line {new.line} at {self.sim.machine.spindle_rpm()} rpm"
-
-    def _known(self, new: Snapshot) -> None:
-        """At rest the place on the screen is the place of the slides, or the screen says that it is not."""
-        if self.blind or new.state in MOVES or new.alarms or new.state in {State.ESTOP, State.DISABLED}:
-            return
-        if new.t - self.stood > SETTLES and all(new.homed):
-            true = self.sim.machine.true_position()
-            assert max(abs(a - b) for a, b in zip(new.actual, true, strict=True)) < 0.2, (new.actual, true)
-
-    def _stopped_is_off(self, new: Snapshot, dt: float) -> None:
-        """An alarm and the E-stop leave no command to the spindle, and it comes to rest, whatever it did."""
-        off = new.state in {State.FAULT, State.ESTOP} and not self.unexpected
-        self.stopped = self.stopped + dt if off else 0.0
-        if self.stopped > 2 * dt:  # an output that cannot be read makes the picture one tick old
-            assert new.rpm_command == 0.0, f"{new.rpm_command} rpm in {new.state}"
-        if self.stopped > RUNS_OUT:
-            assert abs(self.sim.machine.spindle_rpm()) < 1.0, f"it turns in {new.state}"
-
-    def _power_is_seen(self, old: Snapshot, new: Snapshot, dt: float) -> None:
-        """Drives that are off end every state in which something may move or be started."""
-        on = self.true_ports.axes.sample().enabled
-        dark = not on and new.state not in {State.DISABLED, State.FAULT, State.ESTOP}
-        self.powerless = self.powerless + dt if dark and old.state is new.state else 0.0
-        assert self.powerless <= max(POWER_SEEN, dt), f"{new.state} without power for {self.powerless:.2f} s"
-
-    def _jog_ends(self, new: Snapshot) -> None:
-        """Nothing is jogged for longer than its lease, its step and the braking take."""
-        if self.jogged or new.state is not State.JOG:
-            self.jog_asked = new.t
-        assert new.t - self.jog_asked < LONGEST_JOG, f"jogged for {new.t - self.jog_asked:.1f} s"
-
-    def _on_the_path(self, new: Snapshot) -> None:
-        """Wherever a cycle was stopped: on a line or circle of its program."""
-        if new.state not in STOPPED or new.t - self.stood < SETTLES or new.waiting_for == "THREAD":
-            return
-        x, z = new.demand[:2]
-        off = min((_off(block, x, z) for block in self.blocks if block.moves), default=0.0)
-        assert off < ON_PATH, f"{off} mm off the path in {new.state}, line {new.line}"
-
-
-def _off(block: Block, x: float, z: float) -> float:
-    """Distance of a place from the way of a block, mm, machine coordinates."""
-    ax, az, bx, bz = block.x0 + block.offset_x, block.z0 + block.offset_z, block.mx, block.mz
-    if block.kind is Kind.ARC:
-        cx, cz = block.cx + block.offset_x, block.cz + block.offset_z
-        return abs(math.hypot(x - cx, z - cz) - math.hypot(ax - cx, az - cz))
-    long = (bx - ax) ** 2 + (bz - az) ** 2
-    part = min(max(((x - ax) * (bx - ax) + (z - az) * (bz - az)) / long, 0.0), 1.0) if long else 0.0
-    return math.hypot(x - ax - part * (bx - ax), z - az - part * (bz - az))
 
 
 class ExecutorModel(RuleBasedStateMachine):
@@ -353,8 +89,16 @@ class ExecutorModel(RuleBasedStateMachine):
 
     @rule(late=st.floats(0.05, 5.0))
     def host_is_late(self, late: float) -> None:
-        self._count("late")
+        self._count("late", harms=True)
         self.machine.tick(round(late, 3))
+
+    @rule(port=st.sampled_from(PORTS), which=st.integers(0, 7), late=st.floats(0.05, 4.0))
+    def host_stands_still_inside_a_tick(self, port: str, which: int, late: float) -> None:
+        self._count("stall inside a tick", harms=True)
+        calls = _CALLS[port]
+        self.machine.broken[port].stalls[calls[which % len(calls)]] = round(late, 3)
+        self.machine.tick()
+        self.machine.broken[port].stalls.clear()
 
     # --- the operator -------------------------------------------------------------------------------------
 
@@ -379,7 +123,7 @@ class ExecutorModel(RuleBasedStateMachine):
     @rule(late=st.floats(0.6, 3.0), jogs=st.booleans())
     def presses_while_nobody_looks(self, late: float, jogs: bool) -> None:
         """A press that waits in the queue of a stalled control, or an edge of the palms behind the stall."""
-        self._count("late press")
+        self._count("late press", harms=True)
         machine = self.machine
         if jogs:
             machine.executor.post(Jog("X", 20.0, 0.3))
@@ -412,7 +156,7 @@ class ExecutorModel(RuleBasedStateMachine):
 
     @rule(drives=st.booleans())
     def estop_and_back(self, drives: bool) -> None:
-        self._count("estop")
+        self._count("estop", harms=True)
         self.hands.press_estop()
         self.machine.tick()
         assert self.machine.state is State.ESTOP
@@ -444,7 +188,28 @@ class ExecutorModel(RuleBasedStateMachine):
     )
     def asks(self, command: Command) -> None:
         self.machine.homed = isinstance(command, Home)
+        self.machine.harmed |= command == ForceOutput("collet", False)  # no spindle starts then
         self._post(command)
+
+    @rule(
+        command=st.sampled_from([JogStop(), WheelOff(), SpindleStop(), FeedHold(), EnableDrives(), Reset()]),
+        ticks=st.integers(1, 200),
+        times=st.integers(1, 3),
+    )
+    def release_comes_late(self, command: Command, ticks: int, times: int) -> None:
+        """A key that is let go while the computer is busy: its command comes later, and more than once."""
+        self._count("late release")
+        self.machine.owed += [(ticks + each, command) for each in range(times)]
+
+    @rule(port=st.sampled_from(["", "", *PORTS]), which=st.integers(0, 7))
+    def closes(self, port: str, which: int) -> None:
+        """TurnDesk is closed in any state, one call of a driver fails once, and it is started again."""
+        self._count("closing", harms=True)
+        machine = self.machine
+        if port:
+            calls = _CALLS[port]
+            machine.broken[port].breaks[calls[which % len(calls)]] = (DriverError("the wire is out"), 1)
+        machine.close()
 
     @rule(
         name=st.sampled_from(["single_block", "optional_stop", "cycle_repeat", "no_count"]), on=st.booleans()
@@ -482,7 +247,7 @@ class ExecutorModel(RuleBasedStateMachine):
 
     @rule(off=st.integers(1, 80))
     def spindle_switch_off_and_auto(self, off: int) -> None:
-        self._count("spindle switch")
+        self._count("spindle switch", harms=True)  # a thread is lost by it
         self.hands.set_spindle_auto(False)
         self.machine.run(off * TICK)
         self.machine.switched = True
@@ -493,7 +258,7 @@ class ExecutorModel(RuleBasedStateMachine):
         which=st.sampled_from(["feed", "spindle"]), fraction=st.sampled_from([0.0, 0.01, 0.3, 0.7, 1.0, 1.0])
     )
     def turns_a_pot(self, which: str, fraction: float) -> None:
-        self._count("pot")
+        self._count("pot", harms=which == "spindle")
         (self.hands.set_feed_pot if which == "feed" else self.hands.set_spindle_pot)(fraction)
         self.machine.tick()
 
@@ -522,6 +287,8 @@ class ExecutorModel(RuleBasedStateMachine):
         if machine.state is not State.IDLE or machine.shot.alarms or not all(machine.shot.homed):
             return
         self._count("restart")
+        if not machine.shot.job:
+            return  # TurnDesk was closed, and nothing is loaded yet
         job = restart_job(machine, line)
         if job is None:
             return
@@ -542,7 +309,7 @@ class ExecutorModel(RuleBasedStateMachine):
 
     @rule(ticks=st.integers(5, 90))
     def station_is_silent(self, ticks: int) -> None:
-        self._count("silent")
+        self._count("silent", harms=True)
         self.hands.station_silent(True)
         self.machine.run(ticks * TICK)
         self.hands.station_silent(False)
@@ -550,13 +317,13 @@ class ExecutorModel(RuleBasedStateMachine):
 
     @rule(width=st.sampled_from([0.0, 0.0, 0.05, 0.6]))
     def pots_are_noisy(self, width: float) -> None:
-        self._count("noise")
+        self._count("noise", harms=True)
         self.hands.pot_noise(width)
         self.machine.tick()
 
     @rule(fraction=st.sampled_from([0.0, 0.2, 0.6, 1.0, 1.0]))
     def spindle_bogs(self, fraction: float) -> None:
-        self._count("bog")
+        self._count("bog", harms=True)
         self.hands.spindle_bog(fraction)
         self.machine.tick()
 
@@ -565,7 +332,7 @@ class ExecutorModel(RuleBasedStateMachine):
         axis=st.sampled_from(["X", "Z"]),
     )
     def breaks(self, what: str, axis: str) -> None:
-        self._count(f"breaks: {what}")
+        self._count(f"breaks: {what}", harms=what != "mend")
         hands = self.hands
         match what:
             case "jam":
@@ -595,13 +362,13 @@ class ExecutorModel(RuleBasedStateMachine):
         hands.set_input("collet_closed", True)
 
     @rule(
-        port=st.sampled_from(_PORTS),
+        port=st.sampled_from(PORTS),
         which=st.integers(0, 7),
         times=st.integers(1, 3),
         expected=st.sampled_from([True, True, True, False]),
     )
     def driver_raises(self, port: str, which: int, times: int, expected: bool) -> None:
-        self._count("driver raises")
+        self._count("driver raises", harms=True)
         calls = _CALLS[port]
         call = calls[which % len(calls)]
         error = DriverError("the wire is out; look at it") if expected else RuntimeError("unforeseen")
@@ -609,6 +376,16 @@ class ExecutorModel(RuleBasedStateMachine):
         self.machine.broken[port].breaks[call] = (error, times)
         self.machine.tick()
         self.machine.broken[port].breaks.clear()
+
+    @rule(port=st.sampled_from(PORTS), ticks=st.integers(2, 90))
+    def port_is_frozen(self, port: str, ticks: int) -> None:
+        """A cable is out: the driver goes on telling the last that it heard, and reports that it is old."""
+        self._count(f"frozen: {port}", harms=True)
+        self.machine.freeze(port)
+        for _ in range(ticks):
+            self.machine.tick()
+        self.machine.thaw()
+        self.machine.tick()
 
     # --- no state that cannot be left ---------------------------------------------------------------------
 
@@ -685,7 +462,9 @@ class ExecutorModel(RuleBasedStateMachine):
 
     # --- helpers ------------------------------------------------------------------------------------------
 
-    def _count(self, name: str) -> None:
+    def _count(self, name: str, *, harms: bool = False) -> None:
+        """``harms``: what the step does is a reason for an alarm."""
+        self.machine.harmed = self.machine.harmed or harms
         SEEN.steps += 1
         SEEN.rules[name] += 1
 

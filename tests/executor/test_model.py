@@ -1,4 +1,4 @@
-"""A seed set of the model of the executor; ``tests.benchmarks.bench_executor_model`` runs 50 000 steps."""
+"""A seed set of the model of the executor; ``tests.benchmarks.bench_executor_model`` runs 100 000 steps."""
 
 from __future__ import annotations
 

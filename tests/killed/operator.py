@@ -60,6 +60,8 @@ class Operator:
             yield True
 
     def _set_tool_nine(self) -> Iterator[bool]:
+        if 9 in self._frame.desk.book.tools:
+            return  # before he was killed
         self._key(Key.Key_F8)
         for _ in range(8):
             self._key(Key.Key_Down)

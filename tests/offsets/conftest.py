@@ -20,6 +20,7 @@ from core.executor.snapshot import Snapshot, State
 from core.interpreter.job_setup import Setup
 from core.language.source import Source
 from core.store.store import Store
+from tests.screen.yes import read
 
 LIMIT = 60.0
 
@@ -46,14 +47,25 @@ class Room:
         """F8, on the desk's book."""
         return ToolOffsets(self.desk)
 
-    def enter(self, page: SecondaryOffsets | ToolOffsets, *answers: str) -> None:
-        """Type each answer with its Return, and wait until what they change is saved."""
+    def enter(self, page: SecondaryOffsets | ToolOffsets, *answers: str, asked: bool = False) -> None:
+        """Type each answer with its Return, and wait until what they change is saved.
+
+        ``asked``: the last answer is questioned, and Y is pressed; otherwise nothing may be questioned.
+        """
         page.look(self.now[0])
         for answer in answers:
             for key in answer:
                 assert page.typed(key)
             assert page.typed("Enter")
+        assert bool(self.desk.asked) == asked, self.desk.notice
+        if asked:
+            self.confirm()
         self.settle(page)
+
+    def confirm(self) -> None:
+        """Press Y to the question about a suspicious change, a new master or an undo."""
+        read(self.desk)
+        self.desk.yes()
 
     def settle(self, page: SecondaryOffsets | ToolOffsets) -> None:
         """Wait for the disk, then look as a frame would."""

@@ -69,6 +69,7 @@ def test_lengths_radii_and_teeth_are_typed_in_millimetres(room: Room) -> None:
     row = kept(room, 20)
     assert row == MillRow(length=80.5, radius=6.0, dl=-0.02, teeth=4, life=90.0)
     page.undo()
+    room.confirm()
     settle(room, page)
     assert kept(room, 20).life == 0.0
 

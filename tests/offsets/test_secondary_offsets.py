@@ -49,9 +49,9 @@ def test_ten_small_corrections_are_one_large_one(room: Room) -> None:
 
 def test_bare_return_keeps(room: Room) -> None:
     page = room.page()
-    room.enter(page, "2", ".1", ".2", ".3")
-    room.enter(page, "2", "", ".1", "")
-    assert room.store.secondary()[2] == pytest.approx((0.05 * 25.4, 0.3 * 25.4, 0.3 * 25.4))
+    room.enter(page, "2", ".1", ".2", ".3", asked=True)
+    room.enter(page, "2", "", ".01", "")
+    assert room.store.secondary()[2] == pytest.approx((0.05 * 25.4, 0.21 * 25.4, 0.3 * 25.4))
     room.enter(page, "2", "", "", "")
     assert room.desk.notice == text("offsets.as-it-was", number=2)
     assert len(room.store.history()) == 2
@@ -66,7 +66,7 @@ def test_arithmetic_and_the_preview_of_old_and_new(room: Room) -> None:
     page.typed("+")  # half a sum: the last figure that was one
     assert page.preview == (0.0, 0.0, 0.0)
     page.typed("Back")
-    room.enter(page, "", "", "")
+    room.enter(page, "", "", "", asked=True)
     assert room.store.secondary()[1].x == pytest.approx(0.249 * 25.4)
     assert room.desk.notice == "D1 SAVED"
     assert page.old_to_new == "D1   not set  →  X +0.24900  Z +0.00000  R 0.00000"
@@ -103,7 +103,7 @@ def test_refusals_say_what_and_why_and_ask_again(room: Room, answers: tuple[str,
 def test_metric_when_the_control_is_metric(room: Room) -> None:
     room.at(metric=True)
     page = room.page()
-    room.enter(page, "1", ".02", "-.5", ".4")
+    room.enter(page, "1", ".02", "-.5", ".4", asked=True)
     assert room.store.secondary()[1] == (0.01, -0.5, 0.4)
     assert room.store.history()[0].why == "MM X .02 Z -.5 R .4"
 
@@ -130,8 +130,8 @@ def test_escape_goes_back_step_by_step(room: Room) -> None:
 
 def test_clear_asks_once_more(room: Room) -> None:
     page = room.page()
-    room.enter(page, "1", ".1", "", "")
-    room.enter(page, "9", "", ".1", "")
+    room.enter(page, "1", ".1", "", "", asked=True)
+    room.enter(page, "9", "", ".1", "", asked=True)
     assert page.typed("C")
     assert room.desk.notice == text("offsets.clear-all")
     assert page.escape()
@@ -150,13 +150,14 @@ def test_clear_asks_once_more(room: Room) -> None:
     assert room.store.secondary() == {}
     assert page.old_to_new == "2 offsets changed: F5 shows them"
     page.undo()
+    room.confirm()
     room.settle(page)
     assert sorted(room.store.secondary()) == [1, 9]
 
 
 def test_clear_is_not_taken_in_the_middle_of_an_entry(room: Room) -> None:
     page = room.page()
-    room.enter(page, "1", ".1", "", "")
+    room.enter(page, "1", ".1", "", "", asked=True)
     room.enter(page, "1")
     page.typed("C")
     page.typed("C")
@@ -167,21 +168,22 @@ def test_clear_is_not_taken_in_the_middle_of_an_entry(room: Room) -> None:
 
 def test_undo_takes_back_secondary_offsets_only(room: Room) -> None:
     page = room.page()
-    room.enter(page, "1", ".1", "", "")
+    room.enter(page, "1", ".1", "", "", asked=True)
     room.store.set_tool(1, "touched off", x=5.0).result(LIMIT)
     page.undo()
+    room.confirm()
     room.settle(page)
     assert room.store.secondary() == {}
     assert room.store.tools()[1].x == 5.0
     assert room.desk.notice == "D1 TAKEN BACK"
     page.undo()
-    room.settle(page)
-    assert room.desk.notice == text("offsets.refused", why=text("offsets.nothing-to-undo"))
+    assert not room.desk.asked
+    assert room.desk.notice == text("offsets.no-change-to-undo", row=text("offsets.this-table"))
 
 
 def test_the_history_has_time_from_to_and_reason(room: Room) -> None:
     page = room.page()
-    room.enter(page, "1", ".5-.002", "", "")
+    room.enter(page, "1", ".5-.002", "", "", asked=True)
     page.history.toggle()
     assert page.history.listed is not None
     at, which, change, why = page.history.in_words(page.history.listed[0])
@@ -196,7 +198,7 @@ def test_a_change_loads_the_program_again(room: Room) -> None:
     room.desk.session.load(Path("part.nc"), block_delete=True)
     room.desk.session.settled(LIMIT)
     page = room.page()
-    room.enter(page, "1", ".1", "", "")
+    room.enter(page, "1", ".1", "", "", asked=True)
     room.desk.session.settled(LIMIT)
     assert room.loads == ["part.nc", "part.nc"]
     assert room.desk.session.now.block_delete
@@ -214,10 +216,11 @@ def test_a_correction_while_parts_run_counts_from_the_next_one(
     room.at(state)
     room.now[0] = replace(room.now[0], cycle_repeat=repeat)
     assert text(f"offsets.prompt-{when}") in page.prompt(room.now[0])
-    room.enter(page, "1", ".1", "", "")
+    room.enter(page, "1", ".1", "", "", asked=True)
     assert room.desk.notice == f"D1 SAVED{text(f'offsets.{when}')}"
     assert room.store.secondary()[1].x == pytest.approx(0.05 * 25.4)
     page.undo()
+    room.confirm()
     room.settle(page)
     assert room.desk.notice == f"D1 TAKEN BACK{text(f'offsets.{when}')}"
 
@@ -225,7 +228,7 @@ def test_a_correction_while_parts_run_counts_from_the_next_one(
 @pytest.mark.parametrize("state", UNDER_WAY)
 def test_all_offsets_are_not_cleared_under_a_running_program(room: Room, state: State) -> None:
     page = room.page()
-    room.enter(page, "1", ".1", "", "")
+    room.enter(page, "1", ".1", "", "", asked=True)
     room.at(state)
     page.typed("C")
     page.typed("C")
@@ -268,7 +271,7 @@ def test_a_correction_at_a_stop_counts_when_the_job_has_ended(room: Room) -> Non
     page = room.page()
     room.at(State.PROGRAM_STOP)
     assert text("offsets.prompt-next-start") in page.prompt(room.now[0])
-    room.enter(page, "1", ".1", "", "")
+    room.enter(page, "1", ".1", "", "", asked=True)
     assert room.desk.notice == f"D1 SAVED{text('offsets.next-start')}"
     room.at(State.RUN)
     room.desk.look()
@@ -286,6 +289,7 @@ def test_offsets_of_a_file_are_read_only(room: Room) -> None:
     assert room.desk.notice == "READ ONLY"
     page.typed("C")
     page.undo()
+    assert not room.desk.asked
     assert room.desk.notice == "READ ONLY"
     assert page.old is None
     assert page.book.secondary.get(1) == (0.0, 0.1, 0.0)
@@ -295,7 +299,7 @@ def test_a_change_before_the_last_is_saved_is_not_taken(room: Room) -> None:
     book = OffsetBook(room.store)
     assert book.change(Kind.SECONDARY, 1, {"x": 0.1}, "one") == ""
     assert book.change(Kind.SECONDARY, 1, {"x": 0.2}, "two").startswith("STILL SAVING")
-    assert book.undo(Kind.SECONDARY).startswith("STILL SAVING")
+    assert book.undo(Kind.SECONDARY, 1, 1).startswith("STILL SAVING")
     room.store.write(lambda _connection: None).result(LIMIT)
     assert book.poll() == ""
     assert book.secondary.get(1) == (0.1, 0.0, 0.0)
@@ -312,7 +316,7 @@ def test_a_page_left_before_the_disk_answers_builds_the_program_all_the_same(roo
     room.desk.session.settled(LIMIT)
     page = room.page()
     page.look(room.now[0])
-    for key in ("1", "Enter", ".", "1", "Enter", "Enter", "Enter"):
+    for key in ("1", "Enter", ".", "0", "1", "Enter", "Enter", "Enter"):
         page.typed(key)
     page.leave()
     room.store.write(lambda _connection: None).result(LIMIT)

@@ -38,13 +38,13 @@ def write(grid: ToolOffsets, text: str) -> None:
 @pytest.mark.parametrize(
     ("diameter", "name", "typed", "mm"),
     [
-        (False, "x", "1.25", 1.25 * INCH),
-        (True, "x", "1.25", 0.625 * INCH),
+        (False, "x", "-.51", -0.51 * INCH),
+        (True, "x", "-.98", -0.49 * INCH),
         (True, "wear_x", "-.001", -0.0005 * INCH),
         (False, "wear_x", "-.001", -0.0005 * INCH),
         (True, "wear_z", "-.001", -0.001 * INCH),
         (True, "nose_radius", ".0156", 0.0156 * INCH),
-        (False, "z", "-3-.25", -3.25 * INCH),
+        (False, "z", "-3-.01", -3.01 * INCH),
     ],
 )
 def test_a_length_is_read_as_the_control_shows_it(
@@ -134,14 +134,14 @@ def test_the_master_is_chosen_and_the_others_are_shown_from_it(room: Room) -> No
     grid.turn_relative()
     assert room.desk.notice == text("offsets.no-master")
     before = {n: row.offset for n, row in room.store.tools().items()}
-    room.enter(grid, "")
+    room.enter(grid, "", asked=True)
     assert room.desk.book.master == 2
     assert {n: row.offset for n, row in room.store.tools().items()} == before
     grid.turn_relative()
     # T1 - T2: X (-.5 - 1) in, Z (-3 - -2) in
     assert (grid.cell(1, "x"), grid.cell(1, "z")) == ("−1.50000", "−1.00000")
     assert grid.cell(2, "x") == "+1.00000"
-    room.enter(grid, "")
+    room.enter(grid, "", asked=True)
     assert room.desk.book.master == 0
     grid.choose(1, 0)
     room.enter(grid, "1")
@@ -178,6 +178,7 @@ def test_no_geometry_changes_while_a_cycle_is_under_way(room: Room, state: State
     assert "UNDER WAY" in grid.prompt(room.now[0])
     grid.escape()
     grid.undo()
+    assert not room.desk.asked
     assert "UNDER WAY" in room.desk.notice
     room.settle(grid)
     assert room.store.tools() == before
@@ -273,6 +274,7 @@ def test_undo_and_history(room: Room) -> None:
     grid = at(room, 1, "wear_x")
     room.enter(grid, "-.001")
     grid.undo()
+    room.confirm()
     room.settle(grid)
     assert room.store.tools()[1].wear_x == 0.0
     assert room.desk.notice == "T1 TAKEN BACK"
@@ -292,6 +294,7 @@ def test_undo_of_half_a_tool_takes_that_back_and_no_older_change(room: Room) -> 
     room.enter(grid, "1")
     assert grid.fields.new.number == 5
     grid.undo()
+    assert not room.desk.asked
     room.settle(grid)
     assert (grid.fields.new.number, room.store.tools()) == (0, before)
     assert "TAKEN BACK" not in room.desk.notice

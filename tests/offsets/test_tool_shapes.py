@@ -162,6 +162,7 @@ def test_f3_takes_the_shape_away_after_asking_and_undo_brings_it_back(room: Room
     save(room, page)
     assert 3 not in room.store.shapes()
     page.undo()
+    room.confirm()
     save(room, page)
     assert room.store.shapes()[3].diameter == 6.35
     assert room.desk.notice == "T3 TAKEN BACK"
@@ -241,6 +242,7 @@ def test_nothing_changes_while_a_program_is_under_way(room: Room) -> None:
     assert page.text == ""
     page.remove()
     page.undo()
+    assert not room.desk.asked
     assert len(room.store.history(Kind.SHAPE)) == 2
 
 

@@ -100,6 +100,7 @@ class Day:
 
     def palms(self) -> None:
         """Both palm buttons and hands off; their relay wants them up for a while before it works again."""
+        self.checks_start()
         self.run(0.9)  # what is started was read
         for press, pause in ((QTest.keyPress, 0.1), (QTest.keyRelease, 0.4)):
             for key in (Key.Key_F11, Key.Key_F12):
@@ -134,6 +135,12 @@ class Day:
 
         self.qtbot.waitUntil(look, timeout=PATIENCE)
 
+    def checks_start(self) -> None:
+        """The first move of the next start is checked, and the control knows it."""
+        self.run(2 * TICK)
+        self.sees(lambda: self.desk.first_move is None or not self.desk.first_move.checking)
+        self.run(2 * TICK)
+
     def saved(self) -> None:
         """Wait for the disk, then look."""
         assert self.desk.book.store is not None
@@ -160,12 +167,15 @@ class Day:
 
 
 @contextmanager
-def begun(qtbot: QtBot, name: str = "", program: str = "") -> Iterator[Day]:
-    """The desk is switched on, with a program in its folder or none; put away again afterwards."""
+def begun(qtbot: QtBot, name: str = "", program: str = "", machine: str | None = None) -> Iterator[Day]:
+    """The desk is switched on, with a program in its folder or none; put away again afterwards.
+
+    ``machine`` names another machine file than the lathe's.
+    """
     if name:
         write_whole(data_folder() / "programs" / name, program.encode())
     clock, journal = StepClock(), Journal.at_home()
-    desk, executor = desk_and_executor(None, stored_offsets, clock, journal)
+    desk, executor = desk_and_executor(machine, stored_offsets, clock, journal)
     desk.hands.clock = clock.now
     window = MainWindow(Look(DARK))
     window.resize(1024, 600)

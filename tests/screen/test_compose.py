@@ -86,7 +86,7 @@ def test_offsets_of_a_file_are_shown_and_not_changed(home: Path) -> None:
     assert sorted(book.tools) == [1, 2, 3, 4, 6, 7, 8, 20]
     assert shows(book.change(Kind.TOOL, 1, {"x": 1.0}, "try"), "screen.offsets-read-only")
     assert shows(book.clear(Kind.SECONDARY, "C"), "screen.offsets-read-only")
-    assert shows(book.undo(Kind.TOOL), "screen.offsets-read-only")
+    assert shows(book.undo(Kind.TOOL, 1, 1), "screen.offsets-read-only")
     assert book.history(Kind.TOOL) == ()
     journal.close()
     assert stored_offsets() == NONE

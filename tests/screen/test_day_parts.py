@@ -43,7 +43,7 @@ def day(qtbot: QtBot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterat
         write_program(day)
         set_tools(day)
         correct(day, "-.002", ".001")
-        day.sees(lambda: day.prompt.startswith(wording("screen.to-start")))
+        day.sees(lambda: wording("screen.to-start") in day.prompt)
         yield day
 
 
@@ -125,6 +125,7 @@ def test_a_correction_that_cannot_be_run_stops_at_the_end_of_the_part(day: Day) 
     day.until(lambda: made(day) == "1")
     day.key(Key.Key_F9)
     day.enter("1", "-9", "", "")
+    yes(day.window)
     day.sees(lambda: begins(day.prompt, "screen.no-next-part"))
     day.key(Key.Key_Escape)  # pressed as the proof ends: it must not remove what nobody has read
     assert begins(day.prompt, "screen.no-next-part")

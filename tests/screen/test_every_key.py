@@ -1,173 +1,80 @@
 """Every key on every page in every state of the machine: what it changes is what the page offers.
 
-What a key posts to the control or does at the station is recorded and not carried out, so the machine stays
-in its state. Keys arrive as the platform sends them, through the keyboard layer.
+A page offers the labels of its function keys that are not dim, the lamps that show their key, and what its
+prompt names. Keys arrive as the platform sends them, through the keyboard layer.
 """
 
 from __future__ import annotations
 
+import re
 import string
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from PySide6.QtCore import QCoreApplication, QEvent, Qt
-from PySide6.QtGui import QKeyEvent
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from app.editor.editor import Stage
-from app.editor.editor_view import EditorPage
+from app.desk.data_folder import data_folder
+from app.desk.prompt_line import MOVING, Sort
+from app.jog import hand_functions
+from app.programs.whole_file import write_whole
 from app.screen import page_table
+from app.screen.keys import OF_AUTOMATIC
 from app.screen.page_table import pages_of
-from core.executor.commands import (
-    ConfirmStart,
-    CycleStart,
-    FeedHold,
-    GiveProof,
-    LoadJob,
-    Prepare,
-    Renew,
-    SetSwitch,
-    UseOffsets,
-)
-from core.executor.executor import Executor
-from core.executor.snapshot import State
-from drivers.lookalikes.plant_hands import PlantHands
-from tests.screen.chapters import drives_on
+from core.executor.snapshot import BY_HAND, State
 from tests.screen.day import Day, Key, begun
+from tests.screen.jog.bench import shipped
+from tests.screen.machine_states import MACHINES, STATES
+from tests.screen.typist import CTRL, NONE, SHIFT, Stroke, Typist, record
 
-TEXT = "G90G94F1\nX1Z1\nX0Z0\nM30\n"
-NONE = Qt.KeyboardModifier.NoModifier
-SIGNS = "+-,./ *()0123456789"
-FUNCTION_KEYS = tuple(Key(Key.Key_F1 + n) for n in range(10))
-STATION = ("press_estop", "press_hold", "set_spindle_auto", "press_left", "press_right")
-QUIET = (ConfirmStart, Prepare, GiveProof, LoadJob, Renew, UseOffsets)  # of pages that open, and of workers
-
-
-@dataclass
-class Typist:
-    """Types single keys, and notes what each of them does."""
-
-    day: Day
-    done: list[object] = field(default_factory=list)
-
-    def press(self, key: int, text: str = "") -> list[object]:
-        """Press and release a key where the platform sends keys; return what it did."""
-        self.done.clear()
-        self.day.desk.hands.estop_pressed = False  # it was recorded, and is not pressed
-        knobs = self._knobs()
-        for kind in (QEvent.Type.KeyPress, QEvent.Type.KeyRelease):
-            QCoreApplication.sendEvent(self.day.window.windowHandle(), QKeyEvent(kind, key, NONE, text))
-        found = [each for each in self.done if not isinstance(each, QUIET)]
-        return found + [name for name, now in self._knobs().items() if now != knobs[name]]
-
-    def character(self, text: str) -> list[object]:
-        """Type a character."""
-        return self.press(ord(text.upper()), text)
-
-    def _knobs(self) -> dict[str, object]:
-        hands, desk = self.day.desk.hands, self.day.desk
-        return {
-            "feed_pot": hands.feed_pot.wanted,
-            "spindle_pot": hands.spindle_pot.wanted,
-            "settings": desk.settings.now,
-            "block_delete": desk.session.now.block_delete,
-        }
-
-    def opens(self, name: str) -> bool:
-        """Open a page afresh; False where it does not open in this state."""
-        frame = self.day.frame
-        self.day.desk.clear()
-        if isinstance(frame.page, EditorPage):
-            self._leaves_editor(frame.page)
-        elif frame.page.NAME != page_table.AUTOMATIC:
-            frame.page.escape()
-            frame.go(page_table.AUTOMATIC)
-        frame.log.hide()
-        frame.automatic.files.dismiss()
-        opened = frame.page.NAME == page_table.AUTOMATIC and frame.go(name)
-        self.day.window.refresh()
-        return opened
-
-    def _leaves_editor(self, page: EditorPage) -> None:
-        """Leave without saving what was typed."""
-
-        def left() -> bool:
-            editor = page.editor
-            if editor.stage is Stage.OFFERED:
-                editor.abort()
-            elif editor.stage is Stage.NAMING:
-                editor.keep_no_name()
-            elif editor.stage is Stage.OPEN:
-                page.abandon()
-                page.answer()
-            return self.day.frame.page is not page
-
-        self.day.sees(left)
-
-    def fresh(self, name: str, has_field: bool) -> None:
-        """Make up for what the last key opened."""
-        frame = self.day.frame
-        self.day.desk.clear()
-        if (frame.page.NAME, frame.has_field()) != (name, has_field):
-            self.opens(name)
+SIGNS = "+-,./ *()"
+EDITING = {"Up": "", "Down": "", "Left": "", "Right": "", "PageUp": "", "PageDown": "", "Home": "", "End": ""}
+EDITING |= {"Return": "\r", "Backspace": "\b", "Delete": "\x7f", "Tab": "\t", "Insert": "", "Escape": "\x1b"}
+STOPS = {"h": "FeedHold", " ": "FeedHold", "e": "press_estop"}  # where no entry has the keyboard
+EVERYWHERE = {"+": "feed_pot", "-": "feed_pot", ",": "spindle_pot", ".": "spindle_pot", "t": "setting theme"}
+LAMPS = {"S": "single_block", "O": "optional_stop", "C": "cycle_repeat", "P": "no_count", "/": "load"}
+LAMPS |= {"A": "set_spindle_auto", "D": "EnableDrives", "R": "Reset"}
+LABELS = {
+    "READOUT": {"setting readout"},
+    "DRIVES": {"EnableDrives"},
+    "RESET": {"Reset"},
+    "SPN STOP": {"SpindleStop"},
+    "SAVE": {"file", "store"},
+    "SAV+MENU": {"file", "store"},
+    "SAV+LOAD": {"file", "store", "load"},
+    **{label: {"store"} for label in ("HERE", "UNDO", "IN FORCE", "TOUCH", "TOUCH L")},
+}
+"""What a function key may change, by its label; any other changes what is seen, and nothing else."""
+ALL = len(MACHINES)
+PALMS = frozenset({"press_left", "press_right", "CycleStart"})
 
 
-def record(monkeypatch: pytest.MonkeyPatch, typists: list[Typist]) -> None:
-    """Have everything recorded and not carried out from the moment on in which somebody types."""
-    for kind, name in ((Executor, "post"), *((PlantHands, each) for each in STATION)):
-        monkeypatch.setattr(kind, name, _recorded(getattr(kind, name), name, typists))
+def _strokes() -> Iterator[Stroke]:
+    for letter in string.ascii_lowercase:
+        key = ord(letter.upper())
+        yield Stroke(letter, key, letter)
+        yield Stroke(letter, key, letter.upper(), SHIFT)
+        yield Stroke(letter, key, "", CTRL)
+    for sign in string.digits + SIGNS:
+        yield Stroke(sign, ord(sign), sign)
+    yield Stroke(" ", Key.Key_Space, "", CTRL)
+    for modifiers in (NONE, SHIFT, CTRL):
+        for n in range(12):
+            yield Stroke(f"F{n + 1}", Key.Key_F1 + n, "", modifiers)
+        for name, text in EDITING.items():
+            yield Stroke(name, Key.__members__[f"Key_{name}"], text, modifiers)
+        yield Stroke("Pause", Key.Key_Pause, "", modifiers)
+        yield Stroke("ScrollLock", Key.Key_ScrollLock, "", modifiers)
 
 
-def _recorded(does: Callable[..., None], name: str, typists: list[Typist]) -> Callable[..., None]:
-    def call(this: object, *values: object) -> None:
-        if typists:
-            typists[0].done.append(values[0] if name == "post" else name)
-        else:
-            does(this, *values)
-
-    return call
-
-
-def at_rest(day: Day) -> None:
-    drives_on(day)
-
-
-def loaded(day: Day) -> None:
-    drives_on(day)
-    day.key(Key.Key_F2)
-    day.type("slow")
-    day.key(Key.Key_Return)
-    day.sees(lambda: day.prompt.endswith("(F11 + F12)"))
-
-
-def running(day: Day) -> None:
-    loaded(day)
-    day.palms()
-    day.reaches(State.RUN)
-
-
-def in_hold(day: Day) -> None:
-    running(day)
-    day.key(Key.Key_Pause)
-    day.desk.feed_hold()
-    day.reaches(State.HOLD)
-
-
-def stopped(day: Day) -> None:
-    running(day)
-    day.desk.estop()
-    day.reaches(State.ESTOP)
-
-
-def off(day: Day) -> None:
-    day.reaches(State.DISABLED)
-
-
-STATES = {"off": off, "rest": at_rest, "run": running, "hold": in_hold, "estop": stopped}
-PAGES = tuple(entry.name for entry in pages_of("omniturn"))
+STROKES = tuple(_strokes())
+FEWER = tuple(each for each in STROKES if each.modifiers is not SHIFT or len(each.name) > 1)
+"""Without capitals: for the editor, in which every key takes longer, and for states like others."""
+SOME = frozenset({State.IDLE, State.RUN, State.JOG})  # on the other machines
+EVERY = [(kind, state) for kind in MACHINES for state in STATES if kind == "omniturn" or state in SOME]
+BY_MACHINE = frozenset({page_table.AUTOMATIC, page_table.JOG, page_table.MDI, page_table.SEARCHTO})
+"""Pages of all machines that are not the same on each."""
 
 
 @pytest.fixture
@@ -180,91 +87,240 @@ def typists(monkeypatch: pytest.MonkeyPatch) -> list[Typist]:
 
 @pytest.fixture
 def day(
-    qtbot: QtBot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, typists: list[Typist]
+    request: pytest.FixtureRequest,
+    qtbot: QtBot,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    typists: list[Typist],
 ) -> Iterator[Day]:
+    """A machine with three programs, in the state that the test names."""
+    kind, state = request.param
     monkeypatch.setenv("TURNDESK_HOME", str(tmp_path))
-    with begun(qtbot, "slow.nc", TEXT) as day:
+    programs = MACHINES[kind]
+    for name, text in programs.texts.items():
+        write_whole(data_folder() / "programs" / f"{name}.{programs.ending}", text.encode())
+    machine = shipped(tmp_path, absolute=False) if state is State.HOME else programs.machine
+    with begun(qtbot, machine=machine) as day:
         day.sees(lambda: QApplication.focusWindow() is day.window.windowHandle())
+        STATES[state](day)
+        assert day.shot.state is state
         yield day
         typists.clear()
 
 
-def changes_a_cycle(done: list[object]) -> list[object]:
-    """Of what a key did, that which changes how a cycle runs."""
-    found = ("feed_pot", "spindle_pot", "block_delete", *STATION)
-    return [each for each in done if isinstance(each, SetSwitch | CycleStart) or each in found]
+# --- what is offered --------------------------------------------------------------------------------------
 
 
-def faults_of_characters(typist: Typist, name: str) -> list[str]:
-    """What is wrong about letters, figures and signs on this page."""
-    faults: list[str] = []
-    frame = typist.day.frame
-    has_field = frame.has_field()
-    if frame.look.caret is not frame.page.has_field():
-        faults.append(f"{name}: a caret without an entry, or an entry without its caret")
-    for text in string.ascii_lowercase + SIGNS:
-        typist.fresh(name, has_field)
-        done = typist.character(text)
-        stop = {"h": FeedHold, " ": FeedHold, "e": "press_estop"}.get(text)
-        if has_field and (done or name != frame.page.NAME):
-            faults.append(f"{name}: {text!r} is no text: {done} {frame.page.NAME}")
-        elif not has_field and stop is not None and not _does(done, stop):
-            faults.append(f"{name}: {text!r} stops nothing")
-        elif name != page_table.AUTOMATIC and (text.isalpha() or text == "/") and _switches(done):
-            faults.append(f"{name}: {text!r} changes the cycle: {done}")
-    typist.fresh(name, has_field)
-    return faults
+def offered(day: Day, stroke: Stroke) -> set[str]:
+    """What a key may change here, as the screen says it."""
+    name = stroke.name
+    always = {
+        "Pause": {"FeedHold"},
+        "ScrollLock": {"press_estop"},
+        "Escape": {"FeedHold"} if day.shot.state in MOVING else set(),
+        **dict.fromkeys(("F11", "F12"), PALMS if day.frame.page.STARTS else frozenset()),
+    }
+    if name in always:
+        return set(always[name])
+    if name[0] == "F" and len(name) > 1:
+        return _of_label(day, int(name[1:])) if stroke.modifiers is NONE else set()
+    return _of_entry(day, stroke) if day.frame.has_field() else _of_letter(day, stroke)
 
 
-def _switches(done: list[object]) -> bool:
-    return bool([each for each in changes_a_cycle(done) if each not in {"press_estop", "press_hold"}])
+def _of_letter(day: Day, stroke: Stroke) -> set[str]:
+    """Of a key where no entry has the keyboard."""
+    frame, page, name = day.frame, day.frame.page, stroke.name
+    if name in STOPS:
+        return {STOPS[name]}
+    if page.NAME == page_table.JOG and (found := _of_jog(day, name)):
+        return found
+    if stroke.modifiers is not NONE:
+        return set()
+    lit = {lamp.key for lamp in frame.strip.lamps} - frame.strip.mute
+    lit |= OF_AUTOMATIC if page is frame.automatic else set()
+    assert frame.dock is not None
+    lit |= {"A"} - frame.dock.mute
+    lamps = {LAMPS[name.upper()]} if name.upper() in lit & LAMPS.keys() else set()
+    return lamps | ({EVERYWHERE[name]} if name in EVERYWHERE else set())
 
 
-def _does(done: list[object], what: object) -> bool:
-    return what in done or any(isinstance(what, type) and isinstance(each, what) for each in done)
+def _of_label(day: Day, number: int) -> set[str]:
+    if f"F{number}" in day.frame.keys.barred:
+        return set()
+    return LABELS.get(day.frame.keys.labels[number - 1], set())
 
 
-def faults_of_keys(typist: Typist, name: str, state: str) -> list[str]:
-    """What is wrong about function keys, Esc and the two keys that stop."""
-    faults: list[str] = []
-    frame, has_field = typist.day.frame, typist.day.frame.has_field()
-    for number, key in enumerate(FUNCTION_KEYS):
-        typist.fresh(name, has_field)
-        offered = frame.page.labels()[number]
-        done = typist.press(key)
-        if not offered and (done or name != frame.page.NAME):
-            faults.append(f"{name}: F{number + 1} has no label and does {done}, {frame.page.NAME}")
-        if _does(done, FeedHold) or _does(done, CycleStart) or "press_estop" in done:
-            faults.append(f"{name}: F{number + 1} does {done}")
-    for key, stop in ((Key.Key_Pause, FeedHold), (Key.Key_ScrollLock, "press_estop")):
-        typist.fresh(name, has_field)
-        if not _does(typist.press(key), stop):
-            faults.append(f"{name}: {key} does not stop")
-    typist.fresh(name, has_field)
-    offers = "ESC" in frame.page.prompt().upper().replace("ESC FOR FEED HOLD", "")
-    held = _does(typist.press(Key.Key_Escape), FeedHold)
-    if held and (offers or state != "run"):
-        faults.append(f"{name}: Esc holds, offered is {frame.page.prompt()}")
-    if held and name != frame.page.NAME:
-        faults.append(f"{name}: Esc holds and leaves the page")
-    return faults
+def _of_entry(day: Day, stroke: Stroke) -> set[str]:
+    """Return, where the prompt names it; Ctrl+S of the editor."""
+    if stroke.name == "Return" and "RETURN" in f"{day.frame.page.prompt()} {day.frame.prompt.state}":
+        return {"load", "store"}
+    return {"file", "store"} if day.frame.page.NAME == page_table.EDITOR and stroke.name == "s" else set()
 
 
-@pytest.mark.parametrize("state", STATES)
-def test_every_key_does_what_the_page_offers(day: Day, state: str, typists: list[Typist]) -> None:
-    STATES[state](day)
+def _of_jog(day: Day, name: str) -> set[str]:
+    """Arrows while slides may be moved by hand, and what stops the spindle."""
+    if hand_functions.KEYS.get(name) == hand_functions.STOP:
+        return {"SpindleStop"}
+    directions = {each.key for each in getattr(day.frame.page, "model").directions}  # noqa: B009
+    return {"Jog", "JogStep"} if name in directions and day.shot.state in BY_HAND else set()
+
+
+# --- what is wrong ----------------------------------------------------------------------------------------
+
+
+def faults_of_page(typist: Typist, name: str) -> Iterator[str]:
+    """What keys change that the page does not offer, and offer without doing it."""
+    frame, face = typist.day.frame, typist.face
+    whole = typist.day.shot.state in {State.IDLE, State.RUN} and name != page_table.EDITOR
+    for stroke in STROKES if whole else FEWER:
+        if typist.face != face:
+            typist.opens(name)
+        typist.clear()
+        if frame.look.caret is not frame.page.has_field():
+            yield f"{name}: a caret without an entry, or an entry without its caret"
+        for fault in _faults_of_stroke(typist, name, stroke):
+            yield f"{name}: {stroke.modifiers.name} {stroke.name} {fault}"
+
+
+def _faults_of_stroke(typist: Typist, name: str, stroke: Stroke) -> Iterator[str]:
+    day, frame = typist.day, typist.day.frame
+    may, must, has_field = offered(day, stroke), _must(day, stroke), frame.has_field()
+    label, barred = _label(frame.keys.labels, stroke), stroke.name in frame.keys.barred
+    done = typist.press(stroke)
+    left = name != frame.page.NAME
+    if left:
+        done -= {"JogStop"}
+    if done - may:
+        yield f"changes {done - may}"
+    if left and has_field and len(stroke.name) == 1 and stroke.modifiers is NONE:
+        yield "is no text"
+    if must - done:
+        yield f"does not do {must}"
+    refused = bool(day.desk.answers.answer) and day.desk.answers.sort is Sort.ANSWER
+    if label == "" and (left or done):
+        yield "has no label"
+    if label and refused is not barred:
+        yield f"{label} is {'dim' if barred else 'offered'}: {day.desk.notice}"
+
+
+def _must(day: Day, stroke: Stroke) -> set[str]:
+    """What a key has to do here: what stops the machine, and what is drawn at the station."""
+    if stroke.name in {"Pause", "ScrollLock"}:
+        return {"FeedHold" if stroke.name == "Pause" else "press_estop"}
+    if not day.frame.has_field() and stroke.name in STOPS:
+        return {STOPS[stroke.name]}
+    dock = day.frame.dock
+    drawn = dock is not None and stroke.name == "a" and "A" not in dock.mute
+    return {"set_spindle_auto"} if drawn and stroke.modifiers is NONE else set()
+
+
+def _label(labels: tuple[str, ...], stroke: Stroke) -> str | None:
+    """The label of a function key; None of any other key."""
+    number = stroke.name[1:] if stroke.name[0] == "F" and stroke.modifiers is NONE else ""
+    return labels[int(number) - 1] if number.isdecimal() and int(number) <= len(labels) else None
+
+
+WORDS = "SCROLL LOCK|PALM BUTTONS|CYCLE START|PAUSE|ESC|RETURN|ENTER|HOME"
+NAMED = re.compile(rf"\b(F\d+|{WORDS})\b|(?<!-)\b([B-Z])\b(?![-'])")
+KEYS = {"PAUSE": "Pause", "SCROLL LOCK": "ScrollLock", "ESC": "Escape", "ENTER": "Return", "RETURN": "Return"}
+KEYS |= {"HOME": "Home", "PALM BUTTONS": "F12", "CYCLE START": "F12"}
+NO_KEYS = re.compile(
+    r"[A-Z]( AND [A-Z])* NOT HOMED|U WRITES HERE|FOR HOME|NEXT CYCLE START|THEN .*"
+    r"|(?<=F1), F\d|\(F11 \+ F12\)"
+)
+AFTER_TYPING = {"Return", "F2"}  # of a prompt that says TYPE
+
+
+def named_keys(prompt: str) -> set[str]:
+    """The keys that a prompt offers now; not those of a later step, or of what is typed first."""
+    clauses = (NO_KEYS.sub("", clause) for clause in re.split(r"[;·]", prompt))
+    found = {word or letter for clause in clauses for word, letter in NAMED.findall(clause)}
+    keys = {KEYS.get(each, each if each[0] == "F" and len(each) > 1 else each.lower()) for each in found}
+    return keys - AFTER_TYPING if "TYPE" in prompt else keys
+
+
+def faults_of_prompt(typist: Typist, name: str) -> Iterator[str]:
+    """Keys that the prompt line offers, and that are refused or are text."""
+    frame, desk = typist.day.frame, typist.day.desk
+    prompt = frame.prompt.state
+    by_name = {each.name: each for each in STROKES if each.modifiers is NONE}
+    for key in sorted(named_keys(prompt)):
+        typist.opens(name)
+        what = f"{name}: {key} is offered by {prompt!r}"
+        if len(key) == 1 and frame.has_field():
+            yield f"{what} and is text"
+        palms = by_name[key].name == "F12"
+        typist.press(by_name[key])
+        if palms and desk.barred():
+            yield f"{what} and is refused: {desk.barred()}"
+        elif not palms and desk.answers.answer and desk.answers.sort is Sort.ANSWER:
+            yield f"{what} and is refused: {desk.answers.answer}"
+
+
+@pytest.mark.parametrize("day", EVERY, indirect=True, ids="-".join)
+def test_every_key_does_what_the_page_offers(day: Day, typists: list[Typist]) -> None:
     typist = Typist(day)
     typists.append(typist)
     faults: list[str] = []
     seen: list[str] = []
-    for name in PAGES:
-        if not typist.opens(name):
+    for entry in pages_of(day.desk.language):
+        own = day.desk.language == "omniturn" or entry.name in BY_MACHINE or len(entry.languages) < ALL
+        if not own or not typist.opens(entry.name):
             continue
-        seen.append(name)
-        faults += faults_of_characters(typist, name)
-        if typist.opens(name):
-            faults += faults_of_keys(typist, name, state)
+        seen.append(entry.name)
+        faults += faults_of_prompt(typist, entry.name)
+        typist.opens(entry.name)
+        faults += faults_of_page(typist, entry.name)
+        assert day.frame.dock is not None
+        if typist.opens(entry.name) and day.frame.dock.barred is not bool(day.desk.barred()):
+            faults.append(f"{entry.name}: the palm buttons are not as they are drawn")
     typist.opens(page_table.AUTOMATIC)
     assert faults == [], "\n".join(faults)
-    assert {page_table.JOG, *({page_table.EDITOR} if day.shot.program else ())} <= set(seen)
-    assert {page_table.PROGRAMS, page_table.SECCMP, page_table.TOOLS, page_table.SPECIAL} < set(seen)
+    assert {page_table.AUTOMATIC, page_table.JOG} < set(seen)
+
+
+# --- what a prompt offers is carried out ------------------------------------------------------------------
+
+
+def _refused(day: Day, heard: list[str]) -> list[str]:
+    return [*heard, day.shot.start_refused] if day.shot.start_refused else heard
+
+
+ENDS = {
+    State.DISABLED: ("D", {State.IDLE}),
+    State.FAULT: ("R", {State.DISABLED, State.IDLE}),
+    State.HOLD: ("palms", {State.RUN, State.WAIT}),
+    State.BLOCK_END: ("palms", {State.RUN, State.WAIT, State.BLOCK_END, State.PROGRAM_STOP}),
+    State.PROGRAM_STOP: ("palms", {State.RUN, State.WAIT}),
+    State.IDLE: ("palms", {State.RUN, State.WAIT}),
+    State.RUN: ("Pause", {State.HOLD, State.HOLDING}),
+    State.WAIT: ("Pause", {State.HOLD, State.HOLDING}),
+    State.HOLDING: ("Pause", {State.HOLD}),
+    State.JOG: ("Pause", {State.IDLE}),
+    State.HOME: ("H", {State.IDLE}),
+    State.ESTOP: ("Y", {State.DISABLED}),
+}
+"""The key that the Automatic page offers in each state, and the states that follow."""
+
+
+@pytest.mark.parametrize("day", [("omniturn", state) for state in STATES], indirect=True, ids=lambda e: e[1])
+def test_the_control_does_what_the_prompt_offers(day: Day, monkeypatch: pytest.MonkeyPatch) -> None:
+    key, states = ENDS[day.shot.state]
+    heard: list[str] = []
+    before = day.desk.answers.hear
+    monkeypatch.setattr(
+        type(day.desk.answers),
+        "hear",
+        lambda _self, event: heard.append(event.text) if event.kind == "refused" else before(event),
+    )
+    typist = Typist(day, recorded=False)
+    if key == "palms":
+        day.palms()
+    elif key == "Y":
+        typist.press(Stroke("u", Key.Key_U, "u"))
+        day.run(0.6)
+        typist.press(Stroke("y", Key.Key_Y, "y"))
+    else:
+        typist.press(Stroke(key, Key.__members__[f"Key_{key}"]))
+    day.reaches(*states)
+    assert _refused(day, heard) == []

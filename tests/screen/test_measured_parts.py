@@ -212,7 +212,7 @@ def test_a_reading_is_taken_out(day: Day) -> None:
     parts(day, 1)
     measured(day, ".5004")
     day.key(Key.Key_Escape)
-    day.key(Key.Key_F4)
+    day.key(Key.Key_F9)
     yes(day.window)
     day.sees(lambda: cells(day)[0][3] == "")
 
@@ -233,7 +233,8 @@ def test_the_correction_goes_the_way_of_a_typed_one_and_back(day: Day) -> None:
     assert day.store.history(limit=1)[0].why == wording(
         "measure.reason-of-correction", name="SPIGOT", mean="0.50120", count=2, change="−0.00060"
     )
-    day.key(Key.Key_F9)
+    day.key(Key.Key_F4)
+    yes(day.window)
     day.sees(lambda: not day.desk.book.busy)
     assert day.store.tools()[1].wear_x == 0.0
 
@@ -314,7 +315,7 @@ def test_what_another_hand_changed_is_not_taken_back_here(day: Day) -> None:
     yes(day.window)
     day.sees(lambda: not day.desk.book.busy)
     day.store.set_tool(1, "by hand", wear_z=0.01).result(60)
-    day.key(Key.Key_F9)
+    day.key(Key.Key_F4)
     assert shows(day.prompt, "measure.another-change-after")
     assert day.store.tools()[1].wear_z == 0.01
 
@@ -324,7 +325,7 @@ def test_without_readings_there_is_no_proposal(day: Day) -> None:
     section(day, READINGS)
     day.key(Key.Key_F8)
     assert shows(day.prompt, "measure.none-since-correction")
-    day.key(Key.Key_F9)
+    day.key(Key.Key_F4)
     assert shows(day.prompt, "measure.no-correction-here")
     day.key(Key.Key_F5)
     assert shows(day.prompt, "measure.no-gauge")
@@ -540,6 +541,7 @@ def test_a_secondary_offset_is_corrected_as_a_radius(day: Day) -> None:
     day.sees(lambda: not day.desk.book.busy)
     assert day.store.secondary()[4].x == pytest.approx(-0.0003 * 25.4)
     day.sees(lambda: settled(day))
-    day.key(Key.Key_F9)
+    day.key(Key.Key_F4)
+    yes(day.window)
     day.sees(lambda: not day.desk.book.busy)
     assert 4 not in day.store.secondary()

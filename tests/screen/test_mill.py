@@ -266,7 +266,7 @@ def test_the_jog_page_of_a_mill_sets_no_tool(mill: Mill) -> None:
     page = frame.page
     assert isinstance(page, JogPage)
     assert page.labels() == (
-        *("MENU", "STEP", "SPEED", "READOUT", "3D-ROT", "", "ALARMS", "TOOLS", "PRESETS", ""),
+        *("MENU", "STEP", "SPEED", "", "3D-ROT", "", "ALARMS", "TOOLS", "PRESETS", "READOUT"),
     )
     assert (page.mill.isVisible(), page.tool.isVisible(), page.asked.isVisible()) == (True, False, False)
     for key in (Key.Key_T, Key.Key_X, Key.Key_W, Key.Key_M, Key.Key_F6):

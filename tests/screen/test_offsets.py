@@ -120,7 +120,7 @@ def test_clear_asks_once_and_undo_brings_everything_back(hands: Hands, store: St
     hands.key(Key.Key_F9)
     page = page_of(hands)
     for number in ("1", "32"):
-        answer(hands, number, ".1", "", "")
+        answer(hands, number, ".005", "", "")
         hands.sees(
             lambda: not page.model.book.busy and page.asked.asked.question == wording("screen.offset-number")
         )
@@ -134,6 +134,7 @@ def test_clear_asks_once_and_undo_brings_everything_back(hands: Hands, store: St
     yes(hands.window)
     hands.sees(lambda: page.table.offsets == {})
     hands.key(Key.Key_F4)
+    yes(hands.window)
     hands.sees(lambda: sorted(page.table.offsets) == [1, 32])
 
 
@@ -161,7 +162,7 @@ def test_a_correction_while_a_part_runs_is_proved_meanwhile(hands: Hands, store:
     loads = sum(isinstance(command, LoadJob) for command in hands.machine.posted)
     hands.key(Key.Key_F9)
     hands.sees(lambda: begins(hands.prompt(), "screen.running-part-keeps-offsets"))
-    answer(hands, "1", ".1", "", "")
+    answer(hands, "1", ".005", "", "")
     hands.sees(
         lambda: (
             hands.prompt() == wording("screen.saved", names="D1") + wording("screen.counts-from-next-start")
@@ -173,13 +174,13 @@ def test_a_correction_while_a_part_runs_is_proved_meanwhile(hands: Hands, store:
     assert ready.job is not None
     assert ready.proof is not None
     assert (ready.proof.digest, ready.proof.errors) == (ready.job.digest, ())
-    assert ready.job.setup.secondary[1].x == pytest.approx(0.05 * 25.4)
+    assert ready.job.setup.secondary[1].x == pytest.approx(0.0025 * 25.4)
     assert sum(isinstance(command, LoadJob) for command in hands.machine.posted) == loads
     hands.machine.idle()  # a machine that did not take it up: it is read anew
     hands.sees(lambda: sum(isinstance(c, LoadJob) for c in hands.machine.posted) == loads + 1)
     hands.sees(lambda: hands.desk.session.now.phase is Phase.READY)
     used = [command for command in hands.machine.posted if isinstance(command, UseOffsets)]
-    assert used[-1].secondary[1].x == pytest.approx(0.05 * 25.4)
+    assert used[-1].secondary[1].x == pytest.approx(0.0025 * 25.4)
 
 
 def renewals(hands: Hands) -> list[Renew]:
@@ -232,6 +233,7 @@ def test_wear_between_two_parts(hands: Hands, store: Store) -> None:
     hands.sees(lambda: store.tools()[1].wear_x == pytest.approx(-0.00035 * 25.4))
     hands.sees(lambda: in_force(hands) == pytest.approx(-12.7 - 0.00035 * 25.4))
     hands.key(Key.Key_F4)
+    yes(hands.window)
     hands.sees(lambda: store.tools()[1].wear_x == pytest.approx(-0.00025 * 25.4))
 
 
@@ -290,6 +292,7 @@ def test_a_finger_alone_enters_an_offset(hands: Hands, store: Store) -> None:
     for key in (point, two, enter, enter, enter):
         spot, _press = page.pad._places[key]
         QTest.mouseClick(page.pad, Qt.MouseButton.LeftButton, pos=QPoint(*map(int, spot.center().toTuple())))
+    yes(hands.window)
     hands.sees(lambda: 17 in page.table.offsets)
     assert store.secondary()[17].x == pytest.approx(0.1 * 25.4)
 

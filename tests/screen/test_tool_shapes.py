@@ -165,6 +165,7 @@ def test_f3_asks_before_it_forgets(hands: Hands, store: Store) -> None:
     yes(hands.window)
     hands.sees(lambda: page.model.row is None)
     hands.key(Key.Key_F4)
+    yes(hands.window)
     hands.sees(lambda: page.model.row == ShapeRow("turning", insert="CNMG432"))
 
 

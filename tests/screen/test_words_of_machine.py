@@ -55,7 +55,7 @@ def test_the_spindle_is_told_as_the_language_writes_it(language: str, words: tup
     ("name", "switched", "asked"),
     [
         ("gt75", {"coolant": "M08 M09", "collet": "M12 M13"}, {"TB2-5": "M91 M92", "guard": "GUARD"}),
-        ("sinumerik-live", {"coolant": "M8 M9", "collet": ""}, {"guard": ""}),
+        ("sinumerik-live", {"coolant": "M8 M9", "collet": ""}, {"guard": "GUARD"}),
         ("ac-table-mill", {"coolant": "M8 M9"}, {}),
     ],
 )
@@ -71,13 +71,14 @@ def test_outputs_are_told_with_the_codes_that_this_machine_reads(
     assert name == "gt75" or not any(code.startswith("M9") for code in inputs.values())
 
 
-def test_the_guard_is_asked_for_where_it_stops_the_cycle(hands: Hands) -> None:
+@pytest.mark.parametrize(("stops", "asked"), [(True, "GUARD"), (False, "")])
+def test_the_guard_is_asked_for_where_it_stops_the_cycle(hands: Hands, stops: bool, asked: str) -> None:
     machine = shipped_machine("gt75")
-    interlocks = replace(machine.interlocks, guard_stops=True)
+    interlocks = replace(machine.interlocks, guard_stops=stops)
     section = InputsOutputs(hands.desk, replace(machine, interlocks=interlocks))
     section.keys()["F4"].action()
     inputs = {row.cells[0]: row.cells[3] for row in section.sheet(Snapshot()).rows}
-    assert inputs["guard"] == "GUARD"
+    assert inputs["guard"] == asked
 
 
 def test_a_feature_is_corrected_by_what_this_machine_has(

@@ -96,6 +96,7 @@ def test_undo_clear_and_history(hands: Hands, store: Store) -> None:
     hands.sees(lambda: store.zero_offsets() == {})
     hands.sees(lambda: not page.model.book.busy and page.table.rows == {})
     hands.key(Key.Key_F4)
+    yes(hands.window)
     hands.sees(lambda: store.zero_offsets() == {54: ZeroRow(x=7.0)})
     hands.sees(lambda: hands.prompt() == wording("screen.taken-back", names="G54"))
     hands.key(Key.Key_F5)

@@ -41,6 +41,13 @@ def kept(operator: Operator, what: Callable[[Store], bool]) -> None:
     operator.until(there, f"kept: {what}")
 
 
+def means(operator: Operator) -> None:
+    """Y to the question about a large change."""
+    question = fragment("offsets.suspicious")
+    operator.sees(question)
+    operator.until(lambda: operator.says_yes(lambda: not operator.shows(question)), question)
+
+
 def mdi(operator: Operator, line: str, done: Callable[[], bool]) -> None:
     """A line of MDI, proved and started."""
     operator.key("F1")
@@ -78,6 +85,7 @@ def new_edge_on_lathe(operator: Operator) -> None:
     operator.rests(0.1)
     operator.key("F6")
     operator.enters(f"{operator.slides[1] + 2.0:.3f}")
+    means(operator)
     kept(operator, lambda store: abs(store.tools()[1].z + 2.0) < 0.01)
     operator.key("F1")
     operator.key("F2")
@@ -90,6 +98,7 @@ def new_tool_on_mill(operator: Operator) -> None:
     operator.opens("TOOL TABLE")  # it stands at L of T1, where it was left
     operator.writes("1")
     operator.key("F2")
+    means(operator)
     kept(operator, lambda store: abs(store.mill_tools()[1].length - 78.0) < 0.01)
     operator.key("F1")
     operator.key("F2")

@@ -24,6 +24,7 @@ def mesa_step_lathe(lathe: Lathe) -> HalFile:
         *NOTES,
         "step_ns, space_ns, setup_ns, hold_ns: the drive's manual; what it does not see is lost, untold",
         "spindle: full_speed is what the inverter makes of 10 V",
+        "firmware 7i76e_7i76x1D.bit, as delivered: mesaflash --device 7i76e --addr ADDRESS --readhmid",
     ]
     encoder = bool(lathe.encoder_lines and lathe.names.get("hal.spindle.position"))
     steps = 1 + max((board.channel for board in lathe.board.axes.values()), default=0)
@@ -77,7 +78,13 @@ def _terminal(name: str) -> Terminal | None:
         or (found[1] == "output" and found[3])
     ):
         return None
-    return Terminal(drives=found[1] == "output", place=f"{found[1].upper()}{int(found[2])}")
+    kind, number = found[1], int(found[2])
+    return Terminal(drives=kind == "output", place=f"{_block(kind, number)} {kind.upper()}{number}")
+
+
+def _block(kind: str, number: int) -> str:
+    """The terminal block of a field input or output, as Mesa's manual of the 7I76 has them."""
+    return "TB6" if number < (16 if kind == "input" else 8) else "TB5"
 
 
 def _enables(lathe: Lathe) -> list[str]:
@@ -123,7 +130,7 @@ def _spindle_c(file: HalFile, axis: LatheAxis) -> None:
 
 def _axis(file: HalFile, axis: LatheAxis) -> None:
     board, name, path = file.lathe.board.axes[axis.name], axis.name.lower(), f"hal.axes.{axis.name}"
-    place = f"STEP{board.channel} DIR{board.channel}"
+    place = f"TB{2 if board.channel < 4 else 3} STEP{board.channel} DIR{board.channel}"
     file.section(f"Axis {axis.name}: step generator {board.channel}, {board.mode} mode")
     pin = _steps(file, axis)
     if board.mode == "position":

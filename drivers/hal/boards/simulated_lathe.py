@@ -68,10 +68,9 @@ def _hands(file: HalFile) -> None:
     for path, name in file.lathe.names.items():
         if path.startswith(("io.", "hal.link_fault")) and "." not in name:
             file.signal(path, name)
-    estop = file.lathe.names.get("io.in.estop", "")
-    if "." not in estop:
-        file.say("E-stop released: the chain is whole")
-        file.sections[-1].lines.append(f"sets {estop} 1")
+    closed = [file.lathe.names.get(f"io.in.{name}", ".") for name in ("estop", "hold", "guard")]
+    file.say("Contacts that are closed at first: E-stop circuit, hold button, guard")
+    file.sections[-1].lines.extend(f"sets {signal} 1" for signal in closed if "." not in signal)
     collet = file.lathe.names.get("io.out.collet", signal_of("io.out.collet"))
     if "io.out.collet" in file.lathe.names:
         file.say("The collet's switch follows its valve; it begins clamped.")

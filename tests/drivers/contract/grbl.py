@@ -78,7 +78,10 @@ class GrblWorld:
         wired = self._machine.inputs[name]
         if wired.terminal.startswith("pn."):
             letter = wired.terminal.removeprefix("pn.")
-            self._peer.pins = self._peer.pins.replace(letter, "") + (letter if on else "")
+            active = on is not wired.active_low
+            self._peer.pins = self._peer.pins.replace(letter, "") + (letter if active else "")
+            if letter == "D":  # the firmware stops by itself
+                self._peer.door = active
         else:
             self._peer.inputs[int(wired.terminal.removeprefix("in."))] = on is not wired.active_low
 

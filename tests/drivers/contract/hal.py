@@ -23,8 +23,6 @@ from tests.drivers.contract.rig import Fault, Rig
 from tests.drivers.contract.world import SimWorld
 
 _HANDS = """
-start = { at = "in-start" }
-hold = { at = "in-hold", active = "low" }
 spindle_auto = { at = "in-auto" }
 probe = { at = "in-probe" }
 

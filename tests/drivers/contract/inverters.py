@@ -107,6 +107,7 @@ class OnALine(Simulated):
             gear=None,
             halt=partial(halt_with, ports, spindle),
             unknown=partial(unknown_with, ports, spindle),
+            spindle_lag=spindle.lag,
         )
         self.world = InverterWorld(self.hands, ports.io.outputs)
         self.world.inverter = self.inverter

@@ -63,7 +63,7 @@ def test_full_queue_of_short_blocks_loses_none_and_plays_none_twice(control: Con
 
 def test_feed_hold_from_full_speed_within_its_bound_and_on_the_path(control: Control) -> None:
     cutting(control)
-    assert control.shot.velocity == pytest.approx(127.0, rel=0.01)  # 300 in/min
+    control.until_true(lambda shot: shot.velocity == pytest.approx(127.0, rel=0.01), 0.2)  # 300 in/min
     off: list[float] = []
     control.watch.append(lambda _: off.append(off_line(control.world.place())))
     pressed = control.clock.now()

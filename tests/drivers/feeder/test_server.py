@@ -51,6 +51,14 @@ def bench() -> Bench:
     return Bench(sim, clock, feeder, line, feeder_ports(line))
 
 
+def test_a_slow_wire_of_the_spindle_is_reported_to_the_control() -> None:
+    clock = StepClock()
+    sim = build_simulation(CONFIG, clock)
+    slow = dataclasses.replace(sim.ports, spindle_lag=lambda: 0.75)
+    line = Line(LoopLink(Feeder(simulation_driven(slow, sim.machine))), clock)
+    assert feeder_ports(line).spindle_lag() == 0.75
+
+
 def working(bench: Bench) -> None:
     bench.ports.axes.enable(True)
     bench.ports.spindle.run(600.0)

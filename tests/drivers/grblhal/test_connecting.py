@@ -101,11 +101,12 @@ def test_in_a_critical_alarm_settings_wait_for_the_reset() -> None:
     assert made.blocks.state().hindrance == ""
 
 
-def test_an_alarm_without_a_number_is_one() -> None:
-    """Its number is a matter of $10 while it is told plainly."""
+@pytest.mark.parametrize("at", [0.41, 0.42, 0.43, 0.44, 0.5])
+def test_an_alarm_without_a_number_is_one(at: float) -> None:
+    """Its number is a matter of $10 while it is told plainly; it may come while an input is asked for."""
     bench = GrblBench()
     bench.ready()
-    bench.run(0.5)
+    bench.run(at)
     bench.peer.alarm = 14
     bench.until(State.FAULT, limit=1.0)
     assert "ALARM" in bench.alarms()

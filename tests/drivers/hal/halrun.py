@@ -15,6 +15,8 @@ from pathlib import Path
 
 import pytest
 
+from drivers.hal.hal_session import CLEAR_STREAMS
+
 _NOBODY = 65534
 _LOCK = Path(tempfile.gettempdir()) / "turndesk-halrun.lock"
 _WRAPPER = """#!/bin/sh
@@ -22,7 +24,9 @@ _WRAPPER = """#!/bin/sh
 exec setpriv --reuid={nobody} --regid={nobody} --clear-groups env HOME={home} {halrun} "$@"
 """
 _PATIENCE = 600  # tenths of a second
-_TRIED = "loadrt threads name1=t period1=1000000\nloadrt streamer depth=8 cfg=f\nstart\n"
+_TRIED = (
+    "loadusr -w /bin/sh {}\nloadrt threads name1=t period1=1000000\nloadrt streamer depth=8 cfg=f\nstart\n"
+)
 
 
 def folder_with_halrun(folder: Path) -> Path:
@@ -67,7 +71,9 @@ def why_not() -> str:
         os.chmod(folder, 0o755)
         script = folder / "tried" / "tried.hal"
         script.parent.mkdir()
-        script.write_text(_TRIED, encoding="utf-8")
+        clear = script.with_name("clear.sh")
+        clear.write_text(CLEAR_STREAMS, encoding="utf-8")
+        script.write_text(_TRIED.format(clear), encoding="utf-8")
         path = f"{folder_with_halrun(folder / 'bin')}:{os.environ['PATH']}"
         environment = {**os.environ, "PATH": path}
         halrun = shutil.which("halrun", path=path)
@@ -86,19 +92,28 @@ def why_not() -> str:
 
 @contextmanager
 def one_session() -> Iterator[None]:
-    """HAL is one for the whole computer: tests of other processes wait until it is down."""
+    """Wait until no other session of HAL runs on this computer, and bar others until this one is left.
+
+    HAL has one shared memory for the whole computer. Raises TimeoutError.
+    """
     with _LOCK.open("a") as file:
         fcntl.flock(file, fcntl.LOCK_EX)
         for _ in range(_PATIENCE):
-            if not _hal_is_up():
+            if not hal_is_up():
                 break
             threading.Event().wait(0.1)
+        else:
+            raise TimeoutError(f"another session of HAL has not ended within {_PATIENCE / 10:g} s")
         yield
 
 
-def _hal_is_up() -> bool:
-    """Whether a session of HAL runs; what has ended and nobody has taken note of does not count."""
-    listed = ["ps", "-C", "rtapi_app", "-o", "stat="]
+def hal_is_up() -> bool:
+    """Return whether a session of HAL runs or is being taken down; zombies do not count.
+
+    ``realtime stop``, which halrun ends with, removes HAL's shared memory after rtapi_app has gone: a session
+    that begins in between loses its own.
+    """
+    listed = ["ps", "-C", "rtapi_app,halrun,realtime", "-o", "stat="]
     shown = subprocess.run(listed, capture_output=True, text=True, check=False).stdout
     return any(not each.startswith("Z") for each in shown.split())
 

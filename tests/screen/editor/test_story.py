@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 from PySide6.QtCore import Qt
 
+from app.desk import page_entry
 from app.desk.program_loading import Phase
 from app.editor import editor_messages as messages
 from app.editor.editor import Stage
@@ -93,7 +94,7 @@ def test_a_name_that_cannot_be_is_refused_in_a_sentence(writer: Writer) -> None:
 
 def test_without_a_program_or_a_name_there_is_nothing_to_edit(writer: Writer) -> None:
     writer.key(Key.Key_F3)
-    writer.sees(lambda: writer.prompt() == messages.NO_PROGRAM)
+    writer.sees(lambda: writer.prompt() == page_entry.NO_PROGRAM)
     assert writer.front == page_table.AUTOMATIC
 
 
@@ -113,12 +114,12 @@ def test_refused_while_a_slide_is_moved_by_hand(writer: Writer) -> None:
     writer.load("pin")
     writer.machine.now = replace(writer.machine.now, state=State.JOG)
     writer.key(Key.Key_F3)
-    assert writer.prompt() == messages.SLIDES
+    assert writer.prompt() == page_entry.SLIDES
     assert writer.front == page_table.AUTOMATIC
 
 
 @pytest.mark.parametrize(
-    ("command", "measured", "why"), [(900, 0, messages.SPINDLE_ON), (0, 80, messages.COASTING)]
+    ("command", "measured", "why"), [(900, 0, page_entry.SPINDLE_ON), (0, 80, page_entry.COASTING)]
 )
 def test_refused_beside_a_turning_spindle(writer: Writer, command: int, measured: int, why: str) -> None:
     writer.load("pin")

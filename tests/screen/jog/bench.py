@@ -25,6 +25,7 @@ from core.executor.executor import Executor
 from core.executor.snapshot import Snapshot, State
 from core.store.store import Store
 from drivers.clocks import StepClock
+from tests.screen.yes import yes
 
 Key = Qt.Key
 TICK = 0.01
@@ -153,6 +154,11 @@ class JogBench:
         """Type and press Return."""
         self.type(text)
         self.key(Key.Key_Return)
+
+    def confirm(self) -> None:
+        """Press Y to the question that is asked now, and wait until the change is saved."""
+        yes(self.window)
+        self.saved()
 
     @property
     def prompt(self) -> str:

@@ -86,7 +86,8 @@ def test_a_diameter(jog: JogBench) -> None:
     jog.run(0.1)
     row = jog.desk.book.tools[1]
     assert row.x == pytest.approx(x - 0.25 * INCH, abs=1e-6)  # machine X less half of the diameter
-    jog.key(Key.Key_F10)
+    jog.key(Key.Key_F4)
+    jog.confirm()
     assert rows(jog) == {}
 
 
@@ -102,7 +103,7 @@ def test_a_set_tool_shows_old_and_new_and_its_history_says_how(jog: JogBench) ->
     jog.until(lambda: jog.page.model.tool.asked != "")
     jog.type(".3")
     jog.key(Key.Key_Return)
-    jog.saved()
+    jog.confirm()
     jog.run(0.1)
     assert jog.desk.book.tools[1].x == pytest.approx(x - 0.15 * INCH, abs=1e-6)
     assert jog.store.history(limit=1)[0].why == "cut Ø .3"

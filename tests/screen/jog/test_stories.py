@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import pytest
+from PySide6.QtCore import QRectF
+from PySide6.QtGui import QPixmap
 
+from app.screen.look import Painter
 from core.executor.snapshot import State
 from core.store.store_rows import ToolRow
 from tests.screen.jog.bench import INCH, SHIFT, JogBench, Key
@@ -103,31 +106,31 @@ def test_a_new_touch_shows_old_and_new_and_undo_takes_it_back(jog: JogBench) -> 
     change = jog.page.asked.asked.change
     assert change == "X R  −0.19685  →  −0.50000   WEAR X  +0.00787  →  +0.00000"  # .1 mm of radius
     jog.key(Key.Key_Return)
-    jog.saved()
+    jog.confirm()
     assert jog.store.tools()[1].x == pytest.approx(-0.5 * INCH, abs=1e-9)
     assert jog.store.tools()[1].wear_x == 0.0
     assert jog.store.tools()[2].x == 3.0
-    jog.key(Key.Key_F10)
-    jog.saved()
+    jog.key(Key.Key_F4)
+    jog.confirm()
     assert jog.store.tools()[1] == ToolRow(-5.0, -50.0, wear_x=0.1)
 
 
 def test_the_master_takes_all_along_or_is_set_alone(jog: JogBench) -> None:
     set_two(jog)
     jog.type("m")
-    jog.saved()
+    jog.confirm()
     jog.type("z")
     jog.run(0.02)
-    assert shows(jog.page.asked.asked.foot, "jog.is-master")
+    assert shows(jog.page.asked.asked.foot, "jog.is-master", number=1, others="T2")
     jog.enter("1")
-    jog.saved()
+    jog.confirm()
     # the face was at −50 mm, it is at −25.4 mm now: 24.6 mm for everybody
     assert jog.store.tools()[1].z == pytest.approx(-25.4, abs=1e-9)
     assert jog.store.tools()[2].z == pytest.approx(-15.4, abs=1e-9)
     jog.type("z")
     jog.type("l")
     jog.enter("0")
-    jog.saved()
+    jog.confirm()
     assert jog.store.tools()[1].z == pytest.approx(0.0, abs=1e-9)
     assert jog.store.tools()[2].z == pytest.approx(-15.4, abs=1e-9)
 
@@ -141,6 +144,7 @@ def test_a_touch_is_active_at_once_for_the_loaded_tool(jog: JogBench) -> None:
     jog.executor._control.status.modal = before._replace(tool=1, tool_x=-5.0, tool_z=-50.0)
     jog.run(0.05)
     touch(jog, "x", "1")
+    jog.confirm()
     jog.run(0.05)
     assert jog.frame.head.view is not None
     assert jog.frame.head.view.position.axes[0].value == "0.50000"
@@ -286,3 +290,24 @@ def test_hold_ends_homing(lost: JogBench) -> None:
     lost.run(0.5)
     assert lost.shot.state is State.IDLE
     assert not lost.shot.homed[1]
+
+
+@pytest.mark.parametrize(("units", "shown", "other"), [("MM", "12.7", "0.5"), ("INCH", "0.5", "12.7")])
+def test_the_tip_is_shown_in_the_unit_of_the_readout(
+    jog: JogBench, monkeypatch: pytest.MonkeyPatch, units: str, shown: str, other: str
+) -> None:
+    """The readout showed millimeters, and the tip next to it inches."""
+    jog.store.set_tool(1, "test", x=0.0, z=-12.7).result(60)
+    jog.desk.book.read()
+    jog.desk.choose_setting("units", units)
+    jog.type("t")
+    jog.enter("1")
+    jog.run(0.1)
+    written: list[str] = []
+
+    monkeypatch.setattr(Painter, "write", lambda *values, **_more: written.append(values[2]))
+    pixmap = QPixmap(400, 100)
+    with Painter(pixmap, jog.page.look) as painter:
+        jog.page.tool._stands(painter, QRectF(0, 0, 300, 60))
+    assert [each for each in written if each.lstrip("-").startswith(shown)], written
+    assert not [each for each in written if each.lstrip("-").startswith(other)], written

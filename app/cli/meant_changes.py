@@ -1,0 +1,124 @@
+"""Suspicious changes of offsets on the command line: refused beyond the travel, else they need consent.
+
+Consent is --yes, or Y at a terminal. The rule itself is the same as at the screen.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Iterable, Mapping
+from functools import partial
+from typing import TYPE_CHECKING
+
+from app.desk.command_errors import CommandError
+from app.offsets.suspicious_changes import (
+    Doubt,
+    Suspicion,
+    Travel,
+    described,
+    followers,
+    suspicions_of,
+    travel_of,
+)
+from core.store.offset_fields import MM_PER_INCH, Sort
+from core.store.store_rows import FIELDS, Kind, Value
+from core.tool_edges import edge_name
+
+if TYPE_CHECKING:
+    from core.store.store import Store
+
+Changes = Mapping[Kind, Mapping[int, Mapping[str, Value]]]
+
+
+def add_consent_options(parser: argparse.ArgumentParser) -> None:
+    """Add ``--yes`` and ``--machine``."""
+    parser.add_argument(
+        "--yes", action="store_true", help="make suspicious changes of offsets; without it you are asked"
+    )
+    parser.add_argument(
+        "--machine",
+        metavar="FILE",
+        help="machine file whose travel limits the offsets (default: that of the operator screen)",
+    )
+
+
+def demand_meant(store: Store, args: argparse.Namespace, changes: Changes) -> None:
+    """Raise CommandError for a value beyond the travel, or for a suspicious change without consent.
+
+    The store refuses values out of their range itself.
+    """
+    travel = _machine_travel(store, args)
+    tables = {kind: store.offsets(kind) for kind in changes}
+    found = {kind: suspicions_of(kind, tables[kind], rows, travel) for kind, rows in changes.items()}
+    beyond = {kind: _only_travel(each) for kind, each in found.items() if _only_travel(each)}
+    if beyond:
+        raise CommandError(
+            f"{_described(beyond, ())}; the travel is {_travel_words(travel)}. "
+            "Correct the value, or touch the tool off on the Jog page",
+            "beyond-travel",
+        )
+    if args.yes or not any(found.values()):
+        return
+    doubted = _described(found, tables.get(Kind.TOOL, {}))
+    if not sys.stdin.isatty():
+        raise CommandError(f"{doubted}; give --yes if you mean it", "not-confirmed")
+    sys.stderr.write(f"{doubted}. Press Y and Return to change it: ")
+    sys.stderr.flush()
+    if sys.stdin.readline().strip().upper() != "Y":
+        raise CommandError("you did not press Y; nothing was changed", "not-confirmed")
+
+
+def _only_travel(found: tuple[Suspicion, ...]) -> tuple[Suspicion, ...]:
+    return tuple(each for each in found if each.doubt is Doubt.TRAVEL)
+
+
+def _machine_travel(store: Store, args: argparse.Namespace) -> Travel:
+    """Return the travel of the machine of this command, mm. Raises CommandError for a bad machine file."""
+    from app.compose.machine_in_use import machine_in_use
+    from app.compose.machine_setup import read_machine
+
+    return travel_of(read_machine(args.machine) if args.machine else machine_in_use(store))
+
+
+def _described(found: Mapping[Kind, tuple[Suspicion, ...]], tools: Iterable[int]) -> str:
+    """Return one text for all suspicions; ``tools`` are those that may follow a master."""
+    texts = (
+        described(each, partial(_named, kind), partial(_reason, tools))
+        for kind, each in found.items()
+        if each
+    )
+    return ", ".join(texts)
+
+
+def _reason(tools: Iterable[int], each: Suspicion) -> str:
+    if each.doubt is Doubt.MASTER:
+        return f"followers: {', '.join(map(edge_name, followers(tools, each.number)))}"
+    words = {
+        Doubt.TRAVEL: "beyond the travel",
+        Doubt.SIDE: "the other side of the part",
+        Doubt.LARGE: "a large change",
+    }
+    return words[each.doubt]
+
+
+def _named(kind: Kind, each: Suspicion) -> str:
+    """T1 x +1.20000 → -15.00000 in"""
+    letter = {Kind.TOOL: edge_name(each.number), Kind.SECONDARY: f"D{each.number}"}
+    name = letter.get(kind, f"TOOL{each.number}")
+    field = FIELDS[kind][each.name]
+    old = "not set" if each.old is None else _shown(field.sort, each.old)
+    unit = {Sort.LENGTH: " in", Sort.METRIC: " mm"}.get(field.sort, "")
+    return f"{name} {each.name} {old} → {_shown(field.sort, each.new)}{unit}"
+
+
+def _shown(sort: Sort, value: Value) -> str:
+    if sort is Sort.LENGTH:
+        return f"{float(value) / MM_PER_INCH:+.5f}"
+    return f"{value:+.3f}" if sort is Sort.METRIC else ("yes" if value else "no")
+
+
+def _travel_words(travel: Travel) -> str:
+    return ", ".join(
+        f"{name} {low / MM_PER_INCH:.4g}…{high / MM_PER_INCH:.4g} in" for name, (low, high) in travel.items()
+    )

@@ -1,0 +1,118 @@
+"""What comes late or more than once, drivers that fall silent or fail while TurnDesk closes."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from core.executor.commands import CycleStart, FeedHold, JogStop, Reset, WheelOff
+from core.executor.snapshot import State
+from core.ports import DriverError, Unknown
+from tests.executor.model_machine import Machine
+from tests.executor.rig import Rig
+
+CUT = "G90G94F20\nG01Z-3.F20\nM30\n"
+SPIN_UP = "G90G94F300\nM03S1500\nX.5Z.1\nM05\nM30\n"
+
+
+def codes(rig: Rig) -> list[str]:
+    """The alarms that stand."""
+    return [alarm.code for alarm in rig.shot.alarms]
+
+
+def begun(text: str) -> Machine:
+    """A machine with breakable ports in a cycle of this program."""
+    machine = Machine()
+    machine.ready()
+    machine.load(text)
+    machine.run(0.3)
+    machine.pressed = True
+    machine.post(CycleStart())
+    return machine
+
+
+@pytest.mark.parametrize("times", [2, 3, 10])
+def test_a_repeated_reset_while_the_spindle_speeds_up_is_no_alarm(times: int) -> None:
+    rig = Rig()
+    rig.start(SPIN_UP)
+    rig.tick()
+    for _ in range(times):
+        rig.post(Reset())
+    rig.run(5.0)
+    assert codes(rig) == []
+    assert rig.state is State.IDLE
+
+
+def test_repeated_stops_give_a_spindle_no_more_time_to_obey() -> None:
+    machine = begun("G90G94F300\nM03S1500\nG04F9.\nM05\nM30\n")
+    machine.run(4.0)
+    machine.harmed = True
+    machine.freeze("spindle")  # it goes on as if nobody had told it anything
+    machine.frozen_since.clear()
+    for _ in range(200):
+        machine.post(Reset())
+    assert codes(machine) == ["ignores-stop"]
+
+
+@pytest.mark.parametrize("release", [JogStop(), WheelOff()])
+def test_a_release_that_comes_twice_in_a_cut_changes_nothing(release: Any) -> None:
+    rig = Rig()
+    rig.start(CUT)
+    rig.run(0.5)
+    rig.post(release, release)
+    rig.run(0.2)
+    assert (rig.state, codes(rig)) == (State.RUN, [])
+
+
+def test_palms_that_were_pressed_while_the_control_was_away_are_refused_and_not_ignored() -> None:
+    machine = Machine()
+    machine.ready()
+    machine.load(CUT)
+    machine.harmed = True
+    machine.broken["io"].stalls["inputs"] = 0.5  # s in which the computer stands still inside a tick
+    machine.tick()
+    machine.sim.machine.press_start()
+    machine.tick()
+    assert machine.state is State.IDLE
+    assert len(machine.said("refused")) == 1
+
+
+def test_slides_that_nobody_hears_move_no_further_even_where_no_driver_reports_a_fault() -> None:
+    machine = begun(CUT)
+    machine.run(0.5)
+    machine.harmed = True
+    machine.freeze("axes")
+    machine.run(0.6)
+    assert machine.state is State.FAULT
+    assert codes(machine) == ["drive-silent"]
+    assert Unknown.SLIDES in machine.shot.unknown
+
+
+@pytest.mark.parametrize("times", [1, 50])
+def test_drives_that_refuse_to_brake_lose_their_power_when_turndesk_is_closed(times: int) -> None:
+    machine = begun(CUT)
+    machine.run(0.5)
+    machine.broken["axes"].breaks["stop"] = (DriverError("the wire is out"), times)
+    machine.executor.shut()
+    machine.clock.advance(1.0)  # the drives brake by themselves
+    assert not machine.true_ports.axes.sample().enabled
+
+
+def test_an_encoder_that_freezes_as_a_hold_ends_is_found_when_its_axis_is_sent_on() -> None:
+    """Until then a slide that stands and an encoder that stands tell the same."""
+    rig = Rig(every=0.01)
+    rig.start(CUT)
+    rig.run(1.0)
+    rig.post(FeedHold())
+    rig.run(0.3)
+    assert rig.state is State.HOLD
+    rig.sim.machine.encoder_stuck("Z")
+    rig.run(2.0)
+    begins = rig.sim.machine.true_position()[1]
+    rig.post(CycleStart())
+    took = rig.until(State.FAULT, limit=1.0)
+    assert codes(rig) == ["encoder-still"]
+    assert took <= 0.12
+    rig.run(1.0)
+    assert abs(rig.sim.machine.true_position()[1] - begins) < 4.0  # mm, at 8.5 mm/s

@@ -1,0 +1,267 @@
+"""Types single keys where the platform sends them, and compares everything that can change before and after.
+
+What a key posts to the control, does at the station or loads is recorded and not carried out, so that the
+machine stays in its state. Everything else is carried out and compared: settings, the loaded program, the
+store, and the files.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import pytest
+from PySide6.QtCore import QCoreApplication, QEvent, Qt
+from PySide6.QtGui import QKeyEvent
+
+from app.desk.data_folder import data_folder
+from app.desk.latest import Latest
+from app.desk.program_loading import ProgramLoader
+from app.editor.editor import Stage
+from app.editor.editor_view import EditorPage
+from app.screen import page_table
+from core.executor.commands import (
+    Command,
+    ConfirmStart,
+    GiveProof,
+    LoadJob,
+    PartsMade,
+    Prepare,
+    Renew,
+    SetSwitch,
+    UseOffsets,
+    WheelOff,
+)
+from core.executor.executor import Executor
+from core.executor.snapshot import State
+from core.store.store import Store
+from drivers.lookalikes.plant_hands import PlantHands
+from tests.screen.day import Day
+
+NONE, SHIFT, CTRL = (
+    Qt.KeyboardModifier.NoModifier,
+    Qt.KeyboardModifier.ShiftModifier,
+    Qt.KeyboardModifier.ControlModifier,
+)
+STATION = ("press_estop", "release_estop", "press_hold", "set_spindle_auto", "press_left", "press_right")
+QUIET = (GiveProof, LoadJob, PartsMade, Prepare, Renew, UseOffsets, WheelOff)  # of pages and workers
+UNCHANGING = frozenset({"events"})  # tables that only log
+
+
+@dataclass(frozen=True, slots=True)
+class Stroke:
+    """A key with its modifiers, and the text that it writes."""
+
+    name: str
+    key: int
+    text: str = ""
+    modifiers: Qt.KeyboardModifier = NONE
+
+
+@dataclass
+class Typist:
+    """Presses keys and reports the changes, each by a short name; ``done`` collects what is recorded."""
+
+    day: Day
+    recorded: bool = True  # nothing reaches the machine
+    done: set[str] = field(default_factory=set)
+    workers: list[Latest] = field(default_factory=list)
+    stored: int = 0  # writes of the store
+    _dump: dict[str, int] = field(default_factory=dict)
+
+    def press(self, stroke: Stroke) -> set[str]:
+        """Press and release a key; return what changed."""
+        self.done.clear()
+        if self.recorded:
+            pressed = stroke.name == "u" and self.day.shot.state is State.ESTOP
+            self.day.desk.hands.estop_pressed = pressed  # else it would be no other press
+        before = self._all()
+        for kind in (QEvent.Type.KeyPress, QEvent.Type.KeyRelease):
+            event = QKeyEvent(kind, stroke.key, stroke.modifiers, stroke.text)
+            QCoreApplication.sendEvent(self.day.window.windowHandle(), event)
+        self._workers_end()
+        after = self._all()
+        changed = {name for name in before.keys() | after.keys() if before.get(name) != after.get(name)}
+        return self.done | _kinds(changed)
+
+    def _workers_end(self) -> None:
+        """Wait until everything that the key has asked for is done."""
+        while self.workers:
+            worker = self.workers.pop()
+            if not worker.quiet:
+                worker.settle(30.0)
+        if self.day.desk.book.busy:
+            self.sees(lambda: not self.day.desk.book.busy)
+
+    def _all(self) -> dict[str, object]:
+        """All that a key may change, by name."""
+        desk = self.day.desk
+        loaded, settings = desk.session.now, desk.settings.now
+        told: dict[str, object] = {f"setting {each}": getattr(settings, each) for each in settings.__slots__}
+        told |= {
+            "feed_pot": desk.hands.feed_pot.wanted,
+            "spindle_pot": desk.hands.spindle_pot.wanted,
+            "counter": desk.counter.count,
+            "loaded program": (loaded.path, loaded.block_delete, loaded.source),
+            "snapshot": self.day.shot,
+        }
+        return told | self._store() | _files(data_folder())
+
+    def _store(self) -> dict[str, int]:
+        """The tables of the store; read again only after somebody has written."""
+        if self.stored or not self._dump:
+            self.day.store.write(lambda _connection: None).result(60)
+            self.stored = 0
+            self._dump = tables(self.day.store)
+        return self._dump
+
+    # --- the pages -----------------------------------------------------------------------------------
+
+    @property
+    def face(self) -> tuple[object, ...]:
+        """What the page shows of what its keys are for now."""
+        page = self.day.frame.page
+        mode = page.mode if isinstance(page, EditorPage) else page.prompt()
+        return page.NAME, self.day.frame.has_field(), page.labels(), mode, self.day.frame.log.isVisible()
+
+    def opens(self, name: str) -> bool:
+        """Open a page afresh; False where it does not open in this state."""
+        frame = self.day.frame
+        self.clear()
+        if isinstance(frame.page, EditorPage):
+            self._leaves_editor(frame.page)
+        elif frame.page.NAME != page_table.AUTOMATIC:
+            for _ in range(9):
+                if not frame.page.escape():
+                    break
+            frame.go(page_table.AUTOMATIC)
+        frame.log.hide()
+        frame.automatic.files.dismiss()
+        frame.automatic.path.measure(on=False)
+        opened = frame.page.NAME == page_table.AUTOMATIC and frame.go(name)
+        self._workers_end()
+        self.day.window.refresh()
+        if isinstance(frame.page, EditorPage):
+            self.sees(lambda page=frame.page: page.editor.stage in {Stage.OPEN, Stage.OFFERED})  # type: ignore[misc]
+        return opened
+
+    def clear(self) -> None:
+        """Take answer and question back, also an answer that outlives keys."""
+        page = self.day.frame.page
+        if isinstance(page, EditorPage):
+            page.editor.clear()
+        self.day.desk.answers.lasting = False
+        self.day.desk.clear()
+
+    def _leaves_editor(self, page: EditorPage) -> None:
+        """Leave without saving what was typed."""
+
+        def left() -> bool:
+            editor = page.editor
+            if editor.stage is Stage.OFFERED:
+                editor.abort()
+            elif editor.stage is Stage.NAMING:
+                editor.keep_no_name()
+            elif editor.stage is Stage.OPEN:
+                page.abandon()
+                page.answer()
+            return self.day.frame.page is not page
+
+        self.sees(left)
+
+    def sees(self, true: Callable[[], bool]) -> None:
+        """Wait for a worker; the machine stays as it is."""
+
+        def look() -> bool:
+            self.day.window.refresh()
+            return true()
+
+        self.day.qtbot.waitUntil(look, timeout=60_000)
+
+
+def _kinds(changed: set[str]) -> set[str]:
+    """The changes by kind; what keeps a setting of the screen belongs to that setting."""
+    if any(name.startswith("setting ") for name in changed):
+        changed -= {"store settings", "store row_sums"}
+    return {name.split()[0] if name.startswith(("store ", "file ")) else name for name in changed}
+
+
+def tables(store: Store) -> dict[str, int]:
+    """Each table of the store by name, with a hash of its rows."""
+    with store.read() as connection:
+        names = [row[0] for row in connection.execute("SELECT name FROM sqlite_master WHERE type = 'table'")]
+        return {
+            f"store {name}": hash(tuple(map(tuple, connection.execute(f'SELECT * FROM "{name}"'))))
+            for name in names
+            if name not in UNCHANGING
+        }
+
+
+def _files(folder: Path) -> dict[str, object]:
+    """Every file of the operator with its time and size, without those of the store."""
+    found: dict[str, object] = {}
+    for where, _, names in os.walk(folder):
+        for name in names:
+            if ".db" not in name and "lock" not in name and "thumbnails" not in where:
+                about = Path(where, name).stat()
+                found[f"file {name}"] = (about.st_mtime_ns, about.st_size)
+    return found
+
+
+def record(monkeypatch: pytest.MonkeyPatch, typists: list[Typist]) -> None:
+    """Have everything recorded and not carried out from the moment on in which somebody types."""
+    for kind, name in (
+        (Executor, "post"),
+        (ProgramLoader, "load"),
+        *((PlantHands, each) for each in STATION),
+    ):
+        monkeypatch.setattr(kind, name, _recorded(getattr(kind, name), name, typists))
+    for name in ("write", "keep"):
+        monkeypatch.setattr(Store, name, _counted(getattr(Store, name), typists))
+    begin = Latest._begin
+
+    def begun(self: Latest, *values: object, **more: object) -> None:
+        if typists:
+            typists[0].workers.append(self)
+        begin(self, *values, **more)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(Latest, "_begin", begun)
+
+
+def _recorded(does: Callable[..., None], name: str, typists: list[Typist]) -> Callable[..., None]:
+    def call(this: object, *values: object, **more: object) -> None:
+        if not typists:
+            does(this, *values, **more)
+        elif not (isinstance(values[0] if values else None, QUIET) or _is_again(this, *values, **more)):
+            typists[0].done.add(_named(name, *values))
+
+    return call
+
+
+def _is_again(loader: object, path: object = None, block_delete: object = False) -> bool:
+    """Whether the same program is loaded in the same way: with offsets that were changed."""
+    if not isinstance(loader, ProgramLoader):
+        return False
+    return (path, block_delete) == (loader.now.path, loader.now.block_delete)
+
+
+def _named(name: str, *values: object) -> str:
+    command = values[0] if values else None
+    if isinstance(command, SetSwitch):
+        return command.name
+    if isinstance(command, ConfirmStart):
+        return "ConfirmStart" if command.at else "ConfirmNothing"
+    if isinstance(command, Command):
+        return type(command).__name__
+    return name
+
+
+def _counted(does: Callable[..., object], typists: list[Typist]) -> Callable[..., object]:
+    def call(this: object, *values: object) -> object:
+        if typists:
+            typists[0].stored += 1
+        return does(this, *values)
+
+    return call
