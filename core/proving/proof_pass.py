@@ -15,7 +15,7 @@ from core.geometry.lines_and_arcs import arc_sweep
 from core.interpreter.actions import Dwell, ProgramStop
 from core.interpreter.elementary_blocks import Block, Floats, Kind, Series
 from core.interpreter.machine_requirements import Need, first_needs, needs_of
-from core.language.diagnostics import Diagnostic
+from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Dialect, Source
 from core.machine.machine_model import Machine
 from core.proving.cutting_checks import CuttingChecks
@@ -243,7 +243,8 @@ class ProofPass:
         """The report, once the whole program was gone through."""
         self._see()
         beyond = list(self._beyond.values())[:MAX_FINDINGS]
-        found = [*timeline.diagnostics, *beyond, *self._checks.findings]
+        told = map(_as_assumed, timeline.diagnostics)
+        found = [*told, *beyond, *self._checks.findings]
         interpreter, last, tally = timeline.interpreter, self.last, self._tally
         end = self.last_move  # in its own frame: M30 takes the work shift away, and moves nothing
         return Report(
@@ -285,6 +286,14 @@ class ProofPass:
             ),
             final=self.last.swivel if self.last else None,
         )
+
+
+def _as_assumed(found: Diagnostic) -> Diagnostic:
+    """What holds only for a place that a proof assumes is a warning; a run that comes to it stops there."""
+    if not found.assumed or found.severity is not Severity.ERROR:
+        return found
+    hint = f"{found.hint} Assumed: {', '.join(found.assumed)}; nothing behind it is proved."
+    return replace(found, severity=Severity.WARNING, hint=hint)
 
 
 def _rapid(parts: Sequence[Part]) -> npt.NDArray[np.bool_]:

@@ -25269,6 +25269,11 @@
       <translation>%1 (%2 veces)</translation>
     </message>
     <message>
+      <location filename="core/language/diagnostics.py" />
+      <source>position at the stop</source>
+      <translation>posición en la parada</translation>
+    </message>
+    <message>
       <location filename="core/language/formulas.py" />
       <source>A closing bracket is missing</source>
       <translation>Falta un paréntesis de cierre</translation>
@@ -30842,6 +30847,11 @@
       <location filename="core/proving/program_tools.py" />
       <source>This feed leads away from the part, and no other cuts behind Z0.</source>
       <translation>Este avance se aleja de la pieza, y ningún otro corta detrás de Z0.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/proof_pass.py" />
+      <source>%1 Assumed: %2; nothing behind it is proved.</source>
+      <translation>%1 Supuesto: %2; lo que sigue no está probado.</translation>
     </message>
     <message>
       <location filename="core/proving/thread_checks.py" />

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from enum import IntEnum
 
-from core.interpreter.actions import Action, Dwell
+from core.interpreter.actions import Action, Dwell, ProgramStop
 from core.interpreter.diagnostic_log import Log
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.formula_values import NoValueError, worth
@@ -18,7 +18,7 @@ from core.interpreter.sinumerik.system_variables import position_asked, system_v
 from core.interpreter.sinumerik.third_axis import wrapped
 from core.interpreter.sinumerik.variables import UNSET, Refuse, Variables
 from core.interpreter.units import MM_PER_INCH
-from core.language.diagnostics import Diagnostic, ProgramError, Severity
+from core.language.diagnostics import AT_THE_STOP, Diagnostic, ProgramError, Severity, resting_on
 from core.language.formulas import Formula, Parameter
 from core.language.sinumerik.sinumerik_words import Line, Word
 
@@ -88,6 +88,7 @@ class State:
         self.tap_lead = 0.0  # K of G331, mm
         self.lead_change, self.end_lead, self.start_turns = 0.0, 0.0, 0.0  # of G34, G35 and SF
         self.names: list[str] = []  # of tools that the table does not have, by their order
+        self.behind_stop = self.place_assumed = False  # a place was read behind a stop, where a hand may move
         self.told: set[str] = set()  # functions without effect that have been told
         self.variables = Variables()
         self.variables.r.update(setup.r)
@@ -140,6 +141,7 @@ class State:
                 axis = position_asked(asked.letters)
                 read = self.position(axis) if axis else system_value(asked.letters, self.modal, self.edge)
                 if read is not None:
+                    self.place_assumed = self.place_assumed or bool(axis and self.behind_stop)
                     return read
             try:
                 return self.variables.value(asked, lambda index: worth(index, parameter), refuse)
@@ -152,7 +154,10 @@ class State:
         try:
             return worth(formula, parameter)
         except NoValueError as problem:
-            raise refuse("arithmetic", f"{problem}.", "Correct the formula.") from None
+            error = refuse("arithmetic", f"{problem}.", "Correct the formula.")
+            if self.place_assumed:
+                error = ProgramError(resting_on(error.diagnostic, AT_THE_STOP))
+            raise error from None
 
     def _tell_unset(self, found: Diagnostic) -> None:
         """Say once of each R parameter that it counts as 0."""
@@ -198,6 +203,7 @@ class State:
 
     def action(self, line: int, text: str, action: Action) -> Block:
         """A block in which no axis moves."""
+        self.behind_stop = self.behind_stop or isinstance(action, ProgramStop)
         modal = self.modal
         x, z, c = self.x - modal.offset_x, self.z - modal.offset_z, self.c - modal.offset_c
         return Block(
