@@ -56,7 +56,7 @@ class ProgramError(Exception):
 
 
 AT_THE_STOP = "position at the stop"
-"""What a figure rests on that a program has read of its axes behind a stop, where a hand may have moved them."""
+"""What rests on a place that a program has read behind a stop, where a hand may have moved the axes."""
 
 
 def resting_on(found: Diagnostic, *assumed: str) -> Diagnostic:

@@ -1,4 +1,4 @@
-"""A figure of a place that a hand may have changed at a stop: what fails with it in the proof is a warning."""
+"""A place that a hand may have changed at a stop: what fails with it in the proof is a warning."""
 
 from __future__ import annotations
 
