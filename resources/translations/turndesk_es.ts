@@ -195,6 +195,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>%1: F counts on the path of the tip here; take it out.</source>
+      <translation>%1: aquí F cuenta en la trayectoria de la punta; quítelo.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>%1: F is the feed of the path; write F, FB or OVR.</source>
       <translation>%1: F es el avance de la trayectoria; escriba F, FB u OVR.</translation>
     </message>
@@ -207,6 +212,11 @@
       <location filename="" />
       <source>%1: R parameters are R0 to R%2.</source>
       <translation>%1: Los parámetros R son de R0 a R%2.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1: SAVE stands behind PROC.</source>
+      <translation>%1: SAVE va detrás de PROC.</translation>
     </message>
     <message>
       <location filename="" />
@@ -225,8 +235,18 @@
     </message>
     <message>
       <location filename="" />
+      <source>%1: a cycle has its number, such as CYCLE95.</source>
+      <translation>%1: un ciclo lleva su número, como CYCLE95.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>%1: a helix needs a third axis of the slides.</source>
       <translation>%1: una hélice necesita un tercer eje de los carros.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1: accelerations are those of the machine file; take it out.</source>
+      <translation>%1: las aceleraciones son las del archivo de la máquina; quítelo.</translation>
     </message>
     <message>
       <location filename="" />
@@ -240,6 +260,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>%1: axes do not move beside the path here; write G0 or G1 with the axis.</source>
+      <translation>%1: aquí los ejes no se mueven aparte de la trayectoria; escriba G0 o G1 con el eje.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>%1: beside G35 only F2 has a meaning (leads to 2 in/rev).</source>
       <translation>%1: junto a G35 sólo F2 tiene sentido (pasos hasta 2 pulg/rev).</translation>
     </message>
@@ -247,6 +272,16 @@
       <location filename="" />
       <source>%1: character %2, %3, means nothing as %4; known: %5</source>
       <translation>%1: el carácter %2, %3, no significa nada como %4; se conocen: %5</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1: contour tables are not made here; name the contour in CYCLE95.</source>
+      <translation>%1: aquí no se hacen tablas de contorno; nombre el contorno en CYCLE95.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1: dialogs of a program are not shown here; write MSG.</source>
+      <translation>%1: aquí no se muestran diálogos de un programa; escriba MSG.</translation>
     </message>
     <message>
       <location filename="" />
@@ -265,8 +300,18 @@
     </message>
     <message>
       <location filename="" />
+      <source>%1: interrupts by an input are not executed here; stop with M0 or M1.</source>
+      <translation>%1: aquí no se ejecutan interrupciones por una entrada; pare con M0 o M1.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>%1: inverse time feed is not executed here; write G94 or G95 with F.</source>
       <translation>%1: el avance por inverso del tiempo no se ejecuta aquí; escriba G94 o G95 con F.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1: macros are not made here; write their words.</source>
+      <translation>%1: aquí no se hacen macros; escriba sus palabras.</translation>
     </message>
     <message>
       <location filename="" />
@@ -275,8 +320,28 @@
     </message>
     <message>
       <location filename="" />
+      <source>%1: oscillation is not executed here.</source>
+      <translation>%1: aquí no se ejecuta la oscilación.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1: positions of the machine are not preset here; write TRANS.</source>
+      <translation>%1: aquí no se preajustan posiciones de la máquina; escriba TRANS.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1: programs do not read or write files here.</source>
+      <translation>%1: aquí los programas no leen ni escriben archivos.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>%1: programs from outside are not called; put the file beside the main program and call its name.</source>
       <translation>%1: los programas de fuera no se llaman; ponga el archivo junto al programa principal y llame su nombre.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1: retraction by itself is not executed here.</source>
+      <translation>%1: aquí no se ejecuta la retirada automática.</translation>
     </message>
     <message>
       <location filename="" />
@@ -292,6 +357,11 @@
       <location filename="" />
       <source>%1: the angle of infeed goes from 0 to 30 degrees.</source>
       <translation>%1: el ángulo de entrada va de 0 a 30 grados.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1: the axis of a spindle is known from the machine file.</source>
+      <translation>%1: el eje de un husillo se conoce por el archivo de la máquina.</translation>
     </message>
     <message>
       <location filename="" />
@@ -315,6 +385,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>%1: the limits of an axis are those of the machine file; take it out.</source>
+      <translation>%1: los límites de un eje son los del archivo de la máquina; quítelo.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>%1: the other language mode is not read here.</source>
       <translation>%1: el otro modo de lenguaje no se lee aquí.</translation>
     </message>
@@ -330,6 +405,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>%1: the whole program is read before it begins; take it out.</source>
+      <translation>%1: el programa entero se lee antes de empezar; quítelo.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>%1: this control has one channel, and its axes are its own.</source>
       <translation>%1: este control tiene un solo canal, y sus ejes son suyos.</translation>
     </message>
@@ -337,6 +417,11 @@
       <location filename="" />
       <source>%1: this control keeps six settable offsets; write G54 to G59.</source>
       <translation>%1: este control lleva seis decalajes ajustables; escriba de G54 a G59.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1: this lathe does not punch.</source>
+      <translation>%1: este torno no punzona.</translation>
     </message>
     <message>
       <location filename="" />
@@ -352,6 +437,21 @@
       <location filename="" />
       <source>%1: this lathe has no orientation axes.</source>
       <translation>%1: este torno no tiene ejes de orientación.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1: tools are managed on the page of tool offsets (F8).</source>
+      <translation>%1: las herramientas se gestionan en la página de correctores (F8).</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1: transformations are not chained here.</source>
+      <translation>%1: aquí no se encadenan transformaciones.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1: travel to a fixed stop is not executed here.</source>
+      <translation>%1: aquí no se ejecuta el desplazamiento a tope fijo.</translation>
     </message>
     <message>
       <location filename="" />
@@ -385,8 +485,23 @@
     </message>
     <message>
       <location filename="" />
+      <source>%1: write GOTO, GOTOF or GOTOB.</source>
+      <translation>%1: escriba GOTO, GOTOF o GOTOB.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1: write SPOS, or M3 and M4.</source>
+      <translation>%1: escriba SPOS, o M3 y M4.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>%1: write the curve as lines and arcs.</source>
       <translation>%1: escriba la curva como rectas y arcos.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1: write the frame with TRANS, ROT, SCALE or MIRROR.</source>
+      <translation>%1: escriba el frame con TRANS, ROT, SCALE o MIRROR.</translation>
     </message>
     <message>
       <location filename="" />
@@ -1477,6 +1592,11 @@
       <location filename="" />
       <source>F counts on the path of the tip here</source>
       <translation>aquí F cuenta en el camino de la punta</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>F counts on the path of the tip here; take it out</source>
+      <translation>aquí F cuenta en la trayectoria de la punta; quítelo</translation>
     </message>
     <message>
       <location filename="" />
@@ -2905,6 +3025,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>SAVE stands behind PROC</source>
+      <translation>SAVE va detrás de PROC</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>SERIES</source>
       <translation>SERIE</translation>
     </message>
@@ -4280,6 +4405,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>a cycle has its number, such as CYCLE95</source>
+      <translation>un ciclo lleva su número, como CYCLE95</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>a drill</source>
       <translation>una broca</translation>
     </message>
@@ -4302,6 +4432,11 @@
       <location filename="" />
       <source>absolute or incremental</source>
       <translation>absoluto o incremental</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>accelerations are those of the machine file; take it out</source>
+      <translation>las aceleraciones son las del archivo de la máquina; quítelo</translation>
     </message>
     <message>
       <location filename="" />
@@ -4332,6 +4467,11 @@
       <location filename="" />
       <source>approach on a curve is not executed here; write KONT or NORM</source>
       <translation>la entrada por una curva no se ejecuta aquí; escriba KONT o NORM</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>axes do not move beside the path here; write G0 or G1 with the axis</source>
+      <translation>aquí los ejes no se mueven aparte de la trayectoria; escriba G0 o G1 con el eje</translation>
     </message>
     <message>
       <location filename="" />
@@ -4395,6 +4535,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>contour tables are not made here; name the contour in CYCLE95</source>
+      <translation>aquí no se hacen tablas de contorno; nombre el contorno en CYCLE95</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>departure</source>
       <translation>salida</translation>
     </message>
@@ -4402,6 +4547,11 @@
       <location filename="" />
       <source>depth</source>
       <translation>profundidad</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>dialogs of a program are not shown here; write MSG</source>
+      <translation>aquí no se muestran diálogos de un programa; escriba MSG</translation>
     </message>
     <message>
       <location filename="" />
@@ -4505,6 +4655,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>interrupts by an input are not executed here; stop with M0 or M1</source>
+      <translation>aquí no se ejecutan interrupciones por una entrada; pare con M0 o M1</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>inverse time feed is not executed here; write G94 or G95 with F</source>
       <translation>el avance por inverso del tiempo no se ejecuta aquí; escriba G94 o G95 con F</translation>
     </message>
@@ -4570,6 +4725,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>macros are not made here; write their words</source>
+      <translation>aquí no se hacen macros; escriba sus palabras</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>measuring in the program is not executed here; touch the tool off on the Jog page</source>
       <translation>medir en el programa no se ejecuta aquí; toque la herramienta en la página Manual</translation>
     </message>
@@ -4607,6 +4767,11 @@
       <location filename="" />
       <source>on (1) or off (0): 0 … 1</source>
       <translation>activa (1) o inactiva (0): 0 … 1</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>oscillation is not executed here</source>
+      <translation>aquí no se ejecuta la oscilación</translation>
     </message>
     <message>
       <location filename="" />
@@ -4660,6 +4825,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>positions of the machine are not preset here; write TRANS</source>
+      <translation>aquí no se preajustan posiciones de la máquina; escriba TRANS</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>presets</source>
       <translation>presets</translation>
     </message>
@@ -4667,6 +4837,11 @@
       <location filename="" />
       <source>programs</source>
       <translation>programas</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>programs do not read or write files here</source>
+      <translation>aquí los programas no leen ni escriben archivos</translation>
     </message>
     <message>
       <location filename="" />
@@ -4692,6 +4867,11 @@
       <location filename="" />
       <source>restart</source>
       <translation>rearranque</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>retraction by itself is not executed here</source>
+      <translation>aquí no se ejecuta la retirada automática</translation>
     </message>
     <message>
       <location filename="" />
@@ -4835,6 +5015,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>the axis of a spindle is known from the machine file</source>
+      <translation>el eje de un husillo se conoce por el archivo de la máquina</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>the bottom of the hole</source>
       <translation>el fondo del agujero</translation>
     </message>
@@ -4882,6 +5067,11 @@
       <location filename="" />
       <source>the lead</source>
       <translation>el paso</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>the limits of an axis are those of the machine file; take it out</source>
+      <translation>los límites de un eje son los del archivo de la máquina; quítelo</translation>
     </message>
     <message>
       <location filename="" />
@@ -4935,6 +5125,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>the whole program is read before it begins; take it out</source>
+      <translation>el programa entero se lee antes de empezar; quítelo</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>this control has one channel, and its axes are its own</source>
       <translation>este control tiene un solo canal, y sus ejes son suyos</translation>
     </message>
@@ -4942,6 +5137,11 @@
       <location filename="" />
       <source>this control keeps six settable offsets; write G54 to G59</source>
       <translation>este control lleva seis decalajes ajustables; escriba de G54 a G59</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>this lathe does not punch</source>
+      <translation>este torno no punzona</translation>
     </message>
     <message>
       <location filename="" />
@@ -4985,8 +5185,23 @@
     </message>
     <message>
       <location filename="" />
+      <source>tools are managed on the page of tool offsets (F8)</source>
+      <translation>las herramientas se gestionan en la página de correctores (F8)</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>transformation</source>
       <translation>transformación</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>transformations are not chained here</source>
+      <translation>aquí no se encadenan transformaciones</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>travel to a fixed stop is not executed here</source>
+      <translation>aquí no se ejecuta el desplazamiento a tope fijo</translation>
     </message>
     <message>
       <location filename="" />
@@ -5045,8 +5260,23 @@
     </message>
     <message>
       <location filename="" />
+      <source>write GOTO, GOTOF or GOTOB</source>
+      <translation>escriba GOTO, GOTOF o GOTOB</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>write SPOS, or M3 and M4</source>
+      <translation>escriba SPOS, o M3 y M4</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>write the curve as lines and arcs</source>
       <translation>escriba la curva como rectas y arcos</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>write the frame with TRANS, ROT, SCALE or MIRROR</source>
+      <translation>escriba el frame con TRANS, ROT, SCALE o MIRROR</translation>
     </message>
     <message>
       <location filename="app/automatic/automatic_view.py" />
@@ -14929,6 +15159,36 @@
       <translation>unidades, idioma, puesto, ventana</translation>
     </message>
     <message>
+      <location filename="app/special/r_parameters.py" />
+      <source>A PROGRAM IS UNDER WAY: R PARAMETERS CHANGE BETWEEN CYCLES</source>
+      <translation>UN PROGRAMA ESTÁ EN MARCHA: LOS PARÁMETROS R CAMBIAN ENTRE CICLOS</translation>
+    </message>
+    <message>
+      <location filename="app/special/r_parameters.py" />
+      <source>Every SINUMERIK program begins with these; what it sets itself holds until its end.</source>
+      <translation>Cada programa SINUMERIK empieza con estos; lo que pone él mismo vale hasta su final.</translation>
+    </message>
+    <message>
+      <location filename="app/special/r_parameters.py" />
+      <source>NO VALUE</source>
+      <translation>SIN VALOR</translation>
+    </message>
+    <message>
+      <location filename="app/special/r_parameters.py" />
+      <source>One that nobody has set counts as 0, with a warning.</source>
+      <translation>El que nadie ha puesto cuenta como 0, con un aviso.</translation>
+    </message>
+    <message>
+      <location filename="app/special/r_parameters.py" />
+      <source>R PARAMETERS GO FROM {low} TO {high}</source>
+      <translation>LOS PARÁMETROS R VAN DE {low} A {high}</translation>
+    </message>
+    <message>
+      <location filename="app/special/r_parameters.py" />
+      <source>R0 to R299 of SINUMERIK programs</source>
+      <translation>R0 a R299 de los programas SINUMERIK</translation>
+    </message>
+    <message>
       <location filename="app/special/setup_sheet.py" />
       <source>1 ERROR: this program will not run as it stands</source>
       <translation>1 ERROR: este programa no puede ejecutarse así</translation>
@@ -20435,6 +20695,11 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/plane_functions.py" />
+      <source>Look at the angles of the axes, or write PLANE before them, or PLANE AXIAL.</source>
+      <translation>Mire los ángulos de los ejes, o escriba PLANE antes de ellos, o PLANE AXIAL.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/plane_functions.py" />
       <source>M128 is on.</source>
       <translation>M128 está activo.</translation>
     </message>
@@ -20442,6 +20707,11 @@
       <location filename="core/interpreter/klartext/plane_functions.py" />
       <source>MB MAX needs a software limit, and this machine has none along the tool.</source>
       <translation>MB MAX necesita un límite por programa, y esta máquina no lo tiene en el eje de la herramienta.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/plane_functions.py" />
+      <source>MIRROR, ROTATION or SCALE is in force: PLANE %1 goes with it.</source>
+      <translation>MIRROR, ROTATION o SCALE está activo: PLANE %1 lo sigue.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/plane_functions.py" />
@@ -20800,8 +21070,8 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/tool_call.py" />
-      <source>TOOL CALL while M128 is on.</source>
-      <translation>TOOL CALL con M128 activo.</translation>
+      <source>TOOL CALL with a tool or an oversize while M128 is on.</source>
+      <translation>TOOL CALL con una herramienta o una sobremedida con M128 activo.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/tool_call.py" />
@@ -22785,6 +23055,11 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
+      <source>Write a whole number.</source>
+      <translation>Escriba un número entero.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
       <source>goes along Z</source>
       <translation>va a lo largo de Z</translation>
     </message>
@@ -22792,6 +23067,11 @@
       <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
       <source>is %1, and lies between %2 and %3</source>
       <translation>es %1, y está entre %2 y %3</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
+      <source>is %1, and takes a whole number</source>
+      <translation>es %1, y lleva un número entero</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
@@ -23010,6 +23290,11 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/groove_cycle.py" />
+      <source>%1 reckons with a tool %2 mm wide: %3 is not set.</source>
+      <translation>%1 cuenta con una herramienta de %2 mm de ancho: %3 no está medida.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/groove_cycle.py" />
       <source>%1 reckons with the tool's width, and %2, its other corner, is not set.</source>
       <translation>%1 cuenta con el ancho de la herramienta, y %2, su otra esquina, no está puesta.</translation>
     </message>
@@ -23025,8 +23310,18 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/groove_cycle.py" />
+      <source>Look at the angles.</source>
+      <translation>Mire los ángulos.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/groove_cycle.py" />
       <source>Set %1 on the page of tool offsets (F8).</source>
       <translation>Ponga %1 en la página de correctores de herramienta (F8).</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/groove_cycle.py" />
+      <source>Set its two corners on the page of tool offsets (F8).</source>
+      <translation>Mida sus dos esquinas en la página de correctores (F8).</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/groove_cycle.py" />
@@ -23060,6 +23355,11 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/groove_cycle.py" />
+      <source>is an angle of a flank, 0 to under 90 degrees</source>
+      <translation>es un ángulo de flanco, de 0 a menos de 90 grados</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/groove_cycle.py" />
       <source>is none of 1 to 8 and 11 to 18</source>
       <translation>no es ninguno de 1 a 8 ni de 11 a 18</translation>
     </message>
@@ -23080,8 +23380,8 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/groove_cycle.py" />
-      <source>write a groove with slanted flanks as a contour of CYCLE95</source>
-      <translation>escriba una ranura de flancos inclinados como contorno de CYCLE95</translation>
+      <source>write a groove in a cone as a contour of CYCLE95</source>
+      <translation>escriba una ranura en un cono como contorno de CYCLE95</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/groove_cycle.py" />
@@ -23172,6 +23472,11 @@
       <location filename="core/interpreter/sinumerik/linear_moves.py" />
       <source>This axis counts -360 to +360; write AC( ) or IC( ).</source>
       <translation>Este eje cuenta de -360 a +360; escriba AC( ) o IC( ).</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/linear_moves.py" />
+      <source>This axis is linear; write AC( ) or IC( ).</source>
+      <translation>Este eje es lineal; escriba AC( ) o IC( ).</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/linear_moves.py" />
@@ -24445,8 +24750,8 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/third_axis.py" />
-      <source>the end point %1 lies beyond -360 to +360 of the machine</source>
-      <translation>el punto final %1 está fuera de -360 a +360 de la máquina</translation>
+      <source>the end point %1 lies beyond %2 to %3 of the machine</source>
+      <translation>el punto final %1 queda fuera de %2 a %3 de la máquina</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/thread_chain_cycle.py" />
@@ -24665,13 +24970,18 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/tools_and_edges.py" />
-      <source>%1 does not exist: T%2 has no such cutting edge in the tool offsets.</source>
-      <translation>%1 no existe: T%2 no tiene ese filo en los correctores de herramienta.</translation>
+      <source>%1 does not exist: %2 has no such cutting edge in the tool offsets.</source>
+      <translation>%1 no existe: %2 no tiene ese filo en los correctores.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/tools_and_edges.py" />
       <source>%1 has no tool offset; 0 is used, and the machine will refuse to start.</source>
       <translation>%1 no tiene corrector de herramienta; se usa 0 y la máquina no arrancará.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/tools_and_edges.py" />
+      <source>%1 is tool %2 here; write %3.</source>
+      <translation>%1 es aquí la herramienta %2; escriba %3.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/tools_and_edges.py" />
@@ -24717,6 +25027,11 @@
       <location filename="core/interpreter/sinumerik/transformations.py" />
       <source>%1 needs a block of its own.</source>
       <translation>%1 necesita su propio bloque.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/transformations.py" />
+      <source>%1 turns the part by C, and the third axis of this machine is linear.</source>
+      <translation>%1 gira la pieza con C, y el tercer eje de esta máquina es lineal.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/transformations.py" />
@@ -24920,8 +25235,8 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/variables.py" />
-      <source>%1 has no value: the program has not set it.</source>
-      <translation>%1 no tiene valor: el programa no se lo ha dado.</translation>
+      <source>%1 has no value, and counts as 0: neither the program nor the operator has set it.</source>
+      <translation>%1 no tiene valor y cuenta como 0: ni el programa ni el operador lo ha puesto.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/variables.py" />
@@ -24960,8 +25275,8 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/variables.py" />
-      <source>Write %1=… before it.</source>
-      <translation>Escriba antes %1=…</translation>
+      <source>Write %1=… before it, or set it as R PARAMETERS (F10).</source>
+      <translation>Escriba %1=… delante, o póngalo en PARÁMETROS R (F10).</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/variables.py" />
@@ -24982,6 +25297,11 @@
       <location filename="core/language/diagnostics.py" />
       <source>%1 (%2 times)</source>
       <translation>%1 (%2 veces)</translation>
+    </message>
+    <message>
+      <location filename="core/language/diagnostics.py" />
+      <source>position at the stop</source>
+      <translation>posición en la parada</translation>
     </message>
     <message>
       <location filename="core/language/formulas.py" />
@@ -28524,6 +28844,121 @@
       <translation>ancho en el fondo</translation>
     </message>
     <message>
+      <location filename="core/language/sinumerik/iso_words.py" />
+      <source>#%1: variables are R parameters here.</source>
+      <translation>#%1: aquí las variables son parámetros R.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/iso_words.py" />
+      <source>%1 presets a position in ISO; here zero is shifted by TRANS.</source>
+      <translation>%1 preajusta una posición en ISO; aquí el cero se desplaza con TRANS.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/iso_words.py" />
+      <source>%1%2 is the time of a dwell in ISO, and here it is F, in seconds.</source>
+      <translation>%1%2 es el tiempo de una espera en ISO; aquí es F, en segundos.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/iso_words.py" />
+      <source>%1: %2 makes a corner here.</source>
+      <translation>%1: aquí %2 hace una esquina.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/iso_words.py" />
+      <source>%1: a distance is %2 here; this lathe has no axis %3.</source>
+      <translation>%1: aquí una distancia es %2; este torno no tiene eje %3.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/iso_words.py" />
+      <source>%1: a program has the name of its file here.</source>
+      <translation>%1: aquí un programa tiene el nombre de su archivo.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/iso_words.py" />
+      <source>%1: a subprogram is called by its name here.</source>
+      <translation>%1: aquí un subprograma se llama por su nombre.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/iso_words.py" />
+      <source>%1: home is G74 here, and a fixed point G75.</source>
+      <translation>%1: aquí el punto de referencia es G74, y un punto fijo G75.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/iso_words.py" />
+      <source>%1: the highest speed is LIMS= here.</source>
+      <translation>%1: aquí la velocidad máxima es LIMS=.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/iso_words.py" />
+      <source>G%1 of ISO is %2 here.</source>
+      <translation>G%1 de ISO es aquí %2.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/iso_words.py" />
+      <source>G%1: the kind of feed is %2 here.</source>
+      <translation>G%1: aquí el tipo de avance es %2.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/iso_words.py" />
+      <source>G%1: the unit is %2 here.</source>
+      <translation>G%1: aquí la unidad es %2.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/iso_words.py" />
+      <source>GOTO %1: a jump names a label or a block here.</source>
+      <translation>GOTO %1: aquí un salto nombra una etiqueta o un bloque.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/iso_words.py" />
+      <source>R%1: CR=%2 is the radius of an arc here.</source>
+      <translation>R%1: aquí CR=%2 es el radio de un arco.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/iso_words.py" />
+      <source>Write ; before it.</source>
+      <translation>Escriba ; delante.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/iso_words.py" />
+      <source>Write CR=%1.</source>
+      <translation>Escriba CR=%1.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/iso_words.py" />
+      <source>Write G4 F%1.</source>
+      <translation>Escriba G4 F%1.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/iso_words.py" />
+      <source>Write GOTO N%1.</source>
+      <translation>Escriba GOTO N%1.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/iso_words.py" />
+      <source>Write L%1.</source>
+      <translation>Escriba L%1.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/iso_words.py" />
+      <source>Write LIMS=%1.</source>
+      <translation>Escriba LIMS=%1.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/iso_words.py" />
+      <source>Write R%1.</source>
+      <translation>Escriba R%1.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/iso_words.py" />
+      <source>Write TRANS.</source>
+      <translation>Escriba TRANS.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/iso_words.py" />
+      <source>a comment in brackets is one of ISO; here it begins with ;.</source>
+      <translation>un comentario entre paréntesis es de ISO; aquí empieza con ;.</translation>
+    </message>
+    <message>
       <location filename="core/language/sinumerik/program_jumps.py" />
       <source>%1 needs a name</source>
       <translation>%1 necesita un nombre</translation>
@@ -28820,11 +29255,6 @@
     </message>
     <message>
       <location filename="core/language/sinumerik/sinumerik_lexer.py" />
-      <source>Write a whole number.</source>
-      <translation>Escriba un número entero.</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
       <source>Write it at the start.</source>
       <translation>Escríbalo al principio.</translation>
     </message>
@@ -28874,6 +29304,11 @@
       <translation>este torno no tiene eje C; su tercer eje es %1</translation>
     </message>
     <message>
+      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
+      <source>words of a single axis are not executed here</source>
+      <translation>aquí no se ejecutan palabras de un solo eje</translation>
+    </message>
+    <message>
       <location filename="core/language/sinumerik/sinumerik_words.py" />
       <source>H functions are not part of this control's SINUMERIK subset</source>
       <translation>las funciones H no son parte del SINUMERIK de este control</translation>
@@ -28890,8 +29325,8 @@
     </message>
     <message>
       <location filename="core/language/sinumerik/sinumerik_words.py" />
-      <source>an R parameter stands behind = or is set with =, such as R1=10</source>
-      <translation>un parámetro R va tras = o se pone con =, como R1=10</translation>
+      <source>an R parameter stands behind = or is set with =, as R1=10; a radius is CR=, a rounding RND=</source>
+      <translation>un parámetro R va detrás de = o se asigna con =, como R1=10; un radio es CR=, un redondeo RND=</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/sinumerik_words.py" />
@@ -29515,6 +29950,11 @@
     </message>
     <message>
       <location filename="core/proving/cutting_checks.py" />
+      <source>Start it with M3 or M4 before it.</source>
+      <translation>Póngalo en marcha antes con M3 o M4.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/cutting_checks.py" />
       <source>Switch it on with %1 before it.</source>
       <translation>Enciéndala antes con %1.</translation>
     </message>
@@ -29550,6 +29990,11 @@
     </message>
     <message>
       <location filename="core/proving/cutting_checks.py" />
+      <source>This move cuts with no tool: no length and no radius of one count.</source>
+      <translation>Este movimiento corta sin herramienta: no cuenta ninguna longitud ni ningún radio.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/cutting_checks.py" />
       <source>This move cuts with the collet open: the part is held by nothing.</source>
       <translation>Este movimiento corta con la pinza abierta: nada sujeta la pieza.</translation>
     </message>
@@ -29582,6 +30027,11 @@
       <location filename="core/proving/cutting_checks.py" />
       <source>Write T with the tool's number before it.</source>
       <translation>Escriba antes T con el número de la herramienta.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/cutting_checks.py" />
+      <source>Write TOOL CALL before it.</source>
+      <translation>Escriba TOOL CALL delante.</translation>
     </message>
     <message>
       <location filename="core/proving/cutting_checks.py" />
@@ -29670,8 +30120,18 @@
     </message>
     <message>
       <location filename="core/proving/machine_checks.py" />
+      <source>%1 and any G10 or G92</source>
+      <translation>%1 y cualquier G10 o G92</translation>
+    </message>
+    <message>
+      <location filename="core/proving/machine_checks.py" />
       <source>%1 would go to %2 %3 from home%4, %5 %6 beyond the travel limit of %7</source>
       <translation>%1 iría a %2 %3 de la referencia%4, %5 %6 más allá del límite de carrera de %7</translation>
+    </message>
+    <message>
+      <location filename="core/proving/machine_checks.py" />
+      <source>%1, G54 to G59 and TRANS</source>
+      <translation>%1, G54 a G59 y TRANS</translation>
     </message>
     <message>
       <location filename="core/proving/machine_checks.py" />
@@ -29685,8 +30145,8 @@
     </message>
     <message>
       <location filename="core/proving/machine_checks.py" />
-      <source>check the %1 word, the offset of %2 and any G10 or G92</source>
-      <translation>revise la palabra %1, el corrector de %2 y cualquier G10 o G92</translation>
+      <source>check the %1 word, the offset of %2</source>
+      <translation>compruebe la palabra %1 y el corrector de %2</translation>
     </message>
     <message>
       <location filename="core/proving/machine_checks.py" />
@@ -30412,6 +30872,11 @@
       <location filename="core/proving/program_tools.py" />
       <source>This feed leads away from the part, and no other cuts behind Z0.</source>
       <translation>Este avance se aleja de la pieza, y ningún otro corta detrás de Z0.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/proof_pass.py" />
+      <source>%1 Assumed: %2; nothing behind it is proved.</source>
+      <translation>%1 Supuesto: %2; lo que sigue no está probado.</translation>
     </message>
     <message>
       <location filename="core/proving/thread_checks.py" />
