@@ -26,14 +26,33 @@ NAMED_TOOLS = 32_768
 """Numbers from here on stand for tools by a name that the table does not have."""
 
 
+class NamedTool(int):
+    """The number of such a tool, or of an edge of it, which carries its name as a program writes it."""
+
+    name: str
+
+    def __new__(cls, number: int, name: str) -> NamedTool:
+        made = super().__new__(cls, number)
+        made.name = name
+        return made
+
+    def __reduce__(self) -> tuple[type[NamedTool], tuple[int, str]]:
+        return NamedTool, (int(self), self.name)
+
+
+def _like(key: int, number: int) -> int:
+    """The number, with the name of ``key`` where that is a tool by name."""
+    return NamedTool(number, key.name) if isinstance(key, NamedTool) else number
+
+
 def edge_key(tool: int, edge: int) -> int:
     """The number of this edge's row: that of the tool for D1."""
-    return tool if edge <= 1 else edge * _STEP + tool
+    return tool if edge <= 1 else _like(tool, edge * _STEP + tool)
 
 
 def tool_of(key: int) -> int:
     """T of a row."""
-    return key % _STEP
+    return _like(key, key % _STEP)
 
 
 def edge_of(key: int) -> int:
@@ -42,10 +61,11 @@ def edge_of(key: int) -> int:
 
 
 def edge_number(key: int) -> str:
-    """What stands behind the T of a row: 3, or 3 D2 where it is not the first edge."""
-    return f"{tool_of(key)}" if key < _STEP else f"{tool_of(key)} D{edge_of(key)}"
+    """What stands behind the T of a row: 3, ="ROUGHER", and D2 behind where it is not the first edge."""
+    number = f'="{key.name}"' if isinstance(key, NamedTool) else f"{tool_of(key)}"
+    return number if key < _STEP else f"{number} D{edge_of(key)}"
 
 
 def edge_name(key: int) -> str:
-    """What a row is called: T3, or T3 D2."""
+    """What a row is called: T3, T3 D2, T="ROUGHER"."""
     return f"T{edge_number(key)}"

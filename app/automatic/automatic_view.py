@@ -128,6 +128,8 @@ class AutomaticPage(Page):
             self.space.show_instant(running(scene, snapshot), plane_words(snapshot.swivel))
             return
         self.path.show_tip(tip_of(snapshot, loaded.job))
+        first_move = self.desk.first_move
+        self.path.show_approach(first_move.legs(snapshot) if first_move is not None else None)
         self.path.advance()
 
     @property

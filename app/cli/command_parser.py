@@ -67,9 +67,8 @@ class Parser(argparse.ArgumentParser):
         self._check_first_options(sys.argv[1:] if args is None else args)
         found, rest = self.parse_known_args(args, namespace)
         if rest:
-            near = nearest(rest[0].partition("=")[0], self._all_options())
-            meant = f"; did you mean {near}?" if near else ""
-            self.error(f"unrecognized arguments: {' '.join(rest)}{meant}")
+            name = rest[0].partition("=")[0]
+            self._unknown(" ".join(rest), name, f"this command has no option {name}")
         return found
 
     def _check_first_options(self, args: Sequence[str]) -> None:
@@ -80,10 +79,17 @@ class Parser(argparse.ArgumentParser):
             if not word.startswith("--"):
                 return
             if name not in known:
-                near = nearest(name, self._all_options())
-                self.error(f"unrecognized arguments: {word}" + (f"; did you mean {near}?" if near else ""))
+                self._unknown(word, name, f"{name} is an option of a command: write it after the command")
             if not value and known[name].nargs != 0:
                 next(words, "")
+
+    def _unknown(self, words: str, name: str, elsewhere: str) -> NoReturn:
+        """Report arguments that are not known here; ``elsewhere`` if another parser has this option."""
+        options = self._all_options()
+        if name in options:
+            self.error(elsewhere)
+        near = nearest(name, options)
+        self.error(f"unrecognized arguments: {words}" + (f"; did you mean {near}?" if near else ""))
 
     def print_help(self, file: Any = None) -> None:
         """Write the help, or raise the OSError that argparse would drop: it cannot be written."""

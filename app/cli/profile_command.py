@@ -14,6 +14,7 @@ from app.cli.who_changes import add_as_option, note_change, who_may
 from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError
 from core.access.access_table import Act
 from core.coded_error import error_code
+from core.drawings.unit_check import UNITS
 from core.language.source import Dialect, dialect_of
 from core.shapes.cutting_data import MATERIALS
 
@@ -30,8 +31,6 @@ if TYPE_CHECKING:
     from core.machine.machine_model import Machine
     from core.part.tool_shape import ToolShape
     from core.shapes.shape_fields import Value
-
-UNITS = {"mm": 1.0, "inch": 25.4}
 
 
 def add_parser(subparsers: SubParsers) -> None:
@@ -53,7 +52,9 @@ def add_parser(subparsers: SubParsers) -> None:
 
 
 def _add_drawing_options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--unit", choices=tuple(UNITS), help="unit of the drawing, instead of the file's")
+    parser.add_argument(
+        "--unit", choices=tuple(map(str.lower, UNITS)), help="unit of the drawing, instead of the file's"
+    )
     parser.add_argument("--layer", default="", metavar="NAME", help="the layer of the contour (default: all)")
     parser.add_argument("--axis", default="", metavar="NAME", help="the axis, as --list names it")
     parser.add_argument("--contour", type=int, default=1, metavar="N", help="which contour of --list")
@@ -124,7 +125,21 @@ def _run(args: argparse.Namespace) -> int:
         raise CommandError(
             f"{drawing.name} has {len(found)} contours: say --contour 1 to {len(found)}", "which-contour"
         )
-    return _make(drawing, view, found[args.contour - 1], args, machine)
+    net = found[args.contour - 1]
+    if args.unit is None:
+        _check_unit(drawing, view, net, machine)
+    return _make(drawing, view, net, args, machine)
+
+
+def _check_unit(drawing: Drawing, view: View, net: Net, machine: Machine) -> None:
+    """Refuse a contour that is too large for the machine only because of the unit that its file states."""
+    from app.compose.shapes_desk import shop_of
+    from core.drawings.unit_check import wrong_unit
+
+    if (wrong := wrong_unit(net, view.unit, shop_of(machine, {}).travel)) is not None:
+        size, name = wrong[0], wrong[1].lower()
+        words = f"{drawing.name} is {size}: in {name} it would fit; use --unit {name}"
+        raise CommandError(words, "wrong-unit")
 
 
 def _language(args: argparse.Namespace, machine: Machine) -> Dialect:
@@ -143,7 +158,7 @@ def _view(drawing: Drawing, args: argparse.Namespace) -> View:
     from core.drawings.contour_walk import GAP
     from core.drawings.drawing_view import Front, View, Zero, axis_named
 
-    unit = UNITS[args.unit] if args.unit else drawing.unit
+    unit = UNITS[args.unit.upper()] if args.unit else drawing.unit
     if not unit:
         raise CommandError(f"{drawing.name} does not say its unit: say --unit mm or --unit inch", "no-unit")
     gap = GAP if args.gap is None else args.gap

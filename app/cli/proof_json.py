@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from app.cli.figures import Json, degrees, length_of, per_minute, seconds
 from app.cli.stock_figures import stock_json
 from core.language.source import Dialect
+from core.tool_edges import NamedTool
 
 if TYPE_CHECKING:
     from core.language.diagnostics import Diagnostic
@@ -70,7 +71,7 @@ def report_json(
         "cutting_length": length(report.cutting_length),
         "rapid_length": length(report.rapid_length),
         "corner_tolerance": length(report.corner_tolerance),
-        "tools": list(report.tools),
+        "tools": [each.name if isinstance(each, NamedTool) else each for each in report.tools],
         "limits": {
             "x": [length(x) for x in reach.x],
             "z": [length(z) for z in reach.z],

@@ -136,7 +136,7 @@ def _other(args: argparse.Namespace, setup: Setup) -> OtherOffsets | None:
     from app.cli.proof_job import OtherOffsets
     from app.compose.stored_offsets import read_offsets
 
-    tools, secondary, zero, _ = read_offsets(Path(args.compare))
+    tools, secondary, zero, *_ = read_offsets(Path(args.compare))
     return OtherOffsets(args.compare, replace(setup, tools=tools, secondary=secondary, zero=zero))
 
 

@@ -34,6 +34,9 @@ Each [[step]] is a form of the editor, with its fields as keys; what is not said
   kind = "turn"
   points = [{x = .5, z = 0}, {z = -.5}, {x = .7, r = .1}, {z = -1.1}]
 
+The depth of a rough pass is proposed by material, insert and machine (key rough), with what is left in X
+and Z for finishing (key leave). A pass that is deeper than the insert takes is refused.
+
 turndesk shapes --list names all kinds and their keys.
 """
 

@@ -62,7 +62,7 @@ def _feed(block: Block) -> tuple[float | None, str | None]:
     if not block.moves:
         return None, None
     alone = (block.x, block.z) == (block.x0, block.z0) and block.c != block.c0
-    unit = "deg" if alone else "mm"
+    unit = "deg" if alone and not block.modal.linear_c else "mm"
     if block.per_rev:
         return round(block.feed, 6), f"{unit}/rev"
     return round(block.feed * _PER_MINUTE, 6), f"{unit}/min"

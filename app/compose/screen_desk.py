@@ -45,6 +45,7 @@ from app.desk.persistence import Persistence
 from app.desk.program_folder import ProgramFile, ProgramFolders
 from app.desk.program_loading import LoadingSteps, ProgramLoader
 from app.desk.prompt_line import UNDER_WAY
+from app.desk.start_watch import StartWatch
 from app.desk.translation import tr
 from app.offsets.mill_touch import MillTouch
 from app.offsets.offset_effect import Effect
@@ -225,6 +226,7 @@ def desk_and_executor(
         note=journal.note if journal is not None else _kept_nowhere,
         left=journal.left if journal is not None else None,
         tell=recorder.tell,
+        checks_starts=machine.kind == "lathe",
     )
     desk = _desk(machine, executor, connected, events, offsets)
     events.desk, desk.recorder = desk, recorder
@@ -314,6 +316,9 @@ def _desk(
         changes=changed,
         book=book_of(offsets, journal),
     )
+    if machine.kind == "lathe":
+        desk.first_move = StartWatch(desk.post)
+        desk.attach(desk.first_move)
     desk.attach(Effect(drawer(machine), part_comparer(machine, shapes_at_hand, kept)))
     beside = workshop(machine, offsets, left=left, shapes=shapes_at_hand, kept=kept)
     desk.attach_later("app.editor.editor.Editor", partial(_editor, desk, beside, journal, machine))

@@ -12,7 +12,7 @@ from app.shapes.drawing_plan import Plan
 from app.shapes.shapes_model import Shapes
 from core.drawings.part_against_drawing import Comparison
 from core.drawings.profile_program import greatest_diameter
-from core.machine.machine_model import Machine
+from core.machine.machine_model import Axis, Machine
 from core.part.tool_shape import ToolShape
 from core.shapes.shape_setting import Setting, Shop
 
@@ -61,8 +61,14 @@ def shop_of(machine: Machine, tools: Mapping[int, ToolShape]) -> Shop:
         third_axis=machine.third_axis if machine.c_enabled else "",
         spindle_is_c=machine.spindle_is_c,
         chuck=_chuck(machine),
+        travel=(_travel(by_name.get("X")), _travel(z)),
         tools=dict(tools),
     )
+
+
+def _travel(axis: Axis | None) -> float:
+    """Return the length of an axis's travel in mm, 0 if the machine file does not limit it."""
+    return axis.travel[1] - axis.travel[0] if axis is not None and axis.travel else 0.0
 
 
 def _chuck(machine: Machine) -> tuple[int, int] | None:

@@ -24,6 +24,7 @@ from app.special.logged_events import LoggedEvents
 from app.special.machine_file_acceptance import MachineFileAcceptance
 from app.special.parts_counter import PartsCounterFunction
 from app.special.preferences import ScreenPreferences
+from app.special.r_parameters import RParameters
 from app.special.setup_sheet_function import SetupSheetFunction
 from app.special.special_functions import SpecialFunction, SpecialFunctions
 from app.special.spindle_limit import SpindleSpeedLimit
@@ -94,4 +95,6 @@ def special_functions(
     functions.append(ShiftReport(desk, machine.name, worker, data_folder() / "sheets"))
     functions.append(LampsAndSound(desk, machine, sounds))
     functions.append(AccessLevels(desk, persistence))
+    if machine.language == Dialect.SINUMERIK:
+        functions.append(RParameters(desk, persistence, worker))
     return SpecialFunctions(functions, worker)

@@ -5,13 +5,21 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from functools import partial
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
 from app.compose.machine_setup import setup_for
 from app.desk.command_errors import CommandError
 from app.desk.data_folder import data_folder
 from app.offsets.mill_offsets import MillOffsets, rows_of, with_mill
-from app.offsets.offsets_in_force import PRESET, preset_of, secondary_offsets, tool_offsets
+from app.offsets.offsets_in_force import (
+    PRESET,
+    R_PARAMETERS,
+    preset_of,
+    r_parameters,
+    secondary_offsets,
+    tool_offsets,
+)
 from core.coded_error import error_code
 from core.interpreter.job_setup import SecondaryOffset, Setup, ToolOffset, ZeroOffset
 from core.store.store_file import has_store
@@ -34,6 +42,7 @@ class Offsets(NamedTuple):
     secondary: Mapping[int, SecondaryOffset]
     zero: Mapping[int, ZeroOffset]
     mill: MillOffsets = MillOffsets()
+    r: Mapping[int, float] = MappingProxyType({})  # R parameters of SINUMERIK
 
 
 NONE = Offsets({}, {}, {})
@@ -48,18 +57,18 @@ def setup_with(
     strict: bool = False,
 ) -> Setup:
     """Circumstances of a pass after power-up with all offsets that this machine has."""
-    tools, secondary, zero, mill = offsets
     return with_mill(
         setup_for(
             machine,
-            tools=tools,
-            secondary=secondary,
-            zero=zero,
+            tools=offsets.tools,
+            secondary=offsets.secondary,
+            zero=offsets.zero,
+            r=offsets.r,
             inputs=inputs,
             block_delete=block_delete,
             strict=strict,
         ),
-        mill,
+        offsets.mill,
     )
 
 
@@ -76,7 +85,7 @@ def stored_offsets() -> Offsets:
 
     try:
         with Store.open(folder, read_only=True) as store:
-            damaged = store.damaged(OF_PROGRAMS, {PRESET})
+            damaged = store.damaged(OF_PROGRAMS, {PRESET, R_PARAMETERS})
             if damaged:
                 raise CommandError(damaged[0], "damaged-row")
             return offsets_of(store)
@@ -118,7 +127,8 @@ def offsets_of(store: Store) -> Offsets:
     """What an open store holds, by value."""
     found, presets = _of_rows(store.tools(), store.secondary(), store.zero_offsets()), store.presets()
     preset = preset_of(store.setting(PRESET), presets)
-    return found._replace(mill=MillOffsets(store.mill_tools(), presets, preset))
+    r = r_parameters(store.setting(R_PARAMETERS))
+    return found._replace(mill=MillOffsets(store.mill_tools(), presets, preset), r=r)
 
 
 def read_offsets(path: Path) -> Offsets:
@@ -143,7 +153,7 @@ def book_of(offsets: Callable[[], Offsets], journal: Journal | None) -> OffsetBo
         return journal.book()
     from app.offsets.offset_book import OffsetBook
 
-    tools, secondary, zero, mill = offsets()
+    tools, secondary, zero, mill, _ = offsets()
     return OffsetBook(
         locked=OF_A_FILE,
         tools={

@@ -238,6 +238,8 @@ def line_prover(machine: Machine, offsets: Callable[[], Offsets]) -> ProveLine:
 def give_mdi(desk: Desk, machine: Machine, offsets: Callable[[], Offsets], keep: Persistence) -> None:
     """Give the desk its MDI, and the Jog page what it switches by the same lines."""
     prove_line = line_prover(machine, offsets)
+    if desk.first_move is not None:
+        prove_line = desk.first_move.with_lines(prove_line)
     codes = partial(code_book, Dialect(machine.language))
     mdi = MdiModel(prove_line, desk.post, desk.snapshot, desk.say, desk.clear, codes, MdiLine(keep))
     hand = HandFunctions(desk, machine, prove_line)
@@ -282,6 +284,15 @@ def give_searchto(desk: Desk, machine: Machine) -> None:
     """Give the desk its SEARCHTO; its ways go at the manual rapid, slower within the part."""
     rapid = machine.manual_rapid
     choices = Choices(rapid=rapid, modest=_MODEST * rapid)
-    searchto = SearchtoModel(desk.session, desk.post, desk.snapshot, desk.say, desk.clear, rebuilt, choices)
+
+    def prove(job: Job, watch: Watch) -> Proved:
+        proved = desk.session.workshop.prove(job, watch)
+        if desk.first_move is None:
+            return proved
+        return desk.first_move.checked(job, proved, desk.snapshot(), watch)
+
+    searchto = SearchtoModel(
+        desk.session, desk.post, desk.snapshot, desk.say, desk.clear, rebuilt, prove, choices
+    )
     desk.attach(searchto)
     desk.own_starts.append(searchto)

@@ -28,6 +28,7 @@ from app.desk.program_renewal import ProgramRenewal
 from app.desk.prompt_line import ONE_HAND, UNDER_WAY, YES, PromptAnswers
 from app.desk.readouts import Readout
 from app.desk.screen_settings import SettingsBook
+from app.desk.start_watch import StartWatch
 from app.desk.station_hands import OVERRIDE_MOST, StationHands, StationPanel, stepped
 from app.desk.translation import tr
 from app.desk.waiting import how_it_ends
@@ -140,6 +141,7 @@ class Desk:
     own_starts: list[OwnStart] = field(default_factory=list)
     hears: Callable[[Snapshot], None] = lambda _snapshot: None  # the sounds
     offered: Callable[[Snapshot], NoticeRow | None] = lambda _snapshot: None  # between cycles: the next job
+    first_move: StartWatch | None = None  # what is known of it
     watches: list[Watcher] = field(default_factory=list)  # what else looks at every frame
     _attached: dict[type[Attached], Attached] = field(default_factory=dict)
     _made_later: dict[str, Callable[[], Attached]] = field(
@@ -315,6 +317,8 @@ class Desk:
         self.answers.look(snapshot)
         self.rebuilding.look(snapshot, self.book, self.post)
         loaded = self.session.now
+        if self.first_move is not None:
+            self.first_move.see(snapshot, loaded)
         if snapshot.starts is not Starts.LINE:  # a line of MDI is no run of the program
             text = loaded.job.text_digest if loaded.job is not None else self.counter.text
             self.counter.see(snapshot, self.post, self.say, text)
@@ -353,6 +357,10 @@ class Desk:
             return prompt_line.alarm_of(snapshot, self.release_words, field_open=self.field_open()) or page
         words = self.start_words, self.release_words
         standing = prompt_line.prompt(snapshot, loaded, *words, field_open=self.field_open())
+        if refusal := self.first_move_refusal(snapshot):
+            standing = f"{prompt_line.NO_START}: {refusal}"
+        elif self.first_move is not None and self.first_move.checking and snapshot.state is State.IDLE:
+            standing = tr("CHECKING THE FIRST MOVE AGAINST THE PART")
         if snapshot.state is State.WAIT:
             standing = how_it_ends(snapshot, self.set_input is not None) or standing
         return " · ".join(each for each in (self._due(snapshot, standing), standing) if each)
@@ -363,6 +371,12 @@ class Desk:
         if waits or standing.startswith(prompt_line.NO_START):
             return ""
         return " · ".join(told for watcher in self.watches if (told := watcher.due()))
+
+    def first_move_refusal(self, snapshot: Snapshot) -> str:
+        """Why Cycle Start does not begin the program from here; empty when its first move is clear."""
+        if self.first_move is None or snapshot.state is not State.IDLE:
+            return ""
+        return self.first_move.refusal if snapshot.starts is Starts.PROGRAM else ""
 
     def time_left(self, snapshot: Snapshot, loaded: Loaded) -> float:
         """Seconds to the end of the cycle at the present override; infinite while it stands still."""
@@ -483,6 +497,8 @@ class Desk:
             snapshot.state is not State.IDLE or not self.starts_here or snapshot.starts is not Starts.PROGRAM
         ):
             self.say(tr("Y MEANS SOMETHING ON THE AUTOMATIC PAGE, WITH THE DRIVES ON"))
+        elif refusal := self.first_move_refusal(snapshot):
+            self.say(f"{prompt_line.NO_START}: {refusal}")
         else:
             self.clear()
             self.post(ConfirmStart(found.at))

@@ -27,7 +27,7 @@ from app.desk.waiting import waits_for
 from core.alarms import CATALOGUE, Reaction
 from core.executor.snapshot import Alarm, Snapshot, State
 from core.interpreter.modal_state import Modal
-from core.tool_edges import tool_of
+from core.tool_edges import edge_name, tool_of
 
 
 class Tone(StrEnum):
@@ -83,6 +83,12 @@ class MachineStatus:
     stop: Alarm | None  # why it stands where no alarm says it, unless somebody asked for it
 
 
+def _in_work(modal: Modal) -> str:
+    """The tool; of a mill its preset."""
+    preset = modal.settable and modal.edge is None
+    return f"G{modal.settable}" if preset else edge_name(tool_of(modal.tool))
+
+
 def _second(modal: Modal) -> str:
     """What stands behind T: the secondary offset, or the cutting edge and the settable offset."""
     if modal.edge is not None:
@@ -113,7 +119,7 @@ def status_of(
         state=state,
         tone=Tone.OFF if state == NOT_HOMED else TONES[snapshot.state],
         position=position_figures(snapshot, readout, with_c, metric, third_axis),
-        tool=f"G{modal.settable}" if modal.settable and modal.edge is None else f"T{tool_of(modal.tool)}",
+        tool=_in_work(modal),
         secondary="" if "Y" in snapshot.axes else _second(modal),
         feed=feed_figures(snapshot, metric),
         spindle=spindle_figures(snapshot, metric, language),

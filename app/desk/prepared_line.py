@@ -6,10 +6,11 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import partial
 
+from app.desk.first_move_seen import FirstMoveSeen
 from app.desk.latest import Latest, Watch
 from app.desk.program_loading import Proved
 from core.executor.commands import Command, Prepare
-from core.executor.job import Job, Proof
+from core.executor.job import Job
 from core.executor.snapshot import CYCLE, Snapshot, Starts
 from core.language.diagnostics import Diagnostic, Severity
 
@@ -40,7 +41,7 @@ class PreparedLine:
     ready: Job | None = None  # proved and prepared
     worker: Latest = field(default_factory=lambda: Latest("loading-mdi"))
     refused: Callable[[Diagnostic], None] = field(default=lambda _error: None)  # it does not run
-    _proof: Proof | None = None  # of what is ready
+    _proof: Proved | None = None  # of what is ready
     _begun: int = 0  # lines that the executor has begun, as far as they were seen
 
     def ask(self, text: str, snapshot: Snapshot, failed: Callable[[str], None]) -> None:
@@ -70,7 +71,7 @@ class PreparedLine:
         """
         if snapshot.state in CYCLE or snapshot.starts is Starts.LINE:
             return
-        self.post(Prepare(Starts.LINE, self.ready, self._proof if self.ready is not None else None))
+        self._prepare()
 
     def look(self, snapshot: Snapshot) -> bool:
         """Once a frame: take up what the worker has found. True when the line has just been started."""
@@ -87,6 +88,11 @@ class PreparedLine:
         return self.worker.busy
 
     @property
+    def first_move(self) -> FirstMoveSeen | None:
+        """The first move of the line that is ready; None: none is, or it was not checked."""
+        return self._proof.first_move if self.ready is not None and self._proof is not None else None
+
+    @property
     def errors(self) -> tuple[Diagnostic, ...]:
         """What keeps the line from running."""
         return tuple(each for each in self.found if each.severity is Severity.ERROR)
@@ -101,5 +107,11 @@ class PreparedLine:
         if self.errors:
             self.refused(self.errors[0])
         else:
-            self.ready, self._proof = job, proved.proof
-            self.post(Prepare(Starts.LINE, job, proved.proof))
+            self.ready, self._proof = job, proved
+            self._prepare()
+
+    def _prepare(self) -> None:
+        if self.ready is None or self._proof is None:
+            self.post(Prepare(Starts.LINE))
+        else:
+            self.post(Prepare(Starts.LINE, self.ready, self._proof.proof, self._proof.clearance))

@@ -10,9 +10,11 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from app.desk.first_move_seen import FirstMoveSeen
 from app.desk.latest import Latest, Request, Watch
 from core.executor.commands import Command, GiveProof, LoadJob
 from core.executor.job import Job, Proof
+from core.executor.start_clearance import Clearance
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Source
 
@@ -39,11 +41,18 @@ class Proved:
     """A proof and everything that proving had to say.
 
     ``waits``: so much is said of its part that an error of it may refuse the start, so it waits for that.
+    ``first_move``: what was found of the first move, of a line and of a restart.
     """
 
     proof: Proof
     diagnostics: tuple[Diagnostic, ...] = ()
     waits: bool = False
+    first_move: FirstMoveSeen | None = None
+
+    @property
+    def clearance(self) -> Clearance | None:
+        """The verdict on the first move; None: it was not checked."""
+        return self.first_move.clearance if self.first_move is not None else None
 
 
 @dataclass(frozen=True, slots=True)

@@ -282,8 +282,9 @@ def _unit(metric: bool, control: bool) -> str:
 
 def _figures(snapshot: Snapshot, readout: Readout, metric: bool, diameter: bool) -> list[str]:
     angle = formats.angle if snapshot.axes == LATHE else rotary_angle
+    turning = () if snapshot.axes == LATHE and snapshot.modal.linear_c else ROTARY
     return [
-        angle(value) if name in ROTARY else formats.length(_doubled(name, value, diameter), metric)
+        angle(value) if name in turning else formats.length(_doubled(name, value, diameter), metric)
         for name, value in zip(snapshot.axes, coordinates(snapshot, readout), strict=True)
     ]
 

@@ -14,8 +14,11 @@ from app.desk.machine_status import MachineStatus
 from app.desk.modal_rows import ModalRow, rows_of
 from app.desk.program_loading import Loaded
 from app.desk.prompt_line import MOVING
+from app.desk.start_watch import drawn
 from app.desk.translation import tr
 from app.mdi.mdi_model import MdiModel
+from app.path.path_aspects import tip_of
+from app.path.path_view import PathView
 from app.screen import page_table
 from app.screen.code_choices_view import CodeChoices
 from app.screen.letter_keys import LINES, LetterPad
@@ -172,6 +175,8 @@ class MdiPage(ModelPage):
         self.history = HistoryPanel(self.look, self._recall, self)
         self.codes = CodeChoices(self.look, model.completion.codes, model.take_code, self)
         self.letters = LetterPad(self.look, self.touched, self, LINES)
+        self.path = PathView(self.look, self)
+        self.path.hide()
         self.inforce = ModalPanel(self.look, self)
 
     def key_actions(self) -> KeyActions:
@@ -219,7 +224,7 @@ class MdiPage(ModelPage):
         """Not while a line is under way."""
         return self.model.leave()
 
-    def refresh(self, snapshot: Snapshot, _view: MachineStatus, _loaded: Loaded) -> None:
+    def refresh(self, snapshot: Snapshot, _view: MachineStatus, loaded: Loaded) -> None:
         """The line, what was found, and the state of this instant."""
         model, typing = self.model, self.model.typing
         model.look(snapshot)
@@ -230,11 +235,26 @@ class MdiPage(ModelPage):
         line.found, line.ready = model.line.found, model.line.ready is not None
         history.lines, history.back = tuple(typing.history), typing.back
         history.refused = tuple(typing.refused.items())
+        self._show_first_move(snapshot, loaded)
         self.codes.setVisible(model.completion.open)
         self.codes.refresh()
         angle = snapshot.demand[2] - snapshot.modal.offset_c
         point = Checkpoint(snapshot.modal, c=angle, kept=snapshot.kept)
         self.inforce.rows = rows_of(point, self.desk.language)
+
+    def _show_first_move(self, snapshot: Snapshot, loaded: Loaded) -> None:
+        """A line that is ready and moves is drawn over the program's path, in the place of the history."""
+        legs = drawn(self.model.line.first_move)
+        if legs:
+            self.path.show_picture(loaded.picture)
+            self.path.show_tip(tip_of(snapshot, loaded.job)._replace(block=0))
+            self.path.show_approach(legs)
+            self.path.advance()
+        self.path.setVisible(bool(legs))
+
+    def dress(self) -> None:
+        """Other colours are in force."""
+        self.path.restart()
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
         """The line over the history, what is in force at their right."""
@@ -242,6 +262,6 @@ class MdiPage(ModelPage):
         gap, high, state = max(4, round(0.7 * u)), round(LINE * u), round(STATE * u)
         wide = self.width() - state - gap
         self.line.setGeometry(0, 0, wide, high)
-        for part in (self.history, self.codes, self.letters):
+        for part in (self.history, self.path, self.codes, self.letters):
             part.setGeometry(0, high + gap, wide, self.height() - high - gap)
         self.inforce.setGeometry(wide + gap, 0, state, self.height())

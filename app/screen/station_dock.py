@@ -38,7 +38,8 @@ class StationDock(FingerPanel):
     def show_station(self, snapshot: Snapshot) -> None:
         """Where its switches and buttons stand."""
         desk = self._desk
-        self._auto, self.barred = snapshot.spindle_auto, bool(desk.barred())
+        refused = desk.barred() or desk.first_move_refusal(snapshot)
+        self._auto, self.barred = snapshot.spindle_auto, bool(refused)
         palms = frozenset(desk.hands.palms.down)
         pots = (desk.hands.spindle_pot.wanted, desk.hands.feed_pot.wanted)
         latched = desk.settings.now.latched and desk.one_hand

@@ -40,7 +40,7 @@ from app.screen.window_bars import FunctionKeys, LampStrip, NoticeRows, PromptLi
 from app.screen.window_layout import Places, Rect, low_places, places, unit, work_of
 from core.executor.snapshot import Snapshot, State
 
-_KEYS = (("F6", "SEARCHTO"), ("Y", "FROM LINE 1"))
+_SEARCHTO, _FROM_LINE_1 = ("F6", "SEARCHTO"), ("Y", "FROM LINE 1")
 GAP = 4  # pixels under the rows that stand
 _RESTING = frozenset({State.ESTOP, State.DISABLED, State.IDLE, State.FAULT})
 STALE = 0.45  # s after which all is looked at again where nothing seems to have changed
@@ -363,8 +363,7 @@ class Frame(QWidget):
             rows.append(unheard)
         found = notice_of(snapshot, loaded, desk.settings.units)
         if found is not None:
-            offered = here and snapshot.state is State.IDLE and bool(snapshot.interrupted_line)
-            rows.append(replace(found, keys=_KEYS[not may_go_on(loaded) :] if offered else ()))
+            rows.append(replace(found, keys=self._keys_of(snapshot, loaded) if here else ()))
         if here and desk.settings.now.first_job:
             rows.append(desk.first_job.row)
         differs = desk.differs()
@@ -378,6 +377,13 @@ class Frame(QWidget):
             waits = tr("IN MEMORY UNTIL THE STORE CAN BE WRITTEN: {what}").format(what=held) if held else ""
             rows.append(NoticeRow(tr("NOT KEPT: {why}").format(why=desk.not_kept()), waits))
         return tuple(rows)
+
+    def _keys_of(self, snapshot: Snapshot, loaded: Loaded) -> tuple[tuple[str, str], ...]:
+        """What can be done about an interrupted job now; a start that is refused is not offered."""
+        if snapshot.state is not State.IDLE or not snapshot.interrupted_line:
+            return ()
+        searchto = (_SEARCHTO,) if may_go_on(loaded) else ()
+        return searchto if self.desk.first_move_refusal(snapshot) else (*searchto, _FROM_LINE_1)
 
 
 def _below(room: Rect, rows: Rect) -> Rect:

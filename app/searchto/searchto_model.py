@@ -49,6 +49,7 @@ class SearchtoModel:
     say: Callable[[str], None]
     clear: Callable[[], None]
     rebuild: Callable[[Job, Watch], Search]  # what goes through a program; called on the worker
+    prove: Callable[[Job, Watch], Proved]  # what proves a restart and checks its first move; likewise
     choices: Choices = field(default_factory=Choices)
     cursor: LineCursor = field(default_factory=LineCursor)
     stage: SearchtoStage = SearchtoStage.CHOOSE
@@ -68,7 +69,7 @@ class SearchtoModel:
     _going_out: bool = False
 
     def __post_init__(self) -> None:
-        self.finder = LineFinder(self.rebuild, self.session.workshop.prove, self._found, self._not_searched)
+        self.finder = LineFinder(self.rebuild, self.prove, self._found, self._not_searched)
 
     # --- opened and left -----------------------------------------------------------------------------
 
@@ -364,7 +365,7 @@ class SearchtoModel:
             return
         self.stage, self._job, self._accepted = SearchtoStage.READY, job, False
         starts = Starts.RESTART if self.leaving is None else Starts.LINE
-        self.post(Prepare(starts, job, proved.proof))
+        self.post(Prepare(starts, job, proved.proof, proved.clearance))
 
 
 def searchto_prompt(

@@ -8,11 +8,12 @@ from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from pathlib import Path
 
-from app.shapes.drawing_plan import ALL, OWN, UNITS, Asked, Plan, pictured
+from app.shapes.drawing_plan import ALL, OWN, Asked, Plan, pictured
 from app.shapes.shape_form import ShapeForm
 from core.drawings.drawing_view import Front, Side, Zero
 from core.drawings.part_against_drawing import Comparison
 from core.drawings.profile_words import in_words
+from core.drawings.unit_check import UNITS
 from core.shapes.code_lines import Code
 from core.shapes.cutting_data import MATERIALS
 from core.shapes.shape import Filled, Shape

@@ -25,6 +25,7 @@ from core.drawings.drawing_view import (
 )
 from core.drawings.profile_job import proposed_fields
 from core.drawings.profile_program import ProfileProgram, profile_program
+from core.drawings.unit_check import UNITS, wrong_unit
 from core.geometry.lines_and_arcs import Arc, Element, Line
 from core.shapes.shape_fields import Value, Values
 from core.shapes.shape_setting import Setting
@@ -34,7 +35,6 @@ if TYPE_CHECKING:
     from core.drawings.part_against_drawing import Comparison
 
 ALL = "ALL"
-UNITS = {"MM": 1.0, "INCH": 25.4}
 OWN = "AS DRAWN"
 _MOST_DRAWN = 3000  # elements of a picture
 _CHORD = 0.15  # rad of an arc of the picture
@@ -127,11 +127,18 @@ class _Making:
             word = "AXIS"
             self._view(layer, unit)
             word = "CONTOUR"
-            chosen = self._chosen(layer)
+            net = self._net(layer)
+            word = "DUNIT"
+            self._check_unit(net)
+            word = "CONTOUR"
+            chosen = self._chosen(net)
             word = "T"
             made, fields = self._made(chosen)
         except DrawingError as error:
             return self._plan({word: str(error)})
+        for one, _ in made.shapes:
+            if one.shape.contour:
+                fields["ROUGH"] = one.n("ROUGH")
         self.proposals |= {name: fields[name] for name in _NUMBERS if name in fields}
         troubles = {_field_of(each.word): each.text for each in reversed(made.refusals)}
         return self._plan(troubles, made, chosen)
@@ -175,7 +182,7 @@ class _Making:
         self.nets = contours(self.drawing, self.view, layer)
         self.choices["CONTOUR"] = tuple(str(n) for n in range(1, len(self.nets) + 1))
 
-    def _chosen(self, layer: str) -> Profile:
+    def _net(self, layer: str) -> Net:
         if not self.nets or self.view is None:
             where = f"on layer {layer}" if layer else "beside this axis"
             raise DrawingError(
@@ -187,8 +194,21 @@ class _Making:
                 f"{self.drawing.name} has {len(self.nets)} contours: choose 1 to {len(self.nets)}.",
                 "no-contour-number",
             )
+        return self.nets[int(number) - 1]
+
+    def _check_unit(self, net: Net) -> None:
+        """Refuse the unit of the file if the contour fits the machine in another one."""
+        assert self.view is not None
+        if "DUNIT" in self.asked.values:
+            return
+        if (wrong := wrong_unit(net, self.view.unit, self.asked.setting.shop.travel)) is not None:
+            words = f"{self.drawing.name} is {wrong[0]}: in {wrong[1]} it would fit: choose {wrong[1]}."
+            raise DrawingError(words, "wrong-unit")
+
+    def _chosen(self, net: Net) -> Profile:
+        assert self.view is not None
         side = Side(self.word("SIDE", Side.OUTSIDE))
-        return profile(self.drawing, self.view, self.nets[int(number) - 1], side)
+        return profile(self.drawing, self.view, net, side)
 
     def _made(self, chosen: Profile) -> tuple[ProfileProgram, dict[str, Value]]:
         asked = self.asked

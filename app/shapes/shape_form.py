@@ -320,7 +320,12 @@ class ShapeForm:
         if not row[column]:
             del row[column]
         self.afresh = False
+        self._work_at(self.point)
+
+    def _work_at(self, point: int) -> None:
+        """Calculate again with the mark on a point: the fields above it depend on the points."""
         self.work()
+        self.marked = len(self.fields) + point
 
     def _set(self, word: str, said: str) -> None:
         if said:
@@ -334,13 +339,13 @@ class ShapeForm:
         """An empty point before the marked one."""
         if self.point >= 0:
             self.rows.insert(self.point, {})
-            self.work()
+            self._work_at(self.point)
 
     def drop_point(self) -> None:
         """Take the marked point out."""
         if 0 <= self.point < len(self.rows):
             del self.rows[self.point]
-            self.work()
+            self._work_at(self.point)
 
 
 def shown_choice(each: Field, choice: str) -> str:

@@ -34,15 +34,30 @@ def arcs_of(curve: Curve, tolerance: float, pieces: int = 1) -> Iterator[Element
 def _fitted(curve: Curve, begin: float, end: float, tolerance: float, depth: int) -> Iterator[Element]:
     a, b = curve(begin), curve(end)
     joint = _joint(a, b)
-    if depth < _DEEPEST and (joint is None or _off(curve, begin, end, a, joint, b) > tolerance):
+    close = joint is not None and _off(curve, begin, end, a, joint, b) <= tolerance
+    point = not close and _is_point(curve, begin, end, a.at, tolerance)
+    if not close and not point and depth < _DEEPEST:
         middle = (begin + end) / 2.0
         yield from _fitted(curve, begin, middle, tolerance, depth + 1)
         yield from _fitted(curve, middle, end, tolerance, depth + 1)
-    elif joint is None:
+    elif joint is None or point:
         yield from line(a.at, b.at)
     else:
         yield from bulged(a.at, joint, _bulge(a.at, a.way, joint))
         yield from bulged(joint, b.at, -_bulge(b.at, (-b.way[0], -b.way[1]), joint))
+
+
+def _between(begin: float, end: float) -> Iterator[float]:
+    """Yield the parameters at which a piece is compared with the curve."""
+    return (begin + (end - begin) * (k + 1) / (_SAMPLES + 1) for k in range(_SAMPLES))
+
+
+def _is_point(curve: Curve, begin: float, end: float, at: Point, tolerance: float) -> bool:
+    """Return whether a piece stays within the tolerance of its start: halving it would add nothing.
+
+    CAD programs write splines with coincident control points, whose spans have no length and no direction.
+    """
+    return all(math.dist(curve(t).at, at) <= tolerance for t in (*_between(begin, end), end))
 
 
 def _unit(v: Point) -> Point | None:
@@ -90,8 +105,8 @@ def _off(curve: Curve, begin: float, end: float, a: Place, joint: Point, b: Plac
     last = joint, b.at, -_bulge(b.at, (-b.way[0], -b.way[1]), joint)
     if max(abs(first[2]), abs(last[2])) > 1.0:
         return math.inf
-    places = (begin + (end - begin) * (k + 1) / (_SAMPLES + 1) for k in range(_SAMPLES))
-    return max(min(_apart(curve(t).at, *first), _apart(curve(t).at, *last)) for t in places)
+    places = [curve(t).at for t in _between(begin, end)]
+    return max(min(_apart(p, *first), _apart(p, *last)) for p in places)
 
 
 def _apart(p: Point, a: Point, b: Point, bulge: float) -> float:

@@ -24,14 +24,16 @@ class DrawingError(CodedError, ValueError):
 
 
 def damaged(path: Path, kind: str, error: Exception) -> DrawingError:
-    """The sentence for a file that its library could not read.
+    """Return the error for a file that its library could not read; the library's own words stay out of it.
 
-    What the system has refused is no damage and is raised again: OSError with a number, MemoryError.
+    A DrawingError is returned as it is. Errors of the system are raised again: OSError with a number,
+    MemoryError.
     """
     if isinstance(error, MemoryError) or (isinstance(error, OSError) and error.errno is not None):
         raise error
-    why = str(error).splitlines()[0][:120] if str(error) else type(error).__name__
-    return DrawingError(f"{path.name} is damaged or no {kind} ({why}): save the drawing anew.", "damaged")
+    if isinstance(error, DrawingError):
+        return error
+    return DrawingError(f"{path.name} is damaged or no {kind}: save the drawing anew.", "damaged")
 
 
 @dataclass(frozen=True, slots=True)

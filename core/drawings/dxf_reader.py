@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import itertools
+import logging
 import math
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -21,6 +23,7 @@ from core.drawings.drawing import (
     nearest,
     within_limits,
 )
+from core.drawings.expansion import Content, check_expansion
 from core.geometry.lines_and_arcs import Element, Point
 
 if TYPE_CHECKING:
@@ -42,7 +45,11 @@ def read_dxf(path: Path) -> Drawing:
     document = _document(path)
     unit = _UNITS.get(int(document.header.get("$INSUNITS", 0)), 0.0)
     left_out: Counter[str] = Counter()
-    drawn = tuple(within_limits(_drawn(document, nearest(unit), left_out, path.name), path.name))
+    try:
+        check_expansion(path.name, "", partial(_content, document))
+        drawn = tuple(within_limits(_drawn(document, nearest(unit), left_out, path.name), path.name))
+    except Exception as error:
+        raise damaged(path, "DXF", error) from error
     if not drawn:
         raise _nothing(path.name, left_out)
     return Drawing(path.name, drawn, unit, dict(left_out))
@@ -55,6 +62,7 @@ def _document(path: Path) -> Document:
         begin = file.read(6)
     if begin.startswith(b"AC10"):
         raise DrawingError(f"{path.name} is a DWG drawing: save it as DXF.", "dwg")
+    logging.getLogger("ezdxf").setLevel(logging.CRITICAL + 1)  # its words mean nothing to an operator
     try:
         return readfile(path)
     except Exception as error:
@@ -68,6 +76,14 @@ def _nothing(name: str, left_out: Counter[str]) -> DrawingError:
     what = ", ".join(sorted(left_out)) if left_out else "nothing"
     text = f"{name} has no line nor arc in its model space, only {what[:80]}: draw the contour as lines."
     return DrawingError(text, "nothing-drawn")
+
+
+def _content(document: Document, block: str) -> Content:
+    """Return what a block inserts, "" for the model space; its own entities count within blocks alone."""
+    entities: list[Any] = list(document.blocks.get(block) or ()) if block else list(document.modelspace())
+    own = 1 + len(entities) if block else 0
+    inserts = [each for each in entities if each.dxftype() == "INSERT"]
+    return Content(own, [(max(1, each.mcount), each.dxf.get("name", "?").lower()) for each in inserts])
 
 
 def _drawn(document: Document, near: float, left_out: Counter[str], name: str) -> Iterator[Drawn]:

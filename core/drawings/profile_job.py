@@ -15,7 +15,6 @@ _BAR = {True: 1.0, False: 0.0625}  # by metric: bars come in these steps
 _FACE = {True: 0.5, False: 0.02}
 _SKIN = 0.2  # mm of a diameter that is taken off a bar at least
 _EDGE = 1.0  # the cutting edge that a tool of SINUMERIK has first
-_ROUGH = {True: 1.0, False: 0.04}
 
 
 def proposed_fields(
@@ -33,9 +32,9 @@ def proposed_fields(
     if not inside:
         fields["FROM"] = bar
         fields.setdefault("STOCK", _FACE[metric])
-    fields.setdefault("ROUGH", _ROUGH[metric])
     kind = ToolKind.BORING if inside else ToolKind.TURNING
-    fields.setdefault("T", float(first_tool(shapes, kind, inside=inside) or 1))
+    free = next(n for n in range(1, len(shapes) + 2) if n not in shapes)
+    fields.setdefault("T", float(first_tool(shapes, kind, inside=inside) or free))
     blade = first_tool(shapes, ToolKind.GROOVING, inside=inside)
     if blade:
         fields.setdefault("BLADE", float(blade))

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
+from core.drawings.drawing import DrawingError
 from core.drawings.drawing_view import Profile, Side
 from core.drawings.nose_reach import reached_by_nose
 from core.drawings.turning_contour import Groove, TurningContour, joined, reach_of, turning_contour
@@ -77,6 +78,7 @@ def profile_program(
         words = {key: typed[key] for key in ("UNIT", "MATERIAL", "BAR") if key in typed}
         writer.add("N", words)
     tool = setting.tool(float(typed.get("T", 0) or 0))
+    _check_tip(tool, _number(typed, "T"), writer.now)
     outside = profile.side is Side.OUTSIDE
     mm = writer.now.mm
     contour = turning_contour(profile, reach_of(tool, profile.side))
@@ -184,6 +186,16 @@ def _left_for_finish(contour: TurningContour, typed: Values, setting: Setting) -
         return {}
     step = 100.0 if setting.metric else 1000.0
     return {"LEAVE": math.ceil(need * step) / step}
+
+
+def _check_tip(tool: ToolShape | None, number: float, setting: Setting) -> None:
+    """Refuse a nose without a tip quadrant: it would be taken to be centred on the control point.
+
+    The part would come out too small by the nose radius. Raises DrawingError.
+    """
+    if tool is not None and not tool.tip and (nose := nose_of(tool)):
+        words = f"T{number:.0f} has a nose radius of {nose / setting.mm:.4g} and no tip quadrant in its sheet"
+        raise DrawingError(f"{words}: enter the tip on its SHAPE page (F8, F8).", "no-tip-quadrant")
 
 
 def nose_of(tool: ToolShape | None) -> float:

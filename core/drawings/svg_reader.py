@@ -9,14 +9,18 @@ from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
+from xml.etree import ElementTree
+from xml.etree.ElementTree import Element as Element_
 
 from core.drawings.arc_fitting import Place, arcs_of
 from core.drawings.drawing import Drawing, DrawingError, Drawn, arc, damaged, line, nearest, within_limits
+from core.drawings.expansion import Content, check_expansion
 from core.geometry.lines_and_arcs import Element, Point
 
 _PIXELS = 96.0  # an inch, by CSS
 _ROOT = re.compile(rb"<svg\b[^>]*>", re.IGNORECASE | re.DOTALL)
 _SIZE = re.compile(rb"\swidth\s*=\s*[\"']\s*[\d.]+(?:[eE][-+]?\d+)?\s*(mm|cm|in|pt|pc|Q)\s*[\"']")
+_HREF = "{http://www.w3.org/1999/xlink}href"
 _INKSCAPE = "{http://www.inkscape.org/namespaces/inkscape}label"
 
 
@@ -25,7 +29,10 @@ def read_svg(path: Path) -> Drawing:
     left_out: Counter[str] = Counter()
     shapes = _shapes(path)
     unit = 25.4 / _PIXELS if _has_unit(path) else 0.0
-    drawn = tuple(within_limits(_drawn(shapes, nearest(unit), left_out, path.name), path.name))
+    try:
+        drawn = tuple(within_limits(_drawn(shapes, nearest(unit), left_out, path.name), path.name))
+    except Exception as error:
+        raise damaged(path, "SVG", error) from error
     if not drawn:
         what = ", ".join(sorted(left_out)) or "nothing"
         raise DrawingError(
@@ -49,13 +56,32 @@ def _shapes(path: Path) -> Any:
             f"{path.name} has entities of its own, which are not read: save it as plain SVG.", "own-entities"
         )
     try:
+        _check_uses(path.name, text)
         with path.open("rb") as file:
             root = SVG.parse(file, reify=True, ppi=_PIXELS)
     except Exception as error:
         raise damaged(path, "SVG", error) from error
     if not isinstance(root, SVG):
-        raise damaged(path, "SVG", ValueError("its first element is of another namespace"))
+        words = f"{path.name} is no SVG, its first element is of another namespace: save the drawing anew."
+        raise DrawingError(words, "damaged")
     return root
+
+
+def _check_uses(name: str, text: bytes) -> None:
+    """Refuse reused groups (``<use>``) that come to too many elements. Raises DrawingError, ParseError."""
+    root = ElementTree.fromstring(text)
+    by_id: dict[str, list[Element_]] = {}
+    count = 0
+    for each in root.iter():
+        count += 1
+        by_id.setdefault(f"#{each.get('id')}", []).append(each)
+
+    def content(element: Element_) -> Content:
+        used = element.get("href") or element.get(_HREF) or ""
+        targets = by_id.get(used, []) if str(element.tag).endswith("use") else []
+        return Content(1, [(1, each) for each in (*element, *targets)])
+
+    check_expansion(name, root, content, spare=count)
 
 
 def _drawn(root: Any, near: float, left_out: Counter[str], name: str) -> Iterator[Drawn]:

@@ -36,6 +36,7 @@ class CommandHandler:
             commands.SpindleLimit: self._limit,
             commands.LoadJob: self._load,
             commands.GiveProof: self._prove,
+            commands.GiveClearance: self._clear,
             commands.Renew: self._renew,
             commands.LeftInterrupted: lambda command: control.program_run.interruption.found(command.left),
             commands.Prepare: self._prepare,
@@ -134,6 +135,13 @@ class CommandHandler:
     def _prove(self, command: commands.GiveProof) -> None:
         self._control.status.proof = command.proof
 
+    def _clear(self, command: commands.GiveClearance) -> None:
+        """A refusal that the verdicts no longer support is not shown any more."""
+        status = self._control.status
+        if status.start_code:
+            status.start_refused = status.start_code = ""
+        status.clearances = command.clearances
+
     def _renew(self, command: commands.Renew) -> None:
         """Under a running program it waits for the end of the part; else it counts at once."""
         changed_offsets, status = self._control.program_run.changed_offsets, self._control.status
@@ -149,8 +157,9 @@ class CommandHandler:
             return
         status = self._control.status
         self._control.program_run.interruption.withdraw()
-        status.starts, status.start_refused = command.starts, ""
+        status.starts, status.start_refused, status.start_code = command.starts, "", ""
         status.prepared, status.prepared_proof = command.job, command.proof
+        status.prepared_clearance = command.clearance
         if command.job is not None and command.starts is Starts.RESTART:
             self._control.meant_at = self._context.now
 

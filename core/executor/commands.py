@@ -10,6 +10,7 @@ from core.executor.interrupted_job import InterruptedJob
 from core.executor.job import Job, Proof
 from core.executor.jog_line import Direction
 from core.executor.snapshot import Starts
+from core.executor.start_clearance import Clearance
 from core.interpreter.job_setup import SecondaryOffset, ToolOffset
 
 
@@ -230,6 +231,13 @@ class PartsMade(Command):
 
 
 @dataclass(frozen=True, slots=True)
+class GiveClearance(Command):
+    """The verdicts on the first move of the next start; they take the place of all earlier ones."""
+
+    clearances: tuple[Clearance, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class BarNextPart(Command):
     """No other part begins after the one under way, and why; empty: another may. Restarts and MDI may."""
 
@@ -240,6 +248,7 @@ class BarNextPart(Command):
 class Prepare(Command):
     """What the next Cycle Start begins: the program, a restart in it, or a line of MDI with its proof.
 
+    ``clearance`` is the verdict on the first move of a restart or a line.
     ``Starts.LINE`` without a job: MDI is open and no line is ready, so that nothing starts. Refused while
     something is under way.
     """
@@ -247,3 +256,4 @@ class Prepare(Command):
     starts: Starts = Starts.PROGRAM
     job: Job | None = None
     proof: Proof | None = None
+    clearance: Clearance | None = None

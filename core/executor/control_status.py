@@ -10,6 +10,7 @@ from core.executor.interrupted_job import InterruptedJob
 from core.executor.job import Job, Proof
 from core.executor.machine_context import MachineContext
 from core.executor.snapshot import Alarm, Starts, State
+from core.executor.start_clearance import Clearance
 from core.interpreter.job_setup import SecondaryOffset, ToolOffset
 from core.interpreter.kept_pass import KeptPass
 from core.interpreter.modal_state import Modal
@@ -24,6 +25,7 @@ class Counters:
     made: int = 0  # of the loaded program, as whoever keeps the count has told and what was made since
     ends: int = 0  # programs that came to their end, counted or not
     lines: int = 0  # of MDI that were begun
+    begun: int = 0  # runs: programs, repeats, restarts and lines of MDI
     underruns: int = 0
     cycle: float = 0.0
     last_cycle: float = 0.0
@@ -54,9 +56,13 @@ class ControlStatus:
     alarms: tuple[Alarm, ...] = ()
     power_off: bool = False  # an alarm has switched the drives off
     start_refused: str = ""
+    start_code: str = ""  # of that refusal, where the first move was its reason
     starts: Starts = Starts.PROGRAM
     prepared: Job | None = None  # the restart or the line of MDI that Cycle Start begins
     prepared_proof: Proof | None = None
+    checks_starts: bool = False  # no cycle starts without a verdict on its first move
+    clearances: tuple[Clearance, ...] = ()  # the verdicts on the program
+    prepared_clearance: Clearance | None = None  # the verdict on what is prepared
     next_barred: str = ""  # why no other part begins, as whoever keeps tool lives has told
     tool_open: bool = False  # MDI has called a tool, and its first move is still to come
     kept: KeptPass[Any] | None = None  # what lines of MDI in other languages have left in force

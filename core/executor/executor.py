@@ -69,6 +69,7 @@ class Executor:
 
     ``passes`` makes a pass through a job with the circumstances of the start; tests give their own.
     ``note`` is told what job a power cut would leave interrupted now, ``left`` is what the last one left.
+    With ``checks_starts`` no cycle starts before a worker has given its verdict on the first move.
     ``tell`` is handed what the scope records of each tick, and must only put it into a queue.
     """
 
@@ -81,6 +82,8 @@ class Executor:
         note: Note = _discard,
         left: InterruptedJob | None = None,
         tell: Callable[[Tick], None] | None = None,
+        *,
+        checks_starts: bool = False,
     ) -> None:
         self._commands: queue.SimpleQueue[tuple[float, Command]] = queue.SimpleQueue()
         self._ports = ports
@@ -104,6 +107,7 @@ class Executor:
         )
         self._station = StationWatch()
         self._control = MachineControl(self._context, passes, note, left)
+        self._control.status.checks_starts = checks_starts
         self._handler = CommandHandler(self._context, self._control, self._station)
         self._lamps = SignalLamps(self._context, ports.io)
         self._publisher = Publisher()

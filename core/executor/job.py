@@ -73,11 +73,13 @@ def make_job(source: Source, setup: Setup, whole: Job | None = None) -> Job:
         sorted(setup.tools.items()),
         sorted(setup.secondary.items()),
         sorted(setup.zero.items()),
+        sorted(setup.r.items()),
         (
             sorted(setup.limits.m_outputs.items()),
             sorted(setup.limits.m_ignored),
             setup.limits.control,
             setup.limits.third_axis,
+            setup.limits.c_linear,
         ),
         (setup.limits.max_feed, setup.limits.max_rpm, setup.limits.resolution),
         (setup.limits.unclamp_while_turning, setup.limits.start_with_collet_open),

@@ -61,6 +61,7 @@ class MachineControl:
         self.announcement = Announcement()
         self.disturbance = OutputsWatch(context, self.program_run)
         self.announcement.sources += [self._spindle_starts, self.disturbance.starts, self._warned]
+        self.announcement.sources.append(self._first_move_warned)
         self.meant_at = -MEANT  # when what the next start begins was answered for
         self.jog_ended = ""  # why the control has ended a held jog: none goes on before it was let go
         self._turned = False  # the spindle turned as it was asked to, a tick ago
@@ -170,6 +171,14 @@ class MachineControl:
             first, more = proof.warned[0], len(proof.warned) - 1
             said = f"{first} ({more} MORE)" if more else first
             yield Starting("warned" + job.digest, f"WARNING: {said}", lambda: None)
+
+    def _first_move_warned(self) -> Iterator[Starting]:
+        """What the first move may meet where the part is not known, or is only assumed."""
+        if self.state not in _AT_REST or not self.status.checks_starts:
+            return
+        found = start_conditions.first_move_verdict(self._context, self.status, self.counters.begun)
+        if found is not None and found.warned:
+            yield Starting("first-move" + found.job, f"WARNING: {found.warned}", lambda: None)
 
     def feed_hold(self, reason: str, by: str = "", code: Code | None = None) -> None:
         """Hold the cycle, end a jog, brake a homing, take the handwheel away.

@@ -21,6 +21,7 @@ from core.executor.parts_made import PartCount
 from core.executor.read_ahead import ProgramPass
 from core.executor.setpoint_motion import SetpointMotion
 from core.executor.snapshot import Starts, State
+from core.executor.start_clearance import UNCHECKED
 from core.interpreter.actions import ProgramEnd
 from core.interpreter.job_setup import Setup
 from core.interpreter.modal_state import Modal
@@ -56,7 +57,15 @@ class ProgramRun:
 
     def refusal(self, state: State) -> str:
         """Why what Cycle Start would begin may not begin; empty when it may."""
-        return start_conditions.start_refusal(self._context, state, self.status) or self.interruption.refusal
+        why = start_conditions.start_refusal(self._context, state, self.status)
+        self.status.start_code = ""
+        if why:
+            return why
+        code, why = start_conditions.first_move_refusal(self._context, self.status, self.counters.begun)
+        self.status.start_code = code
+        if code == UNCHECKED:
+            return self.interruption.refusal or why
+        return why or self.interruption.refusal
 
     def begin(self) -> None:
         """The program, a restart in it, or the line of MDI; whatever was prepared counts once."""
@@ -64,6 +73,7 @@ class ProgramRun:
         job = start_conditions.job_to_start(status)
         assert job is not None
         self.counters.cycle = 0.0
+        self.counters.begun += 1
         self._line = status.starts is Starts.LINE
         self.counters.lines += self._line
         if status.starts is Starts.RESTART:
@@ -193,6 +203,7 @@ class ProgramRun:
         self.changed_offsets.take_up(self.status)
         self._between = False
         self.counters.cycle = 0.0
+        self.counters.begun += 1
         assert self.status.job is not None
         self.interruption.begin(None)
         self._open(self.status.job)
@@ -204,6 +215,11 @@ class ProgramRun:
             return self.status.next_barred
         if self.changed_offsets.wanted:
             return self.changed_offsets.refusal(left)
+        again = start_conditions.first_move_verdict(
+            self._context, self.status, self.counters.begun, repeats=True
+        )
+        if again is not None and again.code:
+            return again.why
         old = outdated(self.status.job, left) if self.status.job is not None else ""
         return f"{old}, and the program says nothing of it" if old else ""
 

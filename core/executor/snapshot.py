@@ -177,6 +177,8 @@ class Snapshot:
     kept: KeptPass[Any] | None = None  # what lines of MDI in other languages have left in force
     announced: tuple[str, ...] = ()  # what the next Cycle Start will start, besides going on
     start_refused: str = ""  # why the last Cycle Start did nothing
+    start_code: str = ""  # code of that refusal, where the first move was its reason
+    begun: int = 0  # runs since the executor was started: programs, repeats, restarts and lines of MDI
     wheel: str = ""  # axis that the handwheel moves, empty for none
     wheel_ended: str = ""  # why the control has taken the handwheel away
     # Nothing is heard of these: what is said of them in here is the last that was known, not what is so.

@@ -107,6 +107,8 @@ class Publisher:
             kept=status.kept,
             announced=control.announcement.publish(context.now),
             start_refused=status.start_refused,
+            start_code=status.start_code if status.start_refused else "",
+            begun=counters.begun,
             wheel=control.wheel.axis,
             wheel_ended=control.wheel.ended,
             unknown=context.unknown,

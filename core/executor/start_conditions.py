@@ -14,6 +14,7 @@ from core.executor.control_status import ControlStatus, modal_as_machine
 from core.executor.job import Job, Proof, outdated
 from core.executor.machine_context import MachineContext
 from core.executor.snapshot import Starts, State
+from core.executor.start_clearance import UNCHECKED, Clearance, verdict
 from core.interpreter.checkpoint import Begin
 from core.interpreter.machine_requirements import ORIENT, THREAD
 from core.interpreter.modal_state import Modal
@@ -143,6 +144,32 @@ def start_refusal(context: MachineContext, state: State, status: ControlStatus) 
         return hindrance(context, state) or _NOTHING[status.starts]
     why = job_refusal(context, state, job, proof) or (_moved(context, job) or _changed(context, status, job))
     return why or (status.next_barred if status.starts is Starts.PROGRAM else "")
+
+
+def first_move_refusal(context: MachineContext, status: ControlStatus, begun: int) -> tuple[str, str]:
+    """Code and sentence why the first move of what Cycle Start begins may not be made; empty when it may."""
+    job = job_to_start(status)
+    if not status.checks_starts or job is None:
+        return "", ""
+    found = first_move_verdict(context, status, begun)
+    if found is None:
+        return UNCHECKED, "the first move is being checked against the part: start again in a moment"
+    return found.code, found.why
+
+
+def first_move_verdict(
+    context: MachineContext, status: ControlStatus, begun: int, *, repeats: bool = False
+) -> Clearance | None:
+    """The verdict on what Cycle Start, or Cycle Repeat, would begin from here; None: not computed yet."""
+    job, known = job_to_start(status), status.clearances
+    if repeats:
+        job = status.job
+    elif status.starts is not Starts.PROGRAM:
+        known = tuple(filter(None, (status.prepared_clearance,)))
+    if job is None:
+        return None
+    at, _ = context.ports.axes.demand_at(context.now)
+    return verdict(known, job.digest, at, begun, repeats=repeats)
 
 
 def _moved(context: MachineContext, job: Job | None) -> str:

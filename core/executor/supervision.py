@@ -21,7 +21,7 @@ from core.executor.snapshot import ACTIVE, CYCLE, STOPPED, State
 from core.executor.start_conditions import Starting
 from core.ports import AxisSample, Trip, Unknown, code_of
 
-_MOVING = ACTIVE | {State.JOG, State.HOME}
+_POWERED = CYCLE | {State.IDLE, State.JOG, State.HOME}
 _UNHEARD = 0.25  # s for which a driver may have nothing of the slides before it reports why
 
 
@@ -44,7 +44,7 @@ class Supervisor:
             raise AlarmError(code_of(sample.fault, "axis"), sample.fault)
         if Unknown.SLIDES in context.unknown:
             self._axes.forget()  # heard again, they may stand elsewhere
-            self._unheard(moving=state in _MOVING)
+            self._unheard(powered=state in _POWERED)
             return
         self._unheard_since = None
         self._numbers(sample)
@@ -59,11 +59,11 @@ class Supervisor:
         else:
             self._open_since = None
 
-    def _unheard(self, *, moving: bool) -> None:
-        """A driver reports a fault too; nothing moves on where it does not."""
+    def _unheard(self, *, powered: bool) -> None:
+        """A driver reports a fault too; where it does not, nothing moves on and nothing is ready."""
         now = self._context.now
         since = self._unheard_since = now if self._unheard_since is None else self._unheard_since
-        if moving and now - since > _UNHEARD:
+        if powered and now - since > _UNHEARD:
             raise AlarmError("drive-silent", "nothing is heard of the slides")
 
     def _numbers(self, sample: AxisSample) -> None:

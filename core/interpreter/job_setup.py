@@ -74,6 +74,8 @@ class ControlLimits:
     c_accel: float = 3600.0  # degrees/s²
     c_step: float = 0.02  # degrees
     c_modulo: bool = True  # SINUMERIK counts C 0..<360, else -360..+360
+    c_linear: bool = False  # the third axis is a slide: mm where C has degrees
+    c_travel: tuple[float, float] | None = None  # of such a slide, mm of the machine
     spindle_is_c: bool = True  # C is a second use of the spindle
     live_output: str = ""  # the output that turns the live tool, as spindle 2 of SINUMERIK
     third_axis: str = "C"  # what SINUMERIK programs call C on this machine
@@ -101,6 +103,7 @@ class Setup:
     tools: Mapping[int, ToolOffset] = field(default_factory=dict)  # by T; edges by ``tool_edges.edge_key``
     secondary: Mapping[int, SecondaryOffset] = field(default_factory=dict)
     zero: Mapping[int, ZeroOffset] = field(default_factory=dict)  # 54 to 59; one that is missing is all 0
+    r: Mapping[int, float] = field(default_factory=dict)  # of SINUMERIK, as the operator set them
     limits: ControlLimits = field(default_factory=ControlLimits)
     block_delete: bool = False
     strict: bool = False

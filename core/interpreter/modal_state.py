@@ -73,6 +73,7 @@ class Modal(NamedTuple):
     settable_z: float = 0.0
     zero_x: float = 0.0  # SINUMERIK: TRANS and ATRANS, mm
     zero_z: float = 0.0
+    linear_c: bool = False  # the third axis counts mm
     wraps_c: bool = False  # C counts 0..<360 in this program: its display does too
     mill: Mill | None = None  # between (~PLXC) or (~PLZC) and (END)
 

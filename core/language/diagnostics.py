@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 
 
@@ -53,6 +53,15 @@ class ProgramError(Exception):
     def __init__(self, diagnostic: Diagnostic) -> None:
         super().__init__(diagnostic.message)
         self.diagnostic = diagnostic
+
+
+AT_THE_STOP = "position at the stop"
+"""What rests on a place that a program has read behind a stop, where a hand may have moved the axes."""
+
+
+def resting_on(found: Diagnostic, *assumed: str) -> Diagnostic:
+    """The finding, which holds only as these are assumed."""
+    return replace(found, assumed=(*found.assumed, *assumed))
 
 
 def refusal(line: int, column: int, code: str, message: str, hint: str = "") -> Diagnostic:

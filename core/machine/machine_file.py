@@ -148,8 +148,9 @@ def _machine(reading: Reading, added: DriverReading, kinematics: KinematicsReadi
         language=values.text("machine.language"),
         control=values.text("machine.control"),
         third_axis=values.text("axis.C.name") if reading.kind == "lathe" else "C",
-        c_modulo=_of_c(reading, "modulo"),
-        c_own_drive=_of_c(reading, "own_drive"),
+        c_modulo=_of_c(reading, "modulo") and not _of_c(reading, "linear"),
+        c_own_drive=_of_c(reading, "own_drive") or _of_c(reading, "linear"),
+        c_linear=_of_c(reading, "linear"),
         hardware=added.hardware(reading.outputs),
         kinematics=kinematics.model(),
     )
@@ -175,7 +176,8 @@ def _axes(reading: Reading) -> tuple[Axis, ...]:
 def _axis(reading: Reading, name: str) -> Axis:
     values, path = reading.values, f"axis.{name}"
     homed = values.has(f"{path}.home.order")
-    whole = _ONE_TURN if name == "C" and reading.kind == "lathe" and not _of_c(reading, "modulo") else _NONE
+    of_lathe = name == "C" and reading.kind == "lathe"
+    whole = _ONE_TURN if of_lathe and not _of_c(reading, "modulo") else _NONE
     travel = values.pair(f"{path}.travel") if values.has(f"{path}.travel") else whole
     slide = name in machine_tables.SLIDES[reading.kind]
     return values.model(
@@ -187,7 +189,7 @@ def _axis(reading: Reading, name: str) -> Axis:
         travel=travel if math.isfinite(travel[0]) else None,
         home_order=values.whole(f"{path}.home.order") if homed else 0,
         home_speed=values.number(f"{path}.home.speed") if homed else 0.0,
-        rotary=not slide,
+        rotary=not slide and not (of_lathe and _of_c(reading, "linear")),
     )
 
 

@@ -155,6 +155,7 @@ class Machine:
     third_axis: str = "C"  # what SINUMERIK programs, positions and keys call C
     c_modulo: bool = True  # C counts 0..<360 where a language asks; else its travel is -360..+360
     c_own_drive: bool = False  # C is no second use of the spindle
+    c_linear: bool = False  # the third axis is a slide: mm where C has degrees
     hardware: Hardware = field(default_factory=Hardware)  # what it is wired to
     kinematics: KinematicsModel | None = None  # of a mill with rotary axes
     text: str = field(default="", compare=False, repr=False)  # the file as it was read

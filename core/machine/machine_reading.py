@@ -77,7 +77,9 @@ class Reading:
         for name in machine_tables.SLIDES[self.kind]:
             self._homed(axes.get(name), f"axis.{name}", machine_tables.SLIDE, machine_tables.HOME)
         if lathe:
-            self._keys(axes.get("C", {}), "axis.C", machine_tables.C_AXIS)  # most have none: no table, no C
+            third = axes.get("C", {})  # most have none: no table, no C
+            linear = isinstance(third, dict) and third.get("linear") is True
+            self._keys(third, "axis.C", machine_tables.THIRD_SLIDE if linear else machine_tables.C_AXIS)
         for name in rotary:
             if name in axes:
                 self._homed(

@@ -80,7 +80,17 @@ C_AXIS = (
     Field("modulo", _FLAG, default=True),  # SINUMERIK: 0..<360; false: -360..+360
     Field("name", _CHOICE, choices=THIRD_AXIS_NAMES, default="C"),  # SINUMERIK: what programs call it
     Field("own_drive", _FLAG, default=False),  # false: the spindle is C, and cannot turn meanwhile
+    Field("linear", _FLAG, default=False),  # true: a slide beside X and Z; its keys are those of THIRD_SLIDE
 )
+THIRD_SLIDE = (
+    *(each for each in SLIDE if each.key != "fixed_points"),
+    Field("enabled", _FLAG, default=False),
+    Field("modulo", _FLAG, default=False),
+    Field("name", _CHOICE, choices=THIRD_AXIS_NAMES, default="C"),
+    Field("own_drive", _FLAG, default=True),
+    Field("linear", _FLAG, default=False),
+)
+"""The third axis of a lathe where it is linear: mm where C has degrees."""
 ROTARY_AXIS = (
     Field("travel", Kind.PAIR, Unit.DEGREES, -36000.0, 36000.0, default=(-math.inf, math.inf)),
     Field("vmax", _NUMBER, Unit.DEGREES_PER_MINUTE, 0.1, 36000.0),

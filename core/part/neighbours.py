@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from itertools import combinations
 from math import dist
 from typing import NamedTuple
@@ -13,19 +13,39 @@ from core.part.cutter import Cutter, Side
 from core.part.swept_edge import FloatArray, Point
 from core.part.tool_outline import outline
 from core.part.tool_shape import ToolShape
-from core.part.turned_part import TurnedPart
+from core.part.turned_part import NOTHING, Cut, TurnedPart
 
 _ONE_PLACE = 1.0  # mm between the tips of two tools that cannot both be mounted
 _ASSUMED_BODY = frozenset({"holder", "stick_out", "length"})
 
 
-class _Neighbour(NamedTuple):
-    """A tool: where it stands on the plate, Z and r, its extent about that, its outline on either side."""
+class SolidTool(NamedTuple):
+    """All of a tool that must not meet metal: its extent about the control point, and its outlines on
+    either side of the axis.
+    """
 
-    at: Point
     low: FloatArray
     high: FloatArray
     sides: tuple[Cutter, Cutter]
+
+    def met(self, part: TurnedPart, start: Point, end: Point) -> Cut:
+        """Return the metal on the straight path of the control point, Z and r in mm; all of it stays."""
+        low = self.low + np.minimum(start, end)
+        high = self.high + np.maximum(start, end)
+        columns, radius = part.columns, part.largest
+        if low[0] > columns.first + columns.step * columns.number or high[0] < columns.first:
+            return NOTHING
+        if low[1] > radius or high[1] < -radius:
+            return NOTHING
+        front, rear = self.sides
+        return front.reaches(part, start, end).joined(rear.reaches(part, start, end))
+
+
+class _Neighbour(NamedTuple):
+    """A tool and where it is on the plate, Z and r."""
+
+    at: Point
+    solid: SolidTool
 
 
 class Neighbours:
@@ -52,35 +72,29 @@ class Neighbours:
         for start, end in way:
             for number, each in self._tools.items():
                 shift = own[0] - each.at[0], own[1] - each.at[1]
-                if dist(own, each.at) >= _ONE_PLACE and _meets(
-                    part, each, _moved(start, shift), _moved(end, shift)
-                ):
+                if number == tool or dist(own, each.at) < _ONE_PLACE:
+                    continue
+                if each.solid.met(part, _moved(start, shift), _moved(end, shift)):
                     return number
         return 0
+
+
+def solid_tool(outlines: Sequence[FloatArray]) -> SolidTool:
+    """Return the tool that consists of these convex outlines (k, 2) of Z and r, mm."""
+    points = np.vstack(outlines)
+    sides = Cutter((), outlines, Side.FACE), Cutter((), outlines, Side.FACE, rear=True)
+    return SolidTool(points.min(axis=0), points.max(axis=0), sides)
+
+
+def _neighbour(shape: ToolShape, at: Point) -> _Neighbour:
+    lines = outline(shape)
+    assumed = _ASSUMED_BODY.intersection(lines.assumed)
+    return _Neighbour(at, solid_tool(lines.cutting if assumed else (*lines.cutting, *lines.body)))
 
 
 def _same(one: Point, other: Point) -> bool:
     return dist(one, other) < _ONE_PLACE
 
 
-def _neighbour(shape: ToolShape, at: Point) -> _Neighbour:
-    lines = outline(shape)
-    outlines = lines.cutting if _ASSUMED_BODY.intersection(lines.assumed) else (*lines.cutting, *lines.body)
-    points = np.vstack(outlines)
-    sides = Cutter((), outlines, Side.FACE), Cutter((), outlines, Side.FACE, rear=True)
-    return _Neighbour(at, points.min(axis=0), points.max(axis=0), sides)
-
-
 def _moved(place: Point, by: Point) -> Point:
     return place[0] + by[0], place[1] + by[1]
-
-
-def _meets(part: TurnedPart, tool: _Neighbour, start: Point, end: Point) -> bool:
-    low = tool.low + np.minimum(start, end)
-    high = tool.high + np.maximum(start, end)
-    columns, radius = part.columns, part.largest
-    if low[0] > columns.first + columns.step * columns.number or high[0] < columns.first:
-        return False
-    if low[1] > radius or high[1] < -radius:
-        return False
-    return any(side.reaches(part, start, end) for side in tool.sides)

@@ -1,11 +1,14 @@
-"""Block delete: a program with ``/`` is proved with the switch on and off, for it may stand either way."""
+"""Block delete: a program with ``/`` is proved with the switch on and off, for it may stand either way.
+
+Cycle Start goes by the switch as it stands. What is wrong with it the other way alone is a warning: to turn
+the switch is to prove the program again.
+"""
 
 from __future__ import annotations
 
 import re
 from dataclasses import replace
 
-from core.interpreter.machine_requirements import first_needs
 from core.language.diagnostics import Severity
 from core.language.source import Dialect, Source
 from core.proving.proof_report import Report, Ways, in_order
@@ -26,11 +29,11 @@ def deletes_blocks(source: Source) -> bool:
 
 
 def with_the_other(report: Report, other: Report, *, deleted: bool) -> Report:
-    """The report of the switch as it stands, with what was found with it the other way."""
+    """The report of the switch as it stands, with warnings of what was found with it the other way."""
     known = {(found.line, found.code, found.severity) for found in report.diagnostics}
     switch = "on" if deleted else "off"
     found = [
-        replace(each, message=f"With block delete {switch}: {each.message}")
+        replace(each, severity=Severity.WARNING, message=f"With block delete {switch}: {each.message}")
         for each in other.diagnostics
         if each.severity is not Severity.NOTE and (each.line, each.code, each.severity) not in known
     ]
@@ -38,9 +41,6 @@ def with_the_other(report: Report, other: Report, *, deleted: bool) -> Report:
     return replace(
         report,
         diagnostics=in_order([*report.diagnostics, *found]),
-        tools=tuple(sorted({*report.tools, *other.tools})),
-        missing_tools=tuple(sorted({*report.missing_tools, *other.missing_tools})),
-        needs=first_needs((*report.needs, *other.needs)),
         ways=Ways(
             report.ways.proved + other.ways.proved,
             report.ways.unproved + other.ways.unproved,

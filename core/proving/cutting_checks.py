@@ -33,10 +33,10 @@ def cuts(block: Block) -> bool:
 
 @dataclass(slots=True)
 class CuttingChecks:
-    """Goes with the blocks of an OmniTurn program in their order; ``findings`` at the end.
+    """Goes with the blocks of a program in their order; ``findings`` at the end.
 
-    One finding for each time that something was wrong, at the first block of it. Other languages have
-    tools and frames of their own and are not looked at.
+    One finding for each time that something was wrong, at the first block of it. Of other languages than
+    OmniTurn, whose frames and collets are others, tool and spindle alone are looked at.
     """
 
     machine: Machine
@@ -67,22 +67,23 @@ class CuttingChecks:
 
     def look(self, blocks: Sequence[Block]) -> None:
         """Look at the next blocks of the program."""
-        if self.dialect is not Dialect.OMNITURN or not blocks:
+        if not blocks:
             return
+        own = self.dialect is Dialect.OMNITURN
         alike: Iterable[Block] = (blocks[0],) if isinstance(blocks, Series) else blocks
         for block in alike:
             if block.action is not None:
                 self._like = None
                 self._act(block)
                 continue
-            if block.css is not None and cuts(block):
+            if own and block.css is not None and cuts(block):
                 self._surface_speed(block)
             if (block.modal, block.kind) != self._like:
-                if not self.placed:
+                if own and not self.placed:
                     self._place(block)
                 self._like = (block.modal, block.kind) if block.modal.collet_closed else None
                 if cuts(block):
-                    self._cut(block)
+                    (self._cut if own else self._cut_elsewhere)(block)
 
     def _place(self, block: Block) -> None:
         """An incremental first move leads from wherever the slides stand, and was proved from home."""
@@ -146,10 +147,27 @@ class CuttingChecks:
             hint = "Write G77S with the highest speed for this chuck and bar."
             self._report(block, Severity.WARNING, "no-speed-limit", text, hint)
 
+    def _cut_elsewhere(self, block: Block) -> None:
+        """A cut of Klartext or SINUMERIK; of a mill's spindle at rest its interpreter tells."""
+        modal = block.modal
+        if not (modal.tool or self.single):
+            self._no_tool(block)
+        if self.dialect is Dialect.KLARTEXT:
+            return
+        if any(name.startswith(LIVE) for name in modal.outputs):
+            self._clear("spindle-off")
+            return
+        driven = taps(block) or modal.c_locked or modal.spindle or block.per_rev
+        if not driven and (self._has_run or modal.rpm):
+            self._spindle_off(block)
+
     def _no_tool(self, block: Block) -> None:
         text = "This move cuts with no tool: its numbers count from the machine's home."
         hint = "Write T with the tool's number before it."
-        if self._tool_off:
+        if self.dialect is not Dialect.OMNITURN:
+            text = "This move cuts with no tool: no length and no radius of one count."
+            hint = "Write TOOL CALL before it." if self.dialect is Dialect.KLARTEXT else hint
+        elif self._tool_off:
             after = f"the T0 on line {self._tool_off}"
             text = f"This move cuts after {after}: its numbers count from the machine's home."
         if "no-tool" not in self._reported:
@@ -183,7 +201,10 @@ class CuttingChecks:
         text = "This move cuts with the spindle stopped, and no live tool is on."
         if not self._has_run:
             text = "S sets a speed, but nothing starts the spindle before this cut."
-        self._report(block, Severity.WARNING, "spindle-off", text, "Start it with M03 or M04 before it.")
+        hint = "Start it with M03 or M04 before it."
+        if self.dialect is not Dialect.OMNITURN:
+            hint = "Start it with M3 or M4 before it."
+        self._report(block, Severity.WARNING, "spindle-off", text, hint)
 
     def _input(self, block: Block, terminal: str) -> None:
         if terminal in self.machine.inputs or terminal in self._asked:

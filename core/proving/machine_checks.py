@@ -7,19 +7,22 @@ from collections.abc import Iterator, Sequence
 
 from core.interpreter.elementary_blocks import Block, Kind, Series
 from core.language.diagnostics import Diagnostic, Severity
+from core.language.source import Dialect
 from core.machine.machine_model import Axis, Machine
 from core.tool_edges import edge_name
 
 MM_PER_INCH = 25.4
 
 
-def travel_findings(blocks: Sequence[Block], machine: Machine) -> Iterator[Diagnostic]:
+def travel_findings(
+    blocks: Sequence[Block], machine: Machine, dialect: Dialect = Dialect.OMNITURN
+) -> Iterator[Diagnostic]:
     """An error for each block whose machine positions leave the travel; curved ways all along."""
     limits = [(axis, *axis.reach) for axis in machine.axes]
     for block in _outside(blocks, limits):
         for (axis, least, most), (low, high) in zip(limits, block.machine_reach(), strict=True):
             if low < least or high > most:
-                yield _beyond(machine, block, axis, low, high)
+                yield _beyond(machine, dialect, block, axis, low, high)
 
 
 def _outside(blocks: Sequence[Block], limits: Sequence[tuple[Axis, float, float]]) -> Iterator[Block]:
@@ -41,7 +44,9 @@ def _outside(blocks: Sequence[Block], limits: Sequence[tuple[Axis, float, float]
             yield block
 
 
-def _beyond(machine: Machine, block: Block, axis: Axis, low: float, high: float) -> Diagnostic:
+def _beyond(
+    machine: Machine, dialect: Dialect, block: Block, axis: Axis, low: float, high: float
+) -> Diagnostic:
     least, greatest = axis.reach
     at = low if low < least else high
     limit = least if low < least else greatest
@@ -59,14 +64,17 @@ def _beyond(machine: Machine, block: Block, axis: Axis, low: float, high: float)
             f"{axis.name} would go to {at * scale:.{places}f} {unit} from home{radius}, "
             f"{over:.{places}f} {unit} beyond the travel limit of {limit * scale:.{places}f}"
         ),
-        hint=_hint(machine, block, axis),
+        hint=_hint(machine, dialect, block, axis),
     )
 
 
-def _hint(machine: Machine, block: Block, axis: Axis) -> str:
+def _hint(machine: Machine, dialect: Dialect, block: Block, axis: Axis) -> str:
     if machine.kind != "lathe" or axis.rotary:
         return f"check the {axis.name} word and the shifts in force"
-    return f"check the {axis.name} word, the offset of {edge_name(block.modal.tool)} and any G10 or G92"
+    where = f"check the {axis.name} word, the offset of {edge_name(block.modal.tool)}"
+    if dialect is Dialect.OMNITURN:
+        return f"{where} and any G10 or G92"
+    return f"{where}, G54 to G59 and TRANS"
 
 
 # --- C as the spindle -----------------------------------------------------------------------------------

@@ -81,6 +81,12 @@ class PartFindings:
         self._tailstock = TurnedPart(tailstock, _CHUCK_STEP) if tailstock is not None else None
 
     @property
+    def bodies(self) -> dict[str, TurnedPart]:
+        """Chuck and tailstock as bodies, by the check that looks after them; only those that are known."""
+        known = {"into-chuck": self._chuck, "into-tailstock": self._tailstock}
+        return {check: body for check, body in known.items() if body is not None}
+
+    @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
         """The findings, each once a line."""
         return tuple(self._found.values())

@@ -117,6 +117,37 @@ class PartHistory:
         self._last = self._instant(block, share, under_way)
         return self._last
 
+    def making_at(self, block: int, tip: Point | None = None, watch: Go | None = None) -> PartMaking:
+        """Return a copy of the part before a block, or with it done up to the ``tip`` (Z, r; mm)."""
+        share = 0.0
+        step = self._step(block)
+        if tip is not None and isinstance(step, TipMove):
+            share = share_along(step.points, tip)
+        self.at(block - 1, share, watch)
+        return self._seen.copy()
+
+    @property
+    def tools(self) -> ProgramTools:
+        """The tools of the program, as specified or assumed."""
+        return self._tools
+
+    def zero(self, tool: int) -> Point | None:
+        """Return machine X and Z with the tip of this tool on part zero, None: the program never moves it."""
+        for step in reversed(self.steps):
+            if isinstance(step, TipMove) and step.modal.tool == tool:
+                return step.zero
+            if isinstance(step, LiveStep) and step.block.modal.tool == tool:
+                return zero_of(step.block, step.place)
+        return None
+
+    @property
+    def end(self) -> Point | None:
+        """Machine X and Z at the end of the program; None where no axis moves."""
+        for step in reversed(self.steps):
+            if isinstance(step, TipMove):
+                return step.points[-1][1] + step.zero[0], step.points[-1][0] + step.zero[1]
+        return None
+
     def share_at(self, block: int, behind_end: Point) -> float:
         """How much of a block is done when the tool is ``behind_end`` (Z, r; mm) off the place of its end."""
         step = self._step(block)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from itertools import chain
 from typing import TYPE_CHECKING
 
@@ -14,8 +15,8 @@ from core.geometry.lines_and_arcs import arc_sweep
 from core.interpreter.actions import Dwell, ProgramStop
 from core.interpreter.elementary_blocks import Block, Floats, Kind, Series
 from core.interpreter.machine_requirements import Need, first_needs, needs_of
-from core.language.diagnostics import Diagnostic
-from core.language.source import Source
+from core.language.diagnostics import Diagnostic, Severity
+from core.language.source import Dialect, Source
 from core.machine.machine_model import Machine
 from core.proving.cutting_checks import CuttingChecks
 from core.proving.machine_checks import c_findings, travel_findings
@@ -24,6 +25,9 @@ from core.proving.proof_report import MillFigures, Range, Reach, Report, Times, 
 
 if TYPE_CHECKING:
     from core.geometry.virtual_mill import PlaneMove
+
+_TURN = 360.0
+_ROUNDING = 1e-9
 
 # --- sums -----------------------------------------------------------------------------------------------
 
@@ -43,6 +47,13 @@ class Extent:
     def range(self) -> Range:
         """Least and greatest value."""
         return (self.low, self.high) if self.low <= self.high else (0.0, 0.0)
+
+
+def turned_range(low: float, high: float) -> Range:
+    """Least and greatest position of a modulo axis, degrees: 0 to 360 where it has gone through 0."""
+    turns = math.floor(low / _TURN + _ROUNDING) * _TURN
+    low, high = low - turns, high - turns
+    return (max(low, 0.0), high) if high <= _TURN + _ROUNDING else (0.0, _TURN)
 
 
 class Tally:
@@ -198,7 +209,8 @@ class ProofPass:
     def _look_beyond(self, part: Part) -> None:
         if len(self._beyond) >= MAX_FINDINGS:
             return
-        for finding in chain(travel_findings(part, self._machine), c_findings(part, self._machine)):
+        beyond = travel_findings(part, self._machine, self._checks.dialect)
+        for finding in chain(beyond, c_findings(part, self._machine)):
             self._beyond.setdefault((finding.line, finding.message[:1]), finding)
             if len(self._beyond) >= MAX_FINDINGS:
                 return
@@ -231,7 +243,8 @@ class ProofPass:
         """The report, once the whole program was gone through."""
         self._see()
         beyond = list(self._beyond.values())[:MAX_FINDINGS]
-        found = [*timeline.diagnostics, *beyond, *self._checks.findings]
+        told = map(_as_assumed, timeline.diagnostics)
+        found = [*told, *beyond, *self._checks.findings]
         interpreter, last, tally = timeline.interpreter, self.last, self._tally
         end = self.last_move  # in its own frame: M30 takes the work shift away, and moves nothing
         return Report(
@@ -246,7 +259,7 @@ class ProofPass:
             rapid_length=tally.rapid_length,
             tools=tuple(sorted(interpreter.used_tools)),
             missing_tools=tuple(sorted(interpreter.missing_tools)),
-            reach=tally.reach,
+            reach=self._lathe_reach(source),
             final=(end.x, end.z, _shown_c(end)) if end else _lathe(timeline.start),
             machine_final=end.machine_end if end else timeline.start,
             mill=self._mill(),
@@ -256,14 +269,31 @@ class ProofPass:
             corner_tolerance=self._machine.corner_tolerance,
         )
 
+    def _lathe_reach(self, source: Source) -> Reach:
+        """What the program reaches; C of SINUMERIK as its axis counts."""
+        reach = self._tally.reach
+        modulo = source.dialect is Dialect.SINUMERIK and self._machine.c_enabled and self._machine.c_modulo
+        return replace(reach, c=turned_range(*reach.c)) if modulo else reach
+
     def _mill(self) -> MillFigures | None:
         if self._machine.kind != "mill":
             return None
         return MillFigures(
             axes=tuple(axis.name for axis in self._machine.axes),
-            reach=tuple(span.range for span in self._tally.axes),
+            reach=tuple(
+                turned_range(*span.range) if axis.rotary and axis.travel is None else span.range
+                for axis, span in zip(self._machine.axes, self._tally.axes, strict=False)
+            ),
             final=self.last.swivel if self.last else None,
         )
+
+
+def _as_assumed(found: Diagnostic) -> Diagnostic:
+    """What holds only for a place that a proof assumes is a warning; a run that comes to it stops there."""
+    if not found.assumed or found.severity is not Severity.ERROR:
+        return found
+    hint = f"{found.hint} Assumed: {', '.join(found.assumed)}; nothing behind it is proved."
+    return replace(found, severity=Severity.WARNING, hint=hint)
 
 
 def _rapid(parts: Sequence[Part]) -> npt.NDArray[np.bool_]:

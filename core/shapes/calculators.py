@@ -9,6 +9,7 @@ from dataclasses import replace
 from core.shapes import cutting_data
 from core.shapes.code_lines import Code
 from core.shapes.cutting_data import MATERIALS, Work
+from core.shapes.cutting_depth import rough_depth
 from core.shapes.number_words import plain
 from core.shapes.shape import Filled, Shape
 from core.shapes.shape_fields import Field, Kind, Proposal, Refusal, Value, Values, number, text
@@ -164,7 +165,17 @@ def _speed_says(filled: Filled, setting: Setting) -> tuple[str, ...]:
     return (
         f"G94F{plain(filled.n('RATE'), 3)} is the same feed",
         f"S{filled.n('RPM'):.0f} is {real:.0f} {unit} there",
+        *_depth_says(filled, setting),
     )
+
+
+def _depth_says(filled: Filled, setting: Setting) -> Iterator[str]:
+    """Yield the depth of a rough pass, for turning and boring."""
+    work = _work(filled.values)
+    if work in {Work.TURN, Work.BORE}:
+        now = _of_material(filled.values, setting)
+        depth = rough_depth(now, 0.0, filled.n("DIA"), inside=work is Work.BORE)
+        yield f"rough passes {plain(depth, 4)} deep a side"
 
 
 def _speed_sketch(_filled: Filled) -> Sketch:

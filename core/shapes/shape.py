@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 
 from core.language.source import Dialect
@@ -35,7 +35,7 @@ class Shape:
     ``first`` yields why nothing can be proposed for other fields, ``checks`` what the fields refuse of each
     other. ``contour``: it has a table of points, which is read from its lines. ``ends`` are lines that belong
     to the end of the program, behind M30. Without a comment (``noted``) its lines are no piece that is opened
-    again. ``says``: what is to be told of them.
+    again. ``says``: what is to be told of them. ``extent``: values of the points that proposals follow.
     """
 
     name: str
@@ -49,6 +49,7 @@ class Shape:
     noted: bool = True
     first: Callable[[Filled, Setting], Iterator[Refusal]] = field(default=_no_checks)
     says: Callable[[Filled, Setting], tuple[str, ...]] = field(default=lambda _filled, _setting: ())
+    extent: Callable[[Sequence[Row]], Values] = field(default=lambda _rows: {})
 
     def field(self, word: str) -> Field | None:
         """The field of this word."""
@@ -114,10 +115,11 @@ class Filled:
 def filled(shape: Shape, typed: Values, setting: Setting, rows: tuple[Row, ...] = ()) -> Filled:
     """The shape with what was typed, and what is proposed for the rest, field after field."""
     values: dict[str, Value] = {}
+    drawn = shape.extent(rows)
     for each in shape.fields:
         value = typed.get(each.word)
         if value is None and each.only({**typed, **values}):
-            value = each.proposed({**typed, **values}, setting)
+            value = each.proposed({**drawn, **typed, **values}, setting)
             value = 0.0 if value is None and each.zero else value
         if value is not None:
             values[each.word] = value

@@ -24,6 +24,7 @@ class Shop:
     third_axis: str = "C"  # what SINUMERIK programs call C; empty: there is none
     spindle_is_c: bool = True  # C is a second use of the spindle: it taps without a holder that gives
     chuck: tuple[int, int] | None = None  # SINUMERIK: M codes that open and close it
+    travel: tuple[float, float] = (0.0, 0.0)  # mm, of X as a radius and of Z; 0: not known
     tools: Mapping[int, ToolShape] = field(default_factory=dict)
 
 

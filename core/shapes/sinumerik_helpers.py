@@ -28,8 +28,8 @@ def _speed(filled: Filled, _setting: Setting, code: Code) -> None:
 
 def _speed_says(filled: Filled, setting: Setting) -> tuple[str, ...]:
     """The feed a minute as it is written here."""
-    _, surface = SPEED.says(filled, setting)
-    return f"G94 F{figure(filled.n('RATE'), 3)} is the same feed", surface
+    _, *others = SPEED.says(filled, setting)
+    return f"G94 F{figure(filled.n('RATE'), 3)} is the same feed", *others
 
 
 def _run_up(filled: Filled, setting: Setting) -> Filled:

@@ -3,18 +3,28 @@
 from __future__ import annotations
 
 from core.shapes.code_lines import Code
+from core.shapes.cutting_data import Work
+from core.shapes.cutting_depth import finish_depth, rough_depth
 from core.shapes.number_words import plain, rounded_up
 from core.shapes.program_head import HEAD
 from core.shapes.shape import Filled, Shape
-from core.shapes.shape_fields import Field, Kind, size
+from core.shapes.shape_fields import Field, Kind, Value, Values, number, size
 from core.shapes.shape_setting import Setting
 from core.shapes.sketch import Sketch, cut, part, sketch, tool
-from core.shapes.usual_fields import MOST_RPM, bar, next_tool
+from core.shapes.usual_fields import MOST_RPM, bar, feed_field, next_tool
 
 V60_DEEP = 0.6134  # of a thread of 60 degrees, in pitches; ISO 68-1
 _TOOL = Field("T", "TOOL", Kind.TOOL, lambda _v, s: float(next_tool(s)), most=32)
 _SPEED = Field("RPM", "SPEED RPM", Kind.RPM, 1000.0, most=MOST_RPM)
 _ACROSS = Field("FROM", "DIAMETER", Kind.DIAMETER, lambda v, s: bar(v, s) or (25.0 if s.metric else 1.0))
+
+
+def _depth(values: Values, setting: Setting) -> Value | None:
+    return rough_depth(setting, max(setting.used, default=0), number(values, "FROM"))
+
+
+def _leave(values: Values, setting: Setting) -> Value | None:
+    return finish_depth(setting, number(values, "ROUGH"))
 
 
 def _bar(_filled: Filled) -> Sketch:
@@ -84,9 +94,9 @@ ROUGH = Shape(
     "passes down to a contour of points, which are changed by hand",
     (
         _ACROSS,
-        Field("ROUGH", "DEPTH OF A ROUGH PASS", Kind.LENGTH, size(0.04, 1.0)),
-        Field("LEAVE", "LEFT FOR FINISHING", Kind.LENGTH, size(0.01, 0.25), zero=True),
-        Field("FEED", "FEED", Kind.FEED, size(0.005, 0.125)),
+        Field("ROUGH", "DEPTH OF A ROUGH PASS", Kind.LENGTH, _depth),
+        Field("LEAVE", "LEFT FOR FINISHING", Kind.LENGTH, _leave, zero=True),
+        feed_field(Work.TURN),
     ),
     _rough,
     _rough_sketch,

@@ -11,8 +11,9 @@ from core.part.tool_shape import ToolKind
 from core.shapes.code_lines import Along, Code
 from core.shapes.contour import SAME, Row, contour_refusals, outline, points, row_word
 from core.shapes.cutting_data import Work
+from core.shapes.cutting_depth import facing_depth, finish_depth, most_depth, rough_depth
 from core.shapes.shape import Filled, Shape
-from core.shapes.shape_fields import Field, Kind, Refusal, Value, Values, number, size, text
+from core.shapes.shape_fields import Field, Kind, Refusal, Value, Values, number, text
 from core.shapes.shape_setting import Setting
 from core.shapes.sketch import Dim, Sketch, cut, part, sketch, turned
 from core.shapes.usual_fields import (
@@ -35,8 +36,46 @@ def _roughs(values: Values) -> bool:
     return number(values, "ROUGH") > 0.0
 
 
-_ROUGH = Field("ROUGH", "DEPTH OF A ROUGH PASS", Kind.LENGTH, 0.0, zero=True)
-_LEAVE = Field("LEAVE", "LEFT FOR FINISHING", Kind.LENGTH, size(0.01, 0.25), zero=True, only=_roughs)
+LOWEST, HIGHEST = "LOWEST", "HIGHEST"
+"""Diameters between which the points of a contour turn; they are no fields, proposals follow them."""
+
+
+def _extent(rows: Sequence[Row]) -> Values:
+    """Return LOWEST and HIGHEST of a contour, whose moves square across the face do not count.
+
+    Empty where roughing along Z cannot cut the contour.
+    """
+    there = points(rows)
+    turned = [r for a, b in pairwise(there) if abs(a[0] - b[0]) > SAME for r in (a[1], b[1])]
+    if not turned or any(b[0] > a[0] + SAME for a, b in pairwise(there)):
+        return {}
+    return {LOWEST: 2.0 * min(turned), HIGHEST: 2.0 * max(turned)}
+
+
+def _stock_and_end(values: Values) -> tuple[float, float]:
+    """Return the diameter at which the stock begins and that of the deepest cut; the same where unknown."""
+    low = number(values, LOWEST) or number(values, "SMALL")
+    high = max(number(values, each) for each in (HIGHEST, "LARGE", "DIAM"))
+    if text(values, "SIDE") == INSIDE or "DIAM" in values:
+        return number(values, "HOLE") or high, high
+    if not {LOWEST, "SMALL"} & values.keys():
+        return high, high
+    return max(number(values, "FROM"), high), low
+
+
+def _depth(values: Values, setting: Setting) -> Value | None:
+    """Propose rough passes where more stock is left than two finishing passes take."""
+    stock, end = _stock_and_end(values)
+    depth = rough_depth(setting, number(values, "T"), max(stock, end), inside=end > stock)
+    return depth if abs(stock - end) / 4.0 > finish_depth(setting, depth) + SAME else 0.0
+
+
+def _leave(values: Values, setting: Setting) -> Value | None:
+    return finish_depth(setting, number(values, "ROUGH"))
+
+
+_ROUGH = Field("ROUGH", "DEPTH OF A ROUGH PASS", Kind.LENGTH, _depth, zero=True)
+_LEAVE = Field("LEAVE", "LEFT FOR FINISHING", Kind.LENGTH, _leave, zero=True, only=_roughs)
 _RFEED = feed_field(Work.TURN, "RFEED", "FEED OF ROUGHING", only=_roughs)
 _COMP = Field("COMP", "NOSE COMPENSATION D", Kind.OFFSET, 0.0, zero=True, most=32)
 
@@ -135,6 +174,17 @@ def _cutting_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
     rough, leave = filled.n("ROUGH"), filled.n("LEAVE")
     if rough and leave >= rough:
         yield Refusal("LEAVE", f"{leave:g} left for finishing is more than a pass of {rough:g}: type less.")
+    stock, end = _stock_and_end({**filled.shape.extent(filled.rows), **filled.values})
+    if filled.shape.field("ROUGH") is not None:
+        yield from _too_deep(filled, setting, "ROUGH", rough or abs(stock - end) / 2.0)
+
+
+def _too_deep(filled: Filled, setting: Setting, word: str, deep: float) -> Iterator[Refusal]:
+    """Refuse a pass that is deeper than the insert takes."""
+    most = most_depth(setting, filled.n("T"))
+    if deep > most + SAME:
+        words = f"A pass would be {deep:.4g} deep, and the insert of T{filled.n('T'):.0f} takes {most:.4g}"
+        yield Refusal(word, f"{words}: type a smaller depth of a pass.")
 
 
 def _turn(filled: Filled, setting: Setting, code: Code) -> None:
@@ -180,6 +230,7 @@ TURN = Shape(
     _turn_sketch,
     _contour_checks,
     contour=True,
+    extent=_extent,
 )
 
 
@@ -208,7 +259,12 @@ def _past_axis(values: Values, setting: Setting) -> Value | None:
     return -math.ceil(2000.0 * (nose or 0.4 / setting.mm)) / 1000.0
 
 
+def _facing(values: Values, setting: Setting) -> Value | None:
+    return facing_depth(setting, number(values, "T"), number(values, "FROM"))
+
+
 def _face_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
+    yield from _too_deep(filled, setting, "DEEP", min(filled.n("DEEP"), filled.n("STOCK")))
     if filled.n("TO") >= filled.n("FROM"):
         yield Refusal("TO", f"It faces from {filled.n('FROM'):g} inwards: {filled.n('TO'):g} is not less.")
     yield from too_fast(filled, setting)
@@ -239,9 +295,7 @@ FACE = Shape(
         Field("TO", "TO DIAMETER", Kind.COORDINATE, _past_axis),
         Field("AT", "FACE AT Z", Kind.COORDINATE, 0.0),
         Field("STOCK", "STOCK BEFORE THE FACE", Kind.LENGTH, 0.0, zero=True),
-        Field(
-            "DEEP", "DEPTH OF A PASS", Kind.LENGTH, size(0.03, 0.75), only=lambda v: number(v, "STOCK") > 0
-        ),
+        Field("DEEP", "DEPTH OF A PASS", Kind.LENGTH, _facing, only=lambda v: number(v, "STOCK") > 0),
         feed_field(Work.FINISH),
         rpm_field(Work.TURN, around("FROM")),
         surface_field(),
@@ -335,6 +389,7 @@ def _edge(filled: Filled, setting: Setting, code: Code) -> None:
 
 def _edge_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
     across, edge = filled.n("DIAM"), filled.n("EDGE")
+    yield from _too_deep(filled, setting, "EDGE", edge * math.sqrt(0.5))
     if filled.t("SIDE") == OUTSIDE and 2.0 * edge > across + 1e-9:
         yield Refusal("EDGE", f"{edge:g} is more than the radius of {across:g}: type {across / 2:g} or less.")
     yield from _compensated(filled, setting)

@@ -195,6 +195,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>%1: F counts on the path of the tip here; take it out.</source>
+      <translation>%1: aquí F cuenta en la trayectoria de la punta; quítelo.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>%1: F is the feed of the path; write F, FB or OVR.</source>
       <translation>%1: F es el avance de la trayectoria; escriba F, FB u OVR.</translation>
     </message>
@@ -207,6 +212,11 @@
       <location filename="" />
       <source>%1: R parameters are R0 to R%2.</source>
       <translation>%1: Los parámetros R son de R0 a R%2.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1: SAVE stands behind PROC.</source>
+      <translation>%1: SAVE va detrás de PROC.</translation>
     </message>
     <message>
       <location filename="" />
@@ -225,8 +235,18 @@
     </message>
     <message>
       <location filename="" />
+      <source>%1: a cycle has its number, such as CYCLE95.</source>
+      <translation>%1: un ciclo lleva su número, como CYCLE95.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>%1: a helix needs a third axis of the slides.</source>
       <translation>%1: una hélice necesita un tercer eje de los carros.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1: accelerations are those of the machine file; take it out.</source>
+      <translation>%1: las aceleraciones son las del archivo de la máquina; quítelo.</translation>
     </message>
     <message>
       <location filename="" />
@@ -240,6 +260,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>%1: axes do not move beside the path here; write G0 or G1 with the axis.</source>
+      <translation>%1: aquí los ejes no se mueven aparte de la trayectoria; escriba G0 o G1 con el eje.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>%1: beside G35 only F2 has a meaning (leads to 2 in/rev).</source>
       <translation>%1: junto a G35 sólo F2 tiene sentido (pasos hasta 2 pulg/rev).</translation>
     </message>
@@ -247,6 +272,16 @@
       <location filename="" />
       <source>%1: character %2, %3, means nothing as %4; known: %5</source>
       <translation>%1: el carácter %2, %3, no significa nada como %4; se conocen: %5</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1: contour tables are not made here; name the contour in CYCLE95.</source>
+      <translation>%1: aquí no se hacen tablas de contorno; nombre el contorno en CYCLE95.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1: dialogs of a program are not shown here; write MSG.</source>
+      <translation>%1: aquí no se muestran diálogos de un programa; escriba MSG.</translation>
     </message>
     <message>
       <location filename="" />
@@ -265,8 +300,18 @@
     </message>
     <message>
       <location filename="" />
+      <source>%1: interrupts by an input are not executed here; stop with M0 or M1.</source>
+      <translation>%1: aquí no se ejecutan interrupciones por una entrada; pare con M0 o M1.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>%1: inverse time feed is not executed here; write G94 or G95 with F.</source>
       <translation>%1: el avance por inverso del tiempo no se ejecuta aquí; escriba G94 o G95 con F.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1: macros are not made here; write their words.</source>
+      <translation>%1: aquí no se hacen macros; escriba sus palabras.</translation>
     </message>
     <message>
       <location filename="" />
@@ -275,8 +320,28 @@
     </message>
     <message>
       <location filename="" />
+      <source>%1: oscillation is not executed here.</source>
+      <translation>%1: aquí no se ejecuta la oscilación.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1: positions of the machine are not preset here; write TRANS.</source>
+      <translation>%1: aquí no se preajustan posiciones de la máquina; escriba TRANS.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1: programs do not read or write files here.</source>
+      <translation>%1: aquí los programas no leen ni escriben archivos.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>%1: programs from outside are not called; put the file beside the main program and call its name.</source>
       <translation>%1: los programas de fuera no se llaman; ponga el archivo junto al programa principal y llame su nombre.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1: retraction by itself is not executed here.</source>
+      <translation>%1: aquí no se ejecuta la retirada automática.</translation>
     </message>
     <message>
       <location filename="" />
@@ -292,6 +357,11 @@
       <location filename="" />
       <source>%1: the angle of infeed goes from 0 to 30 degrees.</source>
       <translation>%1: el ángulo de entrada va de 0 a 30 grados.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1: the axis of a spindle is known from the machine file.</source>
+      <translation>%1: el eje de un husillo se conoce por el archivo de la máquina.</translation>
     </message>
     <message>
       <location filename="" />
@@ -315,6 +385,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>%1: the limits of an axis are those of the machine file; take it out.</source>
+      <translation>%1: los límites de un eje son los del archivo de la máquina; quítelo.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>%1: the other language mode is not read here.</source>
       <translation>%1: el otro modo de lenguaje no se lee aquí.</translation>
     </message>
@@ -330,6 +405,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>%1: the whole program is read before it begins; take it out.</source>
+      <translation>%1: el programa entero se lee antes de empezar; quítelo.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>%1: this control has one channel, and its axes are its own.</source>
       <translation>%1: este control tiene un solo canal, y sus ejes son suyos.</translation>
     </message>
@@ -337,6 +417,11 @@
       <location filename="" />
       <source>%1: this control keeps six settable offsets; write G54 to G59.</source>
       <translation>%1: este control lleva seis decalajes ajustables; escriba de G54 a G59.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1: this lathe does not punch.</source>
+      <translation>%1: este torno no punzona.</translation>
     </message>
     <message>
       <location filename="" />
@@ -352,6 +437,21 @@
       <location filename="" />
       <source>%1: this lathe has no orientation axes.</source>
       <translation>%1: este torno no tiene ejes de orientación.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1: tools are managed on the page of tool offsets (F8).</source>
+      <translation>%1: las herramientas se gestionan en la página de correctores (F8).</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1: transformations are not chained here.</source>
+      <translation>%1: aquí no se encadenan transformaciones.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1: travel to a fixed stop is not executed here.</source>
+      <translation>%1: aquí no se ejecuta el desplazamiento a tope fijo.</translation>
     </message>
     <message>
       <location filename="" />
@@ -385,8 +485,23 @@
     </message>
     <message>
       <location filename="" />
+      <source>%1: write GOTO, GOTOF or GOTOB.</source>
+      <translation>%1: escriba GOTO, GOTOF o GOTOB.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1: write SPOS, or M3 and M4.</source>
+      <translation>%1: escriba SPOS, o M3 y M4.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>%1: write the curve as lines and arcs.</source>
       <translation>%1: escriba la curva como rectas y arcos.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>%1: write the frame with TRANS, ROT, SCALE or MIRROR.</source>
+      <translation>%1: escriba el frame con TRANS, ROT, SCALE o MIRROR.</translation>
     </message>
     <message>
       <location filename="" />
@@ -1477,6 +1592,11 @@
       <location filename="" />
       <source>F counts on the path of the tip here</source>
       <translation>aquí F cuenta en el camino de la punta</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>F counts on the path of the tip here; take it out</source>
+      <translation>aquí F cuenta en la trayectoria de la punta; quítelo</translation>
     </message>
     <message>
       <location filename="" />
@@ -2905,6 +3025,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>SAVE stands behind PROC</source>
+      <translation>SAVE va detrás de PROC</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>SERIES</source>
       <translation>SERIE</translation>
     </message>
@@ -4280,6 +4405,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>a cycle has its number, such as CYCLE95</source>
+      <translation>un ciclo lleva su número, como CYCLE95</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>a drill</source>
       <translation>una broca</translation>
     </message>
@@ -4302,6 +4432,11 @@
       <location filename="" />
       <source>absolute or incremental</source>
       <translation>absoluto o incremental</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>accelerations are those of the machine file; take it out</source>
+      <translation>las aceleraciones son las del archivo de la máquina; quítelo</translation>
     </message>
     <message>
       <location filename="" />
@@ -4332,6 +4467,11 @@
       <location filename="" />
       <source>approach on a curve is not executed here; write KONT or NORM</source>
       <translation>la entrada por una curva no se ejecuta aquí; escriba KONT o NORM</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>axes do not move beside the path here; write G0 or G1 with the axis</source>
+      <translation>aquí los ejes no se mueven aparte de la trayectoria; escriba G0 o G1 con el eje</translation>
     </message>
     <message>
       <location filename="" />
@@ -4395,6 +4535,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>contour tables are not made here; name the contour in CYCLE95</source>
+      <translation>aquí no se hacen tablas de contorno; nombre el contorno en CYCLE95</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>departure</source>
       <translation>salida</translation>
     </message>
@@ -4402,6 +4547,11 @@
       <location filename="" />
       <source>depth</source>
       <translation>profundidad</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>dialogs of a program are not shown here; write MSG</source>
+      <translation>aquí no se muestran diálogos de un programa; escriba MSG</translation>
     </message>
     <message>
       <location filename="" />
@@ -4505,6 +4655,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>interrupts by an input are not executed here; stop with M0 or M1</source>
+      <translation>aquí no se ejecutan interrupciones por una entrada; pare con M0 o M1</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>inverse time feed is not executed here; write G94 or G95 with F</source>
       <translation>el avance por inverso del tiempo no se ejecuta aquí; escriba G94 o G95 con F</translation>
     </message>
@@ -4570,6 +4725,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>macros are not made here; write their words</source>
+      <translation>aquí no se hacen macros; escriba sus palabras</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>measuring in the program is not executed here; touch the tool off on the Jog page</source>
       <translation>medir en el programa no se ejecuta aquí; toque la herramienta en la página Manual</translation>
     </message>
@@ -4607,6 +4767,11 @@
       <location filename="" />
       <source>on (1) or off (0): 0 … 1</source>
       <translation>activa (1) o inactiva (0): 0 … 1</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>oscillation is not executed here</source>
+      <translation>aquí no se ejecuta la oscilación</translation>
     </message>
     <message>
       <location filename="" />
@@ -4660,6 +4825,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>positions of the machine are not preset here; write TRANS</source>
+      <translation>aquí no se preajustan posiciones de la máquina; escriba TRANS</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>presets</source>
       <translation>presets</translation>
     </message>
@@ -4667,6 +4837,11 @@
       <location filename="" />
       <source>programs</source>
       <translation>programas</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>programs do not read or write files here</source>
+      <translation>aquí los programas no leen ni escriben archivos</translation>
     </message>
     <message>
       <location filename="" />
@@ -4692,6 +4867,11 @@
       <location filename="" />
       <source>restart</source>
       <translation>rearranque</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>retraction by itself is not executed here</source>
+      <translation>aquí no se ejecuta la retirada automática</translation>
     </message>
     <message>
       <location filename="" />
@@ -4835,6 +5015,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>the axis of a spindle is known from the machine file</source>
+      <translation>el eje de un husillo se conoce por el archivo de la máquina</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>the bottom of the hole</source>
       <translation>el fondo del agujero</translation>
     </message>
@@ -4882,6 +5067,11 @@
       <location filename="" />
       <source>the lead</source>
       <translation>el paso</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>the limits of an axis are those of the machine file; take it out</source>
+      <translation>los límites de un eje son los del archivo de la máquina; quítelo</translation>
     </message>
     <message>
       <location filename="" />
@@ -4935,6 +5125,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>the whole program is read before it begins; take it out</source>
+      <translation>el programa entero se lee antes de empezar; quítelo</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>this control has one channel, and its axes are its own</source>
       <translation>este control tiene un solo canal, y sus ejes son suyos</translation>
     </message>
@@ -4942,6 +5137,11 @@
       <location filename="" />
       <source>this control keeps six settable offsets; write G54 to G59</source>
       <translation>este control lleva seis decalajes ajustables; escriba de G54 a G59</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>this lathe does not punch</source>
+      <translation>este torno no punzona</translation>
     </message>
     <message>
       <location filename="" />
@@ -4985,8 +5185,23 @@
     </message>
     <message>
       <location filename="" />
+      <source>tools are managed on the page of tool offsets (F8)</source>
+      <translation>las herramientas se gestionan en la página de correctores (F8)</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>transformation</source>
       <translation>transformación</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>transformations are not chained here</source>
+      <translation>aquí no se encadenan transformaciones</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>travel to a fixed stop is not executed here</source>
+      <translation>aquí no se ejecuta el desplazamiento a tope fijo</translation>
     </message>
     <message>
       <location filename="" />
@@ -5045,8 +5260,23 @@
     </message>
     <message>
       <location filename="" />
+      <source>write GOTO, GOTOF or GOTOB</source>
+      <translation>escriba GOTO, GOTOF o GOTOB</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>write SPOS, or M3 and M4</source>
+      <translation>escriba SPOS, o M3 y M4</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>write the curve as lines and arcs</source>
       <translation>escriba la curva como rectas y arcos</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>write the frame with TRANS, ROT, SCALE or MIRROR</source>
+      <translation>escriba el frame con TRANS, ROT, SCALE o MIRROR</translation>
     </message>
     <message>
       <location filename="app/automatic/automatic_view.py" />
@@ -5502,6 +5732,11 @@
       <location filename="app/desk/desk.py" />
       <source>BLOCK DELETE CHANGES WHAT WAS PROVED: ONLY BETWEEN TWO CYCLES</source>
       <translation>EL SALTO DE BLOQUE CAMBIA LO COMPROBADO: SÓLO ENTRE DOS CICLOS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/desk.py" />
+      <source>CHECKING THE FIRST MOVE AGAINST THE PART</source>
+      <translation>COMPROBANDO EL PRIMER MOVIMIENTO CON LA PIEZA</translation>
     </message>
     <message>
       <location filename="app/desk/desk.py" />
@@ -6607,6 +6842,61 @@
       <location filename="app/desk/standard_input.py" />
       <source>stdin is closed, so no %1 comes in there; name a file</source>
       <translation>stdin está cerrado, por ahí no llega nada para «%1»; indique un archivo</translation>
+    </message>
+    <message>
+      <location filename="app/desk/start_verdict.py" />
+      <source>F6, THEN F4 SHOWS THE WAY OUT, OR {jog}</source>
+      <translation>F6 Y DESPUÉS F4 MUESTRA LA SALIDA, O {jog}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/start_verdict.py" />
+      <source>JOG IT OUT ALONG THE PATH BY WHICH IT CAME</source>
+      <translation>SÁQUELA EN JOG POR EL CAMINO POR EL QUE ENTRÓ</translation>
+    </message>
+    <message>
+      <location filename="app/desk/start_verdict.py" />
+      <source>JOG {direction} UNTIL IT IS CLEAR</source>
+      <translation>MUEVA {direction} EN JOG HASTA QUE QUEDE LIBRE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/start_verdict.py" />
+      <source>THE CHUCK</source>
+      <translation>EL PLATO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/start_verdict.py" />
+      <source>THE FIRST MOVE TAKES {tool} THROUGH {what}</source>
+      <translation>EL PRIMER MOVIMIENTO HACE QUE {tool} ATRAVIESE {what}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/start_verdict.py" />
+      <source>THE PART</source>
+      <translation>LA PIEZA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/start_verdict.py" />
+      <source>THE PART IN THE CHUCK IS NOT KNOWN: LOOK AT THE FIRST MOVE BEFORE YOU START</source>
+      <translation>NO SE CONOCE LA PIEZA DEL PLATO: MIRE EL PRIMER MOVIMIENTO ANTES DE ARRANCAR</translation>
+    </message>
+    <message>
+      <location filename="app/desk/start_verdict.py" />
+      <source>THE TAILSTOCK</source>
+      <translation>EL CONTRAPUNTO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/start_verdict.py" />
+      <source>{tool} IS INSIDE {what}</source>
+      <translation>{tool} ESTÁ DENTRO DE {what}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/start_watch.py" />
+      <source>START</source>
+      <translation>ARRANQUE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/start_watch.py" />
+      <source>THE FIRST MOVE COULD NOT BE CHECKED: {why}</source>
+      <translation>NO SE PUDO COMPROBAR EL PRIMER MOVIMIENTO: {why}</translation>
     </message>
     <message>
       <location filename="app/desk/stored_shapes.py" />
@@ -13550,6 +13840,11 @@
     </message>
     <message>
       <location filename="app/shapes/drawing_plan.py" />
+      <source>%1 is %2: in %3 it would fit: choose %4.</source>
+      <translation>%1 mide %2: en %3 cabría: elija %4.</translation>
+    </message>
+    <message>
+      <location filename="app/shapes/drawing_plan.py" />
       <source>A bore begins with a hole: type its diameter.</source>
       <translation>Un mandrinado empieza con un agujero: escriba su diámetro.</translation>
     </message>
@@ -14862,6 +15157,36 @@
       <location filename="app/special/preferences.py" />
       <source>units, language, station, window</source>
       <translation>unidades, idioma, puesto, ventana</translation>
+    </message>
+    <message>
+      <location filename="app/special/r_parameters.py" />
+      <source>A PROGRAM IS UNDER WAY: R PARAMETERS CHANGE BETWEEN CYCLES</source>
+      <translation>UN PROGRAMA ESTÁ EN MARCHA: LOS PARÁMETROS R CAMBIAN ENTRE CICLOS</translation>
+    </message>
+    <message>
+      <location filename="app/special/r_parameters.py" />
+      <source>Every SINUMERIK program begins with these; what it sets itself holds until its end.</source>
+      <translation>Cada programa SINUMERIK empieza con estos; lo que pone él mismo vale hasta su final.</translation>
+    </message>
+    <message>
+      <location filename="app/special/r_parameters.py" />
+      <source>NO VALUE</source>
+      <translation>SIN VALOR</translation>
+    </message>
+    <message>
+      <location filename="app/special/r_parameters.py" />
+      <source>One that nobody has set counts as 0, with a warning.</source>
+      <translation>El que nadie ha puesto cuenta como 0, con un aviso.</translation>
+    </message>
+    <message>
+      <location filename="app/special/r_parameters.py" />
+      <source>R PARAMETERS GO FROM {low} TO {high}</source>
+      <translation>LOS PARÁMETROS R VAN DE {low} A {high}</translation>
+    </message>
+    <message>
+      <location filename="app/special/r_parameters.py" />
+      <source>R0 to R299 of SINUMERIK programs</source>
+      <translation>R0 a R299 de los programas SINUMERIK</translation>
     </message>
     <message>
       <location filename="app/special/setup_sheet.py" />
@@ -17225,8 +17550,8 @@
     </message>
     <message>
       <location filename="core/drawings/drawing.py" />
-      <source>%1 is damaged or no %2 (%3): save the drawing anew.</source>
-      <translation>%1 está dañado o no es %2 (%3): guarde el dibujo de nuevo.</translation>
+      <source>%1 is damaged or no %2: save the drawing anew.</source>
+      <translation>%1 está dañado o no es %2: guarde el dibujo de nuevo.</translation>
     </message>
     <message>
       <location filename="core/drawings/drawing_file.py" />
@@ -17307,6 +17632,31 @@
       <location filename="core/drawings/dxf_reader.py" />
       <source>is three-dimensional: save a section or a view of the part in one plane.</source>
       <translation>es tridimensional: guarde una sección o una vista de la pieza en un plano.</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/expansion.py" />
+      <source>%1: save the contour of the part alone.</source>
+      <translation>%1: guarde solo el contorno de la pieza.</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/expansion.py" />
+      <source>A repeated part of %1 contains itself: save the contour of the part alone.</source>
+      <translation>Una parte repetida de %1 se contiene a sí misma: guarde solo el contorno de la pieza.</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/expansion.py" />
+      <source>The repeated parts of %1 come to more than %2 entities</source>
+      <translation>Las partes repetidas de %1 suman más de %2 entidades</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/profile_program.py" />
+      <source>%1: enter the tip on its SHAPE page (F8, F8).</source>
+      <translation>%1: introduzca la punta en la página de su forma (F8, F8).</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/profile_program.py" />
+      <source>T%1 has a nose radius of %2 and no tip quadrant in its sheet</source>
+      <translation>T%1 tiene un radio de punta de %2 y su ficha no indica el cuadrante de punta</translation>
     </message>
     <message>
       <location filename="core/drawings/profile_program.py" />
@@ -17407,6 +17757,11 @@
       <location filename="core/drawings/svg_reader.py" />
       <source>%1 has no path nor line, only %2: draw the contour as a path.</source>
       <translation>%1 no tiene trazado ni línea, solo %2: dibuje el contorno como trazado.</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/svg_reader.py" />
+      <source>%1 is no SVG, its first element is of another namespace: save the drawing anew.</source>
+      <translation>%1 no es SVG, su primer elemento es de otro espacio de nombres: guarde el dibujo de nuevo.</translation>
     </message>
     <message>
       <location filename="core/drawings/turning_contour.py" />
@@ -18387,6 +18742,11 @@
       <location filename="core/executor/start_conditions.py" />
       <source>the drives are off: switch them on</source>
       <translation>los servos están apagados: enciéndalos</translation>
+    </message>
+    <message>
+      <location filename="core/executor/start_conditions.py" />
+      <source>the first move is being checked against the part: start again in a moment</source>
+      <translation>se está comprobando el primer movimiento con la pieza: vuelva a arrancar en un momento</translation>
     </message>
     <message>
       <location filename="core/executor/start_conditions.py" />
@@ -20335,6 +20695,11 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/plane_functions.py" />
+      <source>Look at the angles of the axes, or write PLANE before them, or PLANE AXIAL.</source>
+      <translation>Mire los ángulos de los ejes, o escriba PLANE antes de ellos, o PLANE AXIAL.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/plane_functions.py" />
       <source>M128 is on.</source>
       <translation>M128 está activo.</translation>
     </message>
@@ -20342,6 +20707,11 @@
       <location filename="core/interpreter/klartext/plane_functions.py" />
       <source>MB MAX needs a software limit, and this machine has none along the tool.</source>
       <translation>MB MAX necesita un límite por programa, y esta máquina no lo tiene en el eje de la herramienta.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/plane_functions.py" />
+      <source>MIRROR, ROTATION or SCALE is in force: PLANE %1 goes with it.</source>
+      <translation>MIRROR, ROTATION o SCALE está activo: PLANE %1 lo sigue.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/plane_functions.py" />
@@ -20700,8 +21070,8 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/tool_call.py" />
-      <source>TOOL CALL while M128 is on.</source>
-      <translation>TOOL CALL con M128 activo.</translation>
+      <source>TOOL CALL with a tool or an oversize while M128 is on.</source>
+      <translation>TOOL CALL con una herramienta o una sobremedida con M128 activo.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/tool_call.py" />
@@ -21805,11 +22175,6 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/omniturn_statement.py" />
-      <source>Look it up.</source>
-      <translation>Búsquelo en la página del lenguaje.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/omniturn_statement.py" />
       <source>Put it on a line of its own.</source>
       <translation>Póngalo en su propia línea.</translation>
     </message>
@@ -22720,6 +23085,11 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
+      <source>Write a whole number.</source>
+      <translation>Escriba un número entero.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
       <source>goes along Z</source>
       <translation>va a lo largo de Z</translation>
     </message>
@@ -22727,6 +23097,11 @@
       <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
       <source>is %1, and lies between %2 and %3</source>
       <translation>es %1, y está entre %2 y %3</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
+      <source>is %1, and takes a whole number</source>
+      <translation>es %1, y lleva un número entero</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
@@ -22945,6 +23320,11 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/groove_cycle.py" />
+      <source>%1 reckons with a tool %2 mm wide: %3 is not set.</source>
+      <translation>%1 cuenta con una herramienta de %2 mm de ancho: %3 no está medida.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/groove_cycle.py" />
       <source>%1 reckons with the tool's width, and %2, its other corner, is not set.</source>
       <translation>%1 cuenta con el ancho de la herramienta, y %2, su otra esquina, no está puesta.</translation>
     </message>
@@ -22960,8 +23340,18 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/groove_cycle.py" />
+      <source>Look at the angles.</source>
+      <translation>Mire los ángulos.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/groove_cycle.py" />
       <source>Set %1 on the page of tool offsets (F8).</source>
       <translation>Ponga %1 en la página de correctores de herramienta (F8).</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/groove_cycle.py" />
+      <source>Set its two corners on the page of tool offsets (F8).</source>
+      <translation>Mida sus dos esquinas en la página de correctores (F8).</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/groove_cycle.py" />
@@ -22995,6 +23385,11 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/groove_cycle.py" />
+      <source>is an angle of a flank, 0 to under 90 degrees</source>
+      <translation>es un ángulo de flanco, de 0 a menos de 90 grados</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/groove_cycle.py" />
       <source>is none of 1 to 8 and 11 to 18</source>
       <translation>no es ninguno de 1 a 8 ni de 11 a 18</translation>
     </message>
@@ -23015,8 +23410,8 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/groove_cycle.py" />
-      <source>write a groove with slanted flanks as a contour of CYCLE95</source>
-      <translation>escriba una ranura de flancos inclinados como contorno de CYCLE95</translation>
+      <source>write a groove in a cone as a contour of CYCLE95</source>
+      <translation>escriba una ranura en un cono como contorno de CYCLE95</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/groove_cycle.py" />
@@ -23107,6 +23502,11 @@
       <location filename="core/interpreter/sinumerik/linear_moves.py" />
       <source>This axis counts -360 to +360; write AC( ) or IC( ).</source>
       <translation>Este eje cuenta de -360 a +360; escriba AC( ) o IC( ).</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/linear_moves.py" />
+      <source>This axis is linear; write AC( ) or IC( ).</source>
+      <translation>Este eje es lineal; escriba AC( ) o IC( ).</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/linear_moves.py" />
@@ -24380,8 +24780,8 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/third_axis.py" />
-      <source>the end point %1 lies beyond -360 to +360 of the machine</source>
-      <translation>el punto final %1 está fuera de -360 a +360 de la máquina</translation>
+      <source>the end point %1 lies beyond %2 to %3 of the machine</source>
+      <translation>el punto final %1 queda fuera de %2 a %3 de la máquina</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/thread_chain_cycle.py" />
@@ -24600,13 +25000,18 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/tools_and_edges.py" />
-      <source>%1 does not exist: T%2 has no such cutting edge in the tool offsets.</source>
-      <translation>%1 no existe: T%2 no tiene ese filo en los correctores de herramienta.</translation>
+      <source>%1 does not exist: %2 has no such cutting edge in the tool offsets.</source>
+      <translation>%1 no existe: %2 no tiene ese filo en los correctores.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/tools_and_edges.py" />
       <source>%1 has no tool offset; 0 is used, and the machine will refuse to start.</source>
       <translation>%1 no tiene corrector de herramienta; se usa 0 y la máquina no arrancará.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/tools_and_edges.py" />
+      <source>%1 is tool %2 here; write %3.</source>
+      <translation>%1 es aquí la herramienta %2; escriba %3.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/tools_and_edges.py" />
@@ -24652,6 +25057,11 @@
       <location filename="core/interpreter/sinumerik/transformations.py" />
       <source>%1 needs a block of its own.</source>
       <translation>%1 necesita su propio bloque.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/transformations.py" />
+      <source>%1 turns the part by C, and the third axis of this machine is linear.</source>
+      <translation>%1 gira la pieza con C, y el tercer eje de esta máquina es lineal.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/transformations.py" />
@@ -24855,8 +25265,8 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/variables.py" />
-      <source>%1 has no value: the program has not set it.</source>
-      <translation>%1 no tiene valor: el programa no se lo ha dado.</translation>
+      <source>%1 has no value, and counts as 0: neither the program nor the operator has set it.</source>
+      <translation>%1 no tiene valor y cuenta como 0: ni el programa ni el operador lo ha puesto.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/variables.py" />
@@ -24895,8 +25305,8 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/variables.py" />
-      <source>Write %1=… before it.</source>
-      <translation>Escriba antes %1=…</translation>
+      <source>Write %1=… before it, or set it as R PARAMETERS (F10).</source>
+      <translation>Escriba %1=… delante, o póngalo en PARÁMETROS R (F10).</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/variables.py" />
@@ -24917,6 +25327,11 @@
       <location filename="core/language/diagnostics.py" />
       <source>%1 (%2 times)</source>
       <translation>%1 (%2 veces)</translation>
+    </message>
+    <message>
+      <location filename="core/language/diagnostics.py" />
+      <source>position at the stop</source>
+      <translation>posición en la parada</translation>
     </message>
     <message>
       <location filename="core/language/formulas.py" />
@@ -27510,8 +27925,8 @@
     </message>
     <message>
       <location filename="core/language/omniturn/other_controls.py" />
-      <source>See the language page.</source>
-      <translation>Vea la página del lenguaje.</translation>
+      <source>See the list of codes: Shift+F1 in the editor.</source>
+      <translation>Vea la lista de códigos: Shift+F1 en el editor.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/other_controls.py" />
@@ -27917,11 +28332,6 @@
       <location filename="core/language/omniturn/word_faults.py" />
       <source>Lines have no numbers here: N is not allowed.</source>
       <translation>Aquí las líneas no llevan número: N no se permite.</translation>
-    </message>
-    <message>
-      <location filename="core/language/omniturn/word_faults.py" />
-      <source>Look the word up in the language page.</source>
-      <translation>Busque la palabra en la página del lenguaje.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/word_faults.py" />
@@ -28464,6 +28874,121 @@
       <translation>ancho en el fondo</translation>
     </message>
     <message>
+      <location filename="core/language/sinumerik/iso_words.py" />
+      <source>#%1: variables are R parameters here.</source>
+      <translation>#%1: aquí las variables son parámetros R.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/iso_words.py" />
+      <source>%1 presets a position in ISO; here zero is shifted by TRANS.</source>
+      <translation>%1 preajusta una posición en ISO; aquí el cero se desplaza con TRANS.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/iso_words.py" />
+      <source>%1%2 is the time of a dwell in ISO, and here it is F, in seconds.</source>
+      <translation>%1%2 es el tiempo de una espera en ISO; aquí es F, en segundos.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/iso_words.py" />
+      <source>%1: %2 makes a corner here.</source>
+      <translation>%1: aquí %2 hace una esquina.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/iso_words.py" />
+      <source>%1: a distance is %2 here; this lathe has no axis %3.</source>
+      <translation>%1: aquí una distancia es %2; este torno no tiene eje %3.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/iso_words.py" />
+      <source>%1: a program has the name of its file here.</source>
+      <translation>%1: aquí un programa tiene el nombre de su archivo.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/iso_words.py" />
+      <source>%1: a subprogram is called by its name here.</source>
+      <translation>%1: aquí un subprograma se llama por su nombre.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/iso_words.py" />
+      <source>%1: home is G74 here, and a fixed point G75.</source>
+      <translation>%1: aquí el punto de referencia es G74, y un punto fijo G75.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/iso_words.py" />
+      <source>%1: the highest speed is LIMS= here.</source>
+      <translation>%1: aquí la velocidad máxima es LIMS=.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/iso_words.py" />
+      <source>G%1 of ISO is %2 here.</source>
+      <translation>G%1 de ISO es aquí %2.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/iso_words.py" />
+      <source>G%1: the kind of feed is %2 here.</source>
+      <translation>G%1: aquí el tipo de avance es %2.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/iso_words.py" />
+      <source>G%1: the unit is %2 here.</source>
+      <translation>G%1: aquí la unidad es %2.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/iso_words.py" />
+      <source>GOTO %1: a jump names a label or a block here.</source>
+      <translation>GOTO %1: aquí un salto nombra una etiqueta o un bloque.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/iso_words.py" />
+      <source>R%1: CR=%2 is the radius of an arc here.</source>
+      <translation>R%1: aquí CR=%2 es el radio de un arco.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/iso_words.py" />
+      <source>Write ; before it.</source>
+      <translation>Escriba ; delante.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/iso_words.py" />
+      <source>Write CR=%1.</source>
+      <translation>Escriba CR=%1.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/iso_words.py" />
+      <source>Write G4 F%1.</source>
+      <translation>Escriba G4 F%1.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/iso_words.py" />
+      <source>Write GOTO N%1.</source>
+      <translation>Escriba GOTO N%1.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/iso_words.py" />
+      <source>Write L%1.</source>
+      <translation>Escriba L%1.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/iso_words.py" />
+      <source>Write LIMS=%1.</source>
+      <translation>Escriba LIMS=%1.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/iso_words.py" />
+      <source>Write R%1.</source>
+      <translation>Escriba R%1.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/iso_words.py" />
+      <source>Write TRANS.</source>
+      <translation>Escriba TRANS.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/iso_words.py" />
+      <source>a comment in brackets is one of ISO; here it begins with ;.</source>
+      <translation>un comentario entre paréntesis es de ISO; aquí empieza con ;.</translation>
+    </message>
+    <message>
       <location filename="core/language/sinumerik/program_jumps.py" />
       <source>%1 needs a name</source>
       <translation>%1 necesita un nombre</translation>
@@ -28760,11 +29285,6 @@
     </message>
     <message>
       <location filename="core/language/sinumerik/sinumerik_lexer.py" />
-      <source>Write a whole number.</source>
-      <translation>Escriba un número entero.</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
       <source>Write it at the start.</source>
       <translation>Escríbalo al principio.</translation>
     </message>
@@ -28814,6 +29334,11 @@
       <translation>este torno no tiene eje C; su tercer eje es %1</translation>
     </message>
     <message>
+      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
+      <source>words of a single axis are not executed here</source>
+      <translation>aquí no se ejecutan palabras de un solo eje</translation>
+    </message>
+    <message>
       <location filename="core/language/sinumerik/sinumerik_words.py" />
       <source>H functions are not part of this control's SINUMERIK subset</source>
       <translation>las funciones H no son parte del SINUMERIK de este control</translation>
@@ -28830,8 +29355,8 @@
     </message>
     <message>
       <location filename="core/language/sinumerik/sinumerik_words.py" />
-      <source>an R parameter stands behind = or is set with =, such as R1=10</source>
-      <translation>un parámetro R va tras = o se pone con =, como R1=10</translation>
+      <source>an R parameter stands behind = or is set with =, as R1=10; a radius is CR=, a rounding RND=</source>
+      <translation>un parámetro R va detrás de = o se asigna con =, como R1=10; un radio es CR=, un redondeo RND=</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/sinumerik_words.py" />
@@ -29500,6 +30025,11 @@
     </message>
     <message>
       <location filename="core/proving/cutting_checks.py" />
+      <source>Start it with M3 or M4 before it.</source>
+      <translation>Póngalo en marcha antes con M3 o M4.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/cutting_checks.py" />
       <source>Switch it on with %1 before it.</source>
       <translation>Enciéndala antes con %1.</translation>
     </message>
@@ -29540,6 +30070,11 @@
     </message>
     <message>
       <location filename="core/proving/cutting_checks.py" />
+      <source>This move cuts with no tool: no length and no radius of one count.</source>
+      <translation>Este movimiento corta sin herramienta: no cuenta ninguna longitud ni ningún radio.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/cutting_checks.py" />
       <source>This move cuts with the collet open: the part is held by nothing.</source>
       <translation>Este movimiento corta con la pinza abierta: nada sujeta la pieza.</translation>
     </message>
@@ -29577,6 +30112,11 @@
       <location filename="core/proving/cutting_checks.py" />
       <source>Write T with the tool's number before it.</source>
       <translation>Escriba antes T con el número de la herramienta.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/cutting_checks.py" />
+      <source>Write TOOL CALL before it.</source>
+      <translation>Escriba TOOL CALL delante.</translation>
     </message>
     <message>
       <location filename="core/proving/cutting_checks.py" />
@@ -29650,8 +30190,18 @@
     </message>
     <message>
       <location filename="core/proving/machine_checks.py" />
+      <source>%1 and any G10 or G92</source>
+      <translation>%1 y cualquier G10 o G92</translation>
+    </message>
+    <message>
+      <location filename="core/proving/machine_checks.py" />
       <source>%1 would go to %2 %3 from home%4, %5 %6 beyond the travel limit of %7</source>
       <translation>%1 iría a %2 %3 de la referencia%4, %5 %6 más allá del límite de carrera de %7</translation>
+    </message>
+    <message>
+      <location filename="core/proving/machine_checks.py" />
+      <source>%1, G54 to G59 and TRANS</source>
+      <translation>%1, G54 a G59 y TRANS</translation>
     </message>
     <message>
       <location filename="core/proving/machine_checks.py" />
@@ -29665,8 +30215,8 @@
     </message>
     <message>
       <location filename="core/proving/machine_checks.py" />
-      <source>check the %1 word, the offset of %2 and any G10 or G92</source>
-      <translation>revise la palabra %1, el corrector de %2 y cualquier G10 o G92</translation>
+      <source>check the %1 word, the offset of %2</source>
+      <translation>compruebe la palabra %1 y el corrector de %2</translation>
     </message>
     <message>
       <location filename="core/proving/machine_checks.py" />
@@ -30564,6 +31114,11 @@
       <translation>Este avance se aleja de la pieza, y ningún otro corta detrás de Z0.</translation>
     </message>
     <message>
+      <location filename="core/proving/proof_pass.py" />
+      <source>%1 Assumed: %2; nothing behind it is proved.</source>
+      <translation>%1 Supuesto: %2; lo que sigue no está probado.</translation>
+    </message>
+    <message>
       <location filename="core/proving/thread_checks.py" />
       <source>%1 cuts a pitch of %2; the lead is %3.</source>
       <translation>%1 corta un paso de %2; el avance de rosca es %3.</translation>
@@ -31197,6 +31752,11 @@
       <location filename="core/shapes/calculators.py" />
       <source>included angle %1°</source>
       <translation>ángulo total %1°</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/calculators.py" />
+      <source>rough passes %1 deep a side</source>
+      <translation>pasadas de desbaste de %1 por lado</translation>
     </message>
     <message>
       <location filename="core/shapes/calculators.py" />
@@ -32017,6 +32577,16 @@
       <location filename="core/shapes/turning.py" />
       <source>%1: put a point before it at the same Z, at the lowest X.</source>
       <translation>%1: ponga antes un punto en la misma Z, en la X más baja.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/turning.py" />
+      <source>%1: type a smaller depth of a pass.</source>
+      <translation>%1: escriba una profundidad de pasada menor.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/turning.py" />
+      <source>A pass would be %1 deep, and the insert of T%2 takes %3</source>
+      <translation>Una pasada tendría %1 de profundidad y la plaquita de T%2 admite %3</translation>
     </message>
     <message>
       <location filename="core/shapes/turning.py" />

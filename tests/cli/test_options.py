@@ -246,6 +246,26 @@ def test_version_with_anything_else_is_refused(part: Path, refusals: list[CodedE
     assert [each.code for each in refusals] == ["version-alone"] * 2
 
 
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["--version", "--json"], "--json is an option of a command"),
+        (["--json"], "--json is an option of a command"),
+        (["--json", "prove", "a.nc"], "--json is an option of a command"),
+        (["offsets", "show", "--why", "x"], "this command has no option --why"),
+    ],
+)
+def test_an_option_of_another_command_is_not_its_own_remedy(
+    words: list[str], said: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit) as ended:
+        main(words)
+    err = capsys.readouterr().err
+    assert (ended.value.code, err.count("\n")) == (2, 1)
+    assert said in err
+    assert "did you mean" not in err
+
+
 def test_the_options_of_a_program_act(
     turndesk: Turndesk, part: Path, offsets: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

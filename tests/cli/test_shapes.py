@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from app.cli.shapes_command import _ABOUT
 from tests.cli.conftest import Turndesk
 from tests.shapes.hand import Programmer
 
@@ -65,6 +66,26 @@ def test_in_sinumerik_by_the_name_of_the_program(form: Path, turndesk: Turndesk)
 def test_steps_come_from_stdin(form: Path, turndesk: Turndesk, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("sys.stdin", TextIOWrapper(BytesIO(form.read_bytes())))
     assert turndesk("shapes", "-").out == turndesk("shapes", form).out
+
+
+def test_the_example_of_the_help_roughs(form: Path, turndesk: Turndesk) -> None:
+    """From a bar of 1 in to .5 in: one pass of .25 in before, passes of .03 in now (no sheet: CCMT 0602)."""
+    lines = [line for line in _ABOUT.splitlines() if line.startswith("  ")]
+    form.write_text("\n".join(lines))
+    told = turndesk("shapes", form)
+    assert (told.status, told.err) == (0, "")
+    assert "G75I.03U.01F.005" in told.out
+
+
+@pytest.mark.parametrize(("rough", "code"), [("0", "invalid-step"), (".2", "invalid-step")])
+def test_a_pass_that_the_insert_cannot_take_is_refused_once(
+    rough: str, code: str, form: Path, turndesk: Turndesk
+) -> None:
+    lines = [line for line in _ABOUT.splitlines() if line.startswith("  ")]
+    form.write_text("\n".join([*lines, f"rough = {rough}", ""]))
+    told = turndesk("shapes", form)
+    assert (told.status, told.code, told.err.count("\n"), told.out) == (2, code, 1, "")
+    assert "step 3, turn: rough: " in told.err
 
 
 def test_what_follows_a_bar_loop_is_its_part(form: Path, turndesk: Turndesk) -> None:

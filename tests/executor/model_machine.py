@@ -17,7 +17,7 @@ from core.executor.commands import Command
 from core.executor.executor import Executor
 from core.executor.job import Job
 from core.executor.read_ahead import ProgramPass
-from core.executor.snapshot import ACTIVE, BY_HAND, STOPPED, Snapshot, State
+from core.executor.snapshot import ACTIVE, BY_HAND, CYCLE, STOPPED, Snapshot, State
 from core.executor.start_conditions import TIME_TO_READ
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.job_setup import Setup
@@ -342,11 +342,12 @@ class Machine(Rig):
         on = self.true_ports.axes.sample().enabled
         dark = not on and new.state not in {State.DISABLED, State.FAULT, State.ESTOP}
         self.powerless = self.powerless + dt if dark and old.state is new.state else 0.0
-        assert self.powerless <= max(POWER_SEEN, dt), f"{new.state} without power for {self.powerless:.2f} s"
+        seen = POWER_SEEN + ("axes" in self.frozen_since) * (UNHEARD + NO_NEWS)
+        assert self.powerless <= max(seen, dt), f"{new.state} without power for {self.powerless:.2f} s"
 
     def _frozen_is_seen(self, new: Snapshot, dt: float) -> None:
-        """Nothing is moved for long by a control that hears nothing of the slides."""
-        frozen = "axes" in self.frozen_since and new.state in MOVES
+        """A control that hears nothing of the slides soon moves nothing, and is not ready."""
+        frozen = "axes" in self.frozen_since and new.state in CYCLE | {State.IDLE, State.JOG, State.HOME}
         self.moved_unseen = self.moved_unseen + dt if frozen else 0.0
         assert self.moved_unseen <= UNHEARD + NO_NEWS + 2 * dt, f"{new.state} without news of the slides"
 

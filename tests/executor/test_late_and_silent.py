@@ -78,6 +78,15 @@ def test_palms_that_were_pressed_while_the_control_was_away_are_refused_and_not_
     assert len(machine.said("refused")) == 1
 
 
+def test_slides_that_nobody_hears_are_not_ready() -> None:
+    machine = Machine()
+    machine.ready()
+    machine.harmed = True
+    machine.freeze("axes")
+    machine.run(0.6)
+    assert (machine.state, codes(machine)) == (State.FAULT, ["drive-silent"])
+
+
 def test_slides_that_nobody_hears_move_no_further_even_where_no_driver_reports_a_fault() -> None:
     machine = begun(CUT)
     machine.run(0.5)

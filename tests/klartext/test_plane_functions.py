@@ -10,6 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from core.geometry.plane_figure import Figure
 from core.geometry.rotary_axes import Kinematics
 from core.interpreter.elementary_blocks import Kind
 from tests.klartext.running import Ran, run
@@ -48,6 +49,52 @@ def test_axial_blocks_add_up_to_one_plane() -> None:
     assert np.array(fifth.system.frame)[:, 2] == pytest.approx((-0.5, 0.0, 0.866025404), abs=1e-9)
     assert ran.planes[5].swivel is not None
     assert ran.planes[5].swivel.system.tilted  # A+0 ends no plane
+
+
+# 30 about Y, mirrored at X, is -30: the tool leans to -X, A30 with C at 270. All forms tell the same.
+LEANS = {
+    "SPATIAL": "SPA+0 SPB+30 SPC+0",
+    "VECTOR": "BX+0.866025404 BY+0 BZ-0.5 NX+0.5 NY+0 NZ+0.866025404",
+    "POINTS": f"{P1}P2X+0.866025404 P2Y+0 P2Z-0.5 P3X+0 P3Y+1 P3Z+0",
+    "EULER": "EULPR+90 EULNU+30 EULROT-90",
+    "PROJECTED": "PROPR-30 PROMIN+0 ROT+0",
+    "RELATIV": "SPB+30",
+}
+WITH_IT = {"TRANS MIRROR AXIS X": 270.0, "TRANS ROTATION ROT+90": 180.0, "TRANS SCALE SCL0.5": 90.0}
+
+
+@pytest.mark.parametrize("form", LEANS)
+@pytest.mark.parametrize("before", WITH_IT)
+def test_a_plane_goes_with_mirror_rotation_and_scale_before_it(form: str, before: str) -> None:
+    """Turned by 90 the tool leans to +Y, so C is at 180; a factor changes no direction."""
+    plane = f"PLANE {form} {LEANS[form]} TURN FMAX SYM+"
+    assert np.allclose(shown(run(plane)), [(30.0, 90.0)], atol=1e-6)
+    ran = run(f"{before}\n{plane}")
+    assert not ran.errors
+    assert "plane-figure" in ran.warned
+    assert np.allclose(shown(ran), [(30.0, WITH_IT[before])], atol=1e-6)
+
+
+def test_what_is_programmed_in_the_plane_is_the_mirrored_picture() -> None:
+    """X10 in the plane is (8.66, 0, -5) without MIRROR, and with it (-8.66, 0, -5)."""
+    ran = run("TRANS MIRROR AXIS X\nPLANE SPATIAL SPA+0 SPB+30 SPC+0 TURN FMAX SYM+")
+    assert ran.planes[0].swivel is not None
+    frame = np.array(ran.planes[0].swivel.system.frame)
+    assert frame @ Figure("X").plane((10.0, 0.0, 0.0)) == pytest.approx((-8.660254, 0.0, -5.0))
+
+
+@pytest.mark.parametrize("before", WITH_IT)
+def test_axial_names_axes_and_stays_as_it_is(before: str) -> None:
+    ran = run(f"{before}\nPLANE AXIAL A+45 C+90 TURN FMAX")
+    assert (shown(ran), ran.warned) == ([(45.0, 90.0)], [])
+
+
+@pytest.mark.parametrize("behind", ["TRANS MIRROR RESET", "TRANS MIRROR AXIS X\nTRANS MIRROR RESET"])
+def test_a_figure_that_has_ended_changes_no_plane(behind: str) -> None:
+    ran = run(f"{behind}\nPLANE SPATIAL SPA+0 SPB+30 SPC+0 TURN FMAX SYM+")
+    assert not ran.errors
+    assert "plane-figure" not in ran.warned
+    assert np.allclose(shown(ran), [(30.0, 90.0)], atol=1e-9)
 
 
 def test_axial_without_an_axis_keeps_where_it_stands() -> None:

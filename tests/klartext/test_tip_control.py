@@ -74,3 +74,17 @@ def test_function_tcpm_is_m128() -> None:
     assert one.axes(one.blocks[-2]) == pytest.approx(other.axes(other.blocks[-2]))
     ended = ran_of("FUNCTION RESET TCPM\nL A+30 F200")
     assert ended.state.slides == pytest.approx(np.add(ORIGIN, (10.0, 20.0, 65.0)))
+
+
+@pytest.mark.parametrize("call", ["TOOL CALL S2857", "TOOL CALL Z S2857 F400", "TOOL CALL F400"])
+def test_a_new_speed_or_feed_is_taken_while_m128_is_on(call: str) -> None:
+    ran = run(f"L Z+50 R0 FMAX M3\nL M128\nL IA+5 R0 F500\n{call}\nL IA-5 R0 F500\nL M129")
+    assert ran.codes == []
+    assert ran.state.modal.rpm == (2857.0 if "S" in call else 3000.0)
+
+
+@pytest.mark.parametrize(
+    "call", ["TOOL CALL 2", "TOOL CALL 1 Z S100", "TOOL CALL DL+0.1", "TOOL CALL S100 DR-0.1"]
+)
+def test_another_tool_or_oversize_is_not(call: str) -> None:
+    assert run(f"L Z+50 R0 FMAX M3\nL M128\n{call}").codes == ["Not permitted with M128"]

@@ -10,12 +10,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from app.compose.machine_files import load_machine
+from app.compose.machine_files import load_machine, shipped_machine
 from app.compose.machine_setup import setup_for
 from app.compose.stored_offsets import read_offsets
 from core.interpreter.dialects import ReadProgram
 from core.interpreter.job_setup import Setup, ToolOffset
 from core.interpreter.omniturn.omniturn_interpreter import Interpreter
+from core.language.diagnostics import Severity
 from core.language.source import Source, load_source
 from core.proving import program_branches
 from core.proving.machine_checks import travel_findings
@@ -103,29 +104,64 @@ def test_a_branch_that_ends_the_job() -> None:
 
 @pytest.mark.parametrize("deleted", [False, True])
 def test_block_delete_is_proved_on_and_off(deleted: bool) -> None:
-    # without the line the next one leaves the travel
+    """With the line the next one leaves the travel: an error where the switch stands so, else a warning."""
     report = proved("/Z-1", "G91Z-5.5", "Z1", "M30", deleted=deleted)
-    assert errors(report) == [(5, "soft-limit")]
-    shown = report.errors[0].message
-    assert shown.startswith("Z would") if not deleted else shown.startswith("With block delete off: Z would")
+    assert errors(report) == ([] if deleted else [(5, "soft-limit")])
+    (found,) = [each for each in report.diagnostics if each.code == "soft-limit"]
+    assert found.message.startswith("With block delete off: Z would" if deleted else "Z would")
 
 
 def test_block_delete_and_an_input_together() -> None:
     report = proved("/Z-3", "M97I1C1P1", "M30", "}1", "G91Z-4", "G90", "M99", deleted=True)
-    (found,) = report.errors
+    (found,) = [each for each in report.diagnostics if each.code == "soft-limit"]
+    assert (found.severity, errors(report)) == (Severity.WARNING, [])
     assert found.message.startswith("With block delete off: With input 1 on at line 5: Z would")
 
 
 def test_a_first_line_that_block_delete_takes_away() -> None:
     report = prove(Source("A", "/G90G94F300\nG04F1\nM30\n"), circumstances(), MACHINE)
-    assert [(d.line, d.code) for d in report.errors] == [(2, "first-line")]
+    assert [(d.line, d.severity) for d in report.diagnostics if d.code == "first-line"] == [
+        (2, Severity.WARNING)
+    ]
+    given = replace(circumstances(), block_delete=True)
+    report = prove(Source("A", "/G90G94F300\nG04F1\nM30\n"), given, MACHINE)
+    assert errors(report) == [(2, "first-line")]
 
 
 def test_klartext_and_sinumerik_lines_with_a_slash_are_proved_both_ways() -> None:
     machine = load_machine(None)
     text = "N10 G18 G90 G54 G94\nN20 G0 X20 Z3\n/N30 G1 Z-900 F300\nN40 M30\n"
     report = prove(Source("a.mpf", text), replace(circumstances(), block_delete=True), machine)
-    assert [(d.line, d.code) for d in report.errors] == [(3, "soft-limit")]
+    assert [(d.line, d.code, d.severity) for d in report.diagnostics if d.line == 3] == [
+        (3, "soft-limit", Severity.WARNING)
+    ]
+    assert (3, "soft-limit") in errors(prove(Source("a.mpf", text), circumstances(), machine))
+
+
+ENDS_BEFORE = """BEGIN PGM BD MM
+TOOL CALL 1 Z S3000 F500
+L X+10 R0 FMAX M3
+/M30
+LBL "CHECK"
+FN 9: IF +Q1900 EQU +1 GOTO LBL "CHECK"
+END PGM BD MM
+"""
+
+
+def test_the_start_goes_by_the_switch_as_it_stands() -> None:
+    """With the switch on the program runs on into a parameter that nothing has set."""
+    mill = shipped_machine("ac-table-mill")
+    around = setup_for(mill, tools={1: ToolOffset()}, secondary={})
+    source = Source("bd.h", ENDS_BEFORE)
+    assert prove(source, around, mill).errors == ()
+    report = prove(source, replace(around, block_delete=True), mill)
+    assert [(d.line, d.code) for d in report.errors] == [(6, "Q parameter not defined")]
+
+
+def test_a_tool_that_only_the_other_setting_calls_hinders_no_start() -> None:
+    report = proved("/T7", "/X.5Z.1", "M30", deleted=True)
+    assert (report.missing_tools, report.tools) == ((), (1,))
+    assert proved("/T7", "/X.5Z.1", "M30").missing_tools == (7,)
 
 
 def test_a_tool_that_only_a_branch_uses_is_demanded_before_the_start() -> None:

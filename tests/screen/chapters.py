@@ -134,7 +134,7 @@ def back_to_automatic(day: Day) -> None:
     day.key(Key.Key_F1, Key.Key_F2)
     assert day.page == page_table.AUTOMATIC
     asks = f"LINE {day.shot.interrupted_line} WAS INTERRUPTED" if day.shot.interrupted_line else "TO START"
-    day.sees(lambda: day.prompt.startswith(asks))
+    day.sees(lambda: asks in day.prompt)  # a warning of the first move may come before it
 
 
 def correct(day: Day, x: str, z: str = "") -> None:

@@ -100,6 +100,7 @@ class Day:
 
     def palms(self) -> None:
         """Both palm buttons and hands off; their relay wants them up for a while before it works again."""
+        self.checks_start()
         self.run(0.9)  # what is started was read
         for press, pause in ((QTest.keyPress, 0.1), (QTest.keyRelease, 0.4)):
             for key in (Key.Key_F11, Key.Key_F12):
@@ -133,6 +134,12 @@ class Day:
             return true()
 
         self.qtbot.waitUntil(look, timeout=PATIENCE)
+
+    def checks_start(self) -> None:
+        """The first move of the next start is checked, and the control knows it."""
+        self.run(2 * TICK)
+        self.sees(lambda: self.desk.first_move is None or not self.desk.first_move.checking)
+        self.run(2 * TICK)
 
     def saved(self) -> None:
         """Wait for the disk, then look."""

@@ -69,6 +69,7 @@ class Operator:
 
     def palms(self) -> None:
         """Both palm buttons, and hands off; the relay wants them up for a while before it works again."""
+        self.stage.checks_start()
         self.pause(0.9)  # what is started was read
         QTest.keyPress(self.window, Key.Key_F11)
         QTest.keyPress(self.window, Key.Key_F12)

@@ -69,6 +69,7 @@ def drives_on(day: Day) -> None:
 def _started(day: Day, program: str, *states: State) -> None:
     drives_on(day)
     choose(day, program)
+    day.checks_start()
     day.desk.post(CycleStart())
     day.reaches(*states)
 

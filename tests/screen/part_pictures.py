@@ -106,7 +106,7 @@ def _setup(path: Path, source: Source) -> Setup:
     """The offsets of our samples; an example of the manual has all at nought."""
     machine = load_machine(None)
     if path.resolve().parent == samples().resolve():
-        tools, secondary, zero, _ = read_offsets(samples() / "offsets.toml")
+        tools, secondary, zero, *_ = read_offsets(samples() / "offsets.toml")
         return setup_for(machine, tools=tools, secondary=secondary, zero=zero)
     return setup_for(
         machine,

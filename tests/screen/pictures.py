@@ -116,6 +116,7 @@ class Stage:
         self.tick(lambda: desk.snapshot().state is State.DISABLED)
         desk.enable()
         self.tick(lambda: desk.snapshot().state is State.IDLE)
+        self.checks_start()
 
     def hears(self) -> None:
         """The executor obeys what was posted."""
@@ -127,12 +128,20 @@ class Stage:
         self.make_ready()
         self.press_start()
 
+    def checks_start(self) -> None:
+        """What was posted is obeyed, and the first move of the next start is checked."""
+        desk = self.desk
+        self.hears()
+        desk.look()
+        if desk.first_move is not None:
+            desk.first_move.worker.settle(LOADING)
+
     def press_start(self) -> None:
         """Both palms, until something happens."""
         desk = self.desk
         desk.look()  # what was changed since is read anew first
         desk.session.settled(LOADING)
-        self.hears()  # what the scenes have posted
+        self.checks_start()
         desk.hands.palm("left", down=True)
         desk.hands.palm("right", down=True)
         self.tick(lambda: desk.snapshot().state is not State.IDLE, 5.0)

@@ -43,7 +43,7 @@ def day(qtbot: QtBot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterat
         write_program(day)
         set_tools(day)
         correct(day, "-.002", ".001")
-        day.sees(lambda: day.prompt.startswith(wording("screen.to-start")))
+        day.sees(lambda: wording("screen.to-start") in day.prompt)
         yield day
 
 

@@ -71,6 +71,15 @@ class Lathe:
             if ticks % 20 == 0:
                 QApplication.processEvents()
 
+    def checks_start(self) -> None:
+        """The first move is checked, and what is said of it was read."""
+        self.window.refresh()
+        assert self.desk.first_move is not None
+        self.desk.first_move.worker.settle(60.0)
+        for _ in range(50):
+            self._executor.tick()
+            self.clock.sleep_until(self.clock.now() + TICK)
+
     def key(self, *keys: Key) -> None:
         for key in keys:
             QTest.keyPress(self.window, key)
@@ -106,6 +115,7 @@ def test_it_ends_on_the_screen_where_the_proof_ends(lathe: Lathe, name: str) -> 
     lathe.until(State.DISABLED)
     lathe.key(Key.Key_D)
     lathe.until(State.IDLE)
+    lathe.checks_start()
     lathe.key(Key.Key_F11, Key.Key_F12)
     lathe.until(State.RUN)
     lathe.until(State.IDLE, State.HOLD, State.FAULT, State.ESTOP)

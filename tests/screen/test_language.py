@@ -172,8 +172,8 @@ def test_every_alarm_is_told_whole_wherever_it_stands(entry: Entry) -> None:
             "Con la entrada 7 encendida en la línea 5: G99 no es código de este control. Escriba T.",
         ),
         (
-            "LINE 6: Q is no word of the language. See the language page.",
-            "LÍNEA 6: Q no es una palabra del lenguaje. Vea la página del lenguaje.",
+            "LINE 6: Q is no word of the language. See the list of codes: Shift+F1 in the editor.",
+            "LÍNEA 6: Q no es una palabra del lenguaje. Vea la lista de códigos: Shift+F1 en el editor.",
         ),
         (
             "LINE 50: A tool is fed where there is no metal, from one rapid to the next.",

@@ -66,6 +66,16 @@ def test_speed(typed: dict[str, Value], rpm: float, setting: Setting) -> None:
     assert not said(one, setting)
 
 
+@pytest.mark.parametrize(
+    ("work", "depth"), [("TURN", "0.03"), ("BORE", "0.015"), ("DRILL", ""), ("PART", "")]
+)
+def test_speed_says_the_depth_of_a_rough_pass(work: str, depth: str) -> None:
+    """An assumed CCMT 0602 takes 3.224 mm: a quarter is .0317 in, half of it .0159 in for a boring bar."""
+    typed: dict[str, Value] = {"MATERIAL": "STEEL", "WORK": work, "DIA": 0.5}
+    words = [each for each in SPEED.says(filled(SPEED, typed, INCH), INCH) if "rough" in each]
+    assert words == ([f"rough passes {depth.removeprefix('0')} deep a side"] if depth else [])
+
+
 def test_feed_both_ways() -> None:
     """1000 rpm at .005 are 5 in/min; 6 in/min are .006."""
     one = filled(SPEED, {"DIA": 1.0, "RPM": 1000.0, "FEED": 0.005}, INCH)

@@ -68,7 +68,7 @@ def program(*keys: str, name: str = "x.mpf") -> list[str]:
 def test_roughing_by_template_is_good_and_of_the_same_metal_as_in_omniturn() -> None:
     keys = ("n§", "c⏎⏎30§", "g30§")
     ours, theirs = program(*keys), program(*keys, name="x.nc")
-    assert 'CYCLE95("CONTOUR_1:CONTOUR_1_END", 1, , , 0.25, 0.125, 0.125, , 1)' in ours
+    assert 'CYCLE95("CONTOUR_1:CONTOUR_1_END", 0.5, , , 0.25, 0.102, 0.102, , 1)' in ours
     assert theirs[1:3] == ["M08", "T1"]  # no way of a tool that is not there yet
     mine, said = metal(ours, Dialect.SINUMERIK)
     there, _ = metal(theirs, Dialect.OMNITURN)

@@ -191,5 +191,5 @@ def test_positions_that_nothing_answers(text: str) -> None:
 def test_a_loop_whose_condition_has_no_value_is_one_error() -> None:
     """Its body is gone through for more mistakes, and no fault of the loop is told beside."""
     assert refused("WHILE $AA_IM[X]<100\nG0 Z=IC(1)\nENDWHILE\nM30").code == "system-variable"
-    errors = run("WHILE R99<100\nG0 Z=IC(0.001)\nG1 X\nENDWHILE\nM30").errors
+    errors = run("WHILE NOBODY<100\nG0 Z=IC(0.001)\nG1 X\nENDWHILE\nM30").errors
     assert [each.line for each in errors] == [1, 3]

@@ -71,6 +71,10 @@ class Bench:
         self.until(lambda s: s.state is State.DISABLED)
         self.desk.enable()
         self.until(lambda s: s.state is State.IDLE and not s.proof_wanted)
+        first_move = self.desk.first_move
+        assert first_move is not None
+        self.until(lambda _: first_move.seen is not None)
+        self.wait(0.5)  # what is announced was read
         self.desk.start_button()
         self.until(lambda s: s.state is State.RUN)
 

@@ -144,3 +144,33 @@ def test_fixed_points_need_no_order_and_a_mill_has_one() -> None:
     mill = resources.machine_file("ac-table-mill.toml")
     with raises_code(MachineFileError, "broken-rule", "axis.X.fixed_points", "M92"):
         parse_machine(mill.replace("fixed_points = [-100.0]", "fixed_points = [0.0, 1.0]"), "mill.toml")
+
+
+MILL = """G17 G90 G54 G94 F200
+S3000 M3
+G0 X10 Y10 Z5
+G1 Z-5
+Y20 A10
+G2 X60 I10 J0
+G3 X60 Y40 I10 J0
+X50 Y30 A20 B5
+G0 Z50
+M30
+"""
+
+
+def test_a_mills_program_on_a_lathe_is_told_once_an_axis() -> None:
+    """Y first on line 3, A on line 5."""
+    assert [(each.line, each.column, each.code) for each in run(MILL).errors] == [
+        (3, 8, "not-in-subset"),
+        (5, 5, "not-in-subset"),
+    ]
+
+
+def test_each_axis_that_a_lathe_lacks_has_its_own_finding() -> None:
+    errors = run("G0 X10 Y1\nG0 B2\nG0 Y3\nG0 B4\nG0 A5").errors
+    assert [each.line for each in errors] == [1, 2, 5]
+
+
+def test_another_fault_of_the_same_program_is_still_told() -> None:
+    assert [each.line for each in run("G0 X10 Y1\nG0 Y3\nG999\nG0 Y4").errors] == [1, 3]

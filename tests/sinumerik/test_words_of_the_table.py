@@ -10,7 +10,8 @@ from app.compose.machine_files import shipped_machine
 from core.interpreter.elementary_blocks import Kind
 from core.interpreter.job_setup import Setup, ToolOffset, ZeroOffset
 from core.language.diagnostics import Severity
-from core.language.sinumerik.word_table import FUNCTIONS, M_FUNCTIONS, OUTSIDE, WORDS
+from core.language.sinumerik.outside_words import OUTSIDE
+from core.language.sinumerik.word_table import FUNCTIONS, M_FUNCTIONS, WORDS
 from core.machine.machine_model import Machine
 from tests.sinumerik.lathe import MODULO, refused, run, setup
 

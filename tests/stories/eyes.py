@@ -294,6 +294,7 @@ def _machine(desk: Desk) -> Told:
         "switches": [shot.optional_stop, shot.block_delete, shot.cycle_repeat, shot.no_count],
         "alarms": [[alarm.number, alarm.text] for alarm in shot.alarms],
         "refused": shot.start_refused,
+        "start_code": getattr(shot, "start_code", ""),
         "homed": list(shot.homed),
     }
 

@@ -10,14 +10,14 @@ from core.geometry.machine_travel import CurvedMove, Travel
 from core.geometry.plane_figure import XY, Figure, Order
 from core.geometry.rotary_axes import Kinematics, Place, Rotary
 from core.geometry.rotation_frames import IDENTITY, Matrix, Vector, applied, plus, product, transposed
-from core.interpreter.actions import Action, Dwell
+from core.interpreter.actions import Action, Dwell, ProgramStop
 from core.interpreter.diagnostic_log import Log
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.job_setup import Setup
 from core.interpreter.modal_state import Modal
 from core.interpreter.units import MM_PER_INCH
 from core.interpreter.working_plane import Angles, Corners, PlaneSystem, Swivel
-from core.language.diagnostics import Diagnostic, ProgramError, Severity
+from core.language.diagnostics import AT_THE_STOP, Diagnostic, ProgramError, Severity, resting_on
 from core.language.klartext.klartext_faults import fault
 from core.language.klartext.table_file import Row
 
@@ -95,6 +95,7 @@ class State:
         self.selected_program = ""  # of SEL PGM
         self.table_known = False  # the program has positioned it, so it no longer matters where it stood
         self.blank: Corners | None = None
+        self.behind_stop = self.place_assumed = False  # a place was read behind a stop, where a hand may move
         self.reported: set[object] = set()  # warnings that would otherwise repeat
         self.modal = Modal(absolute=True, metric=not inch, rapid_rate=setup.last_rapid)
         self._c = self.names.index("C") if "C" in self.at else -1
@@ -196,6 +197,14 @@ class State:
         """An error to be raised, at this column of the line that is being executed, or of ``line``."""
         return fault(line or self.line, column, code, message, hint)
 
+    def place_is_read(self) -> None:
+        """The program reads where an axis stands: behind a stop that is what a proof assumes."""
+        self.place_assumed = self.place_assumed or self.behind_stop
+
+    def of_the_place(self, error: ProgramError) -> ProgramError:
+        """An error of a formula, which may rest on such a place."""
+        return ProgramError(resting_on(error.diagnostic, AT_THE_STOP)) if self.place_assumed else error
+
     def tell_once(self, column: int, severity: Severity, code: str, text: str, hint: str = "") -> None:
         """A finding that is the same wherever it stands: told at its first place."""
         if text not in self.reported:
@@ -238,6 +247,7 @@ class State:
 
     def action(self, action: Action) -> Block:
         """A block in which no axis moves."""
+        self.behind_stop = self.behind_stop or isinstance(action, ProgramStop)
         here = Travel(self.there, self.there, 0.0, slides=False)
         kind = Kind.DWELL if isinstance(action, Dwell) else Kind.ACTION
         return self._block(kind, self.point, here, 0.0, action)

@@ -12,6 +12,7 @@ from core.interpreter.klartext.cycle_moves import HOW_ORIENTED, UNORIENTED, orie
 from core.interpreter.klartext.klartext_state import State
 from core.interpreter.klartext.plane_functions import retract, retract_way
 from core.interpreter.klartext.tip_control import switch
+from core.interpreter.klartext.tool_call import tool_text
 from core.language.diagnostics import Severity
 from core.language.klartext.klartext_faults import (
     CONTRADICTION,
@@ -138,7 +139,9 @@ def behind(state: State, codes: Sequence[MCode], comment: str) -> Iterator[Block
         if code.number in {0, 1}:
             yield state.action(actions.ProgramStop(optional=code.number == 1, message=comment))
         if code.number == 6:
-            yield state.action(actions.ProgramStop(optional=False, message=f"TOOL {state.modal.tool}"))
+            yield state.action(
+                actions.ProgramStop(optional=False, message=f"TOOL {tool_text(state.modal.tool)}")
+            )
         if code.number in {2, 30}:
             yield end(state)
 

@@ -14,6 +14,7 @@ from core.geometry.rotation_frames import (
     Matrix,
     NoFrameError,
     Vector,
+    applied,
     from_euler,
     from_points,
     from_projections,
@@ -22,6 +23,7 @@ from core.geometry.rotation_frames import (
     minus,
     product,
     scaled,
+    transposed,
     turned,
 )
 from core.geometry.swivel_angles import SolutionSide, choose, fitting
@@ -57,7 +59,7 @@ def working_plane(state: State, node: Plane) -> WorkingPlane:
     """The plane that the block tells. Raises ProgramError where there is none, or it cannot be reached."""
     if node.form == "AXIAL":
         return _axial(state, node)
-    frame = _FORMS[node.form](state, node)
+    frame = product(_base(state, node), _as_figured(state, node, _FORMS[node.form](state, node)))
     side = SolutionSide(node.positioning.side) if node.positioning.side else None
     table_rot = node.positioning.rotation == "TABLE ROT"
     found = choose(state.kinematics, frame, state.rotary, side, table_rot=table_rot)
@@ -115,7 +117,7 @@ def _lengths(state: State, node: Plane) -> list[float]:
 
 def _made(state: State, node: Plane, frame: Callable[[], Matrix]) -> Matrix:
     try:
-        return product(state.kinematics.basic, frame())
+        return frame()
     except NoFrameError as problem:
         text = f"{str(problem).capitalize()}."
         raise state.refuse(
@@ -130,19 +132,40 @@ def _projected(state: State, node: Plane) -> Matrix:
 
 def _euler(state: State, node: Plane) -> Matrix:
     precession, nutation, rotation = (_angle(state, word) for word in node.words)
-    return product(state.kinematics.basic, from_euler(precession, nutation, rotation))
+    return from_euler(precession, nutation, rotation)
 
 
 def _spatial(state: State, node: Plane) -> Matrix:
     a, b, c = (_angle(state, word) for word in node.words)
-    return product(state.kinematics.basic, from_spatial(a, b, c))
+    return from_spatial(a, b, c)
 
 
 def _relative(state: State, node: Plane) -> Matrix:
     """About an axis of the plane in force, or of the workpiece's system where there is none."""
     (word,) = node.words
-    base = state.plane.frame if state.plane is not None else product(state.kinematics.basic, IDENTITY)
-    return product(base, turned(_ABOUT[word.axis], _angle(state, word)))
+    return turned(_ABOUT[word.axis], _angle(state, word))
+
+
+def _base(state: State, node: Plane) -> Matrix:
+    """What the block's frame is told in: the basic rotation, or of RELATIV the plane in force."""
+    relative = node.form == "RELATIV" and state.plane is not None
+    return state.plane.frame if relative and state.plane is not None else state.kinematics.basic
+
+
+def _as_figured(state: State, node: Plane, frame: Matrix) -> Matrix:
+    """The frame in a system that TRANS MIRROR, ROTATION and SCALE have changed: T F T⁻¹.
+
+    What is programmed in the plane goes through T too, so that p = T F q, the mirrored or turned picture of
+    what the plane is without them. PLANE AXIAL names angles of axes and stays as it is.
+    """
+    figure = state.figure
+    if figure.plain:
+        return frame
+    text = f"MIRROR, ROTATION or SCALE is in force: PLANE {node.form} goes with it."
+    hint = "Look at the angles of the axes, or write PLANE before them, or PLANE AXIAL."
+    state.log.warn(state.line, node.column, "plane-figure", text, hint)
+    columns = [figure.plane(applied(frame, figure.program(unit))) for unit in IDENTITY]
+    return transposed((columns[0], columns[1], columns[2]))
 
 
 _FORMS = {

@@ -79,7 +79,8 @@ def value(state: State, formula: Formula) -> float:
     try:
         found = worth(formula, parameter)
     except NoValueError as problem:
-        raise state.refuse(problem.column, ARITHMETIC, f"{problem}.", "Correct the formula.") from None
+        error = state.refuse(problem.column, ARITHMETIC, f"{problem}.", "Correct the formula.")
+        raise state.of_the_place(error) from None
     if abs(found) > MOST_Q:
         text = f"The result {found:g} is larger than {MOST_Q:.15g}."
         raise state.refuse(1, INPUT_VALUE, text, "Correct the formula.")

@@ -167,6 +167,8 @@ _PLAIN: Mapping[tuple[int, int], Callable[[State, int], float]] = {
 def _of_axis(state: State, group: int, number: int, axis: str) -> float | None:
     """A figure of one axis, mm or degrees; None where there is none of this number."""
     linear = axis in "XYZ"
+    if number == 1 and group in {240, 270}:
+        state.place_is_read()
     if (group, number) == (240, 1):
         return state.at[axis]
     if (group, number) == (270, 1):

@@ -15,9 +15,7 @@ from core.interpreter.klartext.text_values import text_of
 from core.language.klartext.klartext_faults import NOT_WITH_M128, TOOL_UNKNOWN, WRONG_RPM, unsupported
 from core.language.klartext.klartext_nodes import TextName, ToolCall, ToolDef, Value
 from core.language.klartext.structure_blocks import MOST_TOOL
-
-NAMED_TOOLS = 32768
-"""Numbers from here on stand for tools that TOOL DEF has named."""
+from core.tool_edges import NAMED_TOOLS, NamedTool
 
 
 def tool_call(state: State, node: ToolCall, use: ToolUse) -> Iterator[Block]:
@@ -25,8 +23,9 @@ def tool_call(state: State, node: ToolCall, use: ToolUse) -> Iterator[Block]:
 
     Raises ProgramError before anything has changed.
     """
-    if state.m128:
-        why = "TOOL CALL while M128 is on."
+    changes = node.tool is not None or node.length is not None or node.radius is not None
+    if state.m128 and changes:
+        why = "TOOL CALL with a tool or an oversize while M128 is on."
         raise state.refuse(1, NOT_WITH_M128, why, "Switch it off with M129 before.")
     if node.tool_axis not in {"", "Z"}:
         raise unsupported(state.line, node.column, f"The tool axis {node.tool_axis}")
@@ -69,7 +68,7 @@ def _number(state: State, tool: int | str | Value | TextName | None, column: int
         return tool
     names = [each for each in state.tool_defs if isinstance(each, str)]
     if tool in names:
-        return NAMED_TOOLS + names.index(tool)
+        return NamedTool(NAMED_TOOLS + names.index(tool), tool)
     if (found := state.setup.tool_names.get(tool.upper())) is not None:
         return found
     text = f'No tool is called "{tool}".'
@@ -93,7 +92,7 @@ def _change(
     _measure(state, tool, longer, thicker, use, column)
     yield state.action(ToolChange(tool))
     if tool and before not in {0, tool}:
-        yield state.action(ProgramStop(optional=False, message=f"TOOL {tool}"))
+        yield state.action(ProgramStop(optional=False, message=f"TOOL {tool_text(tool)}"))
 
 
 def _measure(state: State, tool: int, longer: float, thicker: float, use: ToolUse, column: int) -> None:
@@ -105,7 +104,7 @@ def _measure(state: State, tool: int, longer: float, thicker: float, use: ToolUs
     if 0 < tool < NAMED_TOOLS:
         use.call(tool)
     if _defined(state, tool) is None and tool and use.offset(tool, state.setup.tools) is None:
-        text = f"Tool {tool} has no offset; 0 is used, and the machine will refuse to start."
+        text = f"Tool {tool_text(tool)} has no offset; 0 is used, and the machine will refuse to start."
         state.log.warn(state.line, column, "tool-offset-missing", text, "Set the tool's offset.")
     measure_again(state)
 
@@ -130,6 +129,11 @@ def radius_of(state: State, tool: int) -> float | None:
 
 def _defined(state: State, tool: int) -> tuple[float, float] | None:
     return state.tool_defs.get(tool) or state.tool_defs.get(_name_of(state, tool))
+
+
+def tool_text(tool: int) -> str:
+    """A tool as the program calls it."""
+    return f'"{tool.name}"' if isinstance(tool, NamedTool) else f"{tool}"
 
 
 def _name_of(state: State, tool: int) -> str:

@@ -171,7 +171,7 @@ def _sort_g(statement: Statement, word: Word, modal: list[Word]) -> None:
     code = int(word.value or 0)
     entry = G_CODES.get(code)
     if entry is None:
-        habit, hint = other_controls.meaning_here(word.text.upper()) or ("", "Look it up.")
+        habit, hint = other_controls.meaning_here(word.text.upper()) or ("", other_controls.LOOK_UP)
         message = f"{word.text} is no code of this control. {habit}".rstrip()
         raise statement.refuse(word, "g-unknown", message, hint)
     if entry.acts is _MODE:

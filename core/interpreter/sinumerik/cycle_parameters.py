@@ -134,9 +134,14 @@ class Cycle:
     def whole(self, name: str, default: int, low: int, high: int) -> int:
         """A whole number between two. Raises ProgramError."""
         value = self.number(name, float(default))
-        if value != round(value) or not low <= value <= high:
+        self._demand_whole(name, value)
+        if not low <= value <= high:
             raise self.wrong(name, f"is {value:g}, and lies between {low} and {high}", "Correct it.")
         return round(value)
+
+    def _demand_whole(self, name: str, value: float) -> None:
+        if value != round(value):
+            raise self.wrong(name, f"is {value:g}, and takes a whole number", "Write a whole number.")
 
     def zero_only(self, name: str, why: str) -> None:
         """Raises ProgramError where a parameter asks for what is not built."""
@@ -156,7 +161,8 @@ class Cycle:
     def machining(self, name: str, known: range) -> int:
         """VARI. Raises ProgramError, the alarm of the control for a type that it does not have."""
         value = self.number(name)
-        if value != round(value) or round(value) not in known:
+        self._demand_whole(name, value)
+        if round(value) not in known:
             low, high = known[0], known[-1]
             raise self.wrong(name, f"is {value:g}; types are {low} to {high}", "Correct it.", MACHINING_TYPE)
         return round(value)

@@ -1,12 +1,14 @@
-"""CYCLE93: a groove with square flanks, outside or inside, as wide as the tool or wider.
+"""CYCLE93: a groove with square or slanted flanks, outside or inside, as wide as the tool or wider.
 
-The tool's width is the way between its two cutting edges, D and _DN of the table, or D+1, as on the control.
+WIDG is the width of the bottom, and SPL the corner of the surface at which the groove begins: slanted flanks
+make it wider outwards. The tool's width is the way between its two cutting edges, D and _DN of the table, or
+D+1, as on the control.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import ceil
+from math import ceil, radians, tan
 from typing import NamedTuple
 
 from core.interpreter.elementary_blocks import Block
@@ -18,12 +20,14 @@ WRONG_FORM = 61603
 NO_TOOL = 61000
 _SAME = 1e-6  # mm
 _WHOLE = 1e-6
+_STEEPEST = 89.999  # degrees
+_USUAL_WIDTH = 3.0  # mm, of a tool that the table does not have
 _OVERLAP = 0.95  # of the tool's width: what a cut beside another takes at most
 
 
 class Groove(NamedTuple):
-    """mm, X a radius. ``out`` is the sign of X from the bottom to the open side; the groove lies between
-    ``low`` and ``high`` along Z, from ``top`` to ``bottom``.
+    """mm, X a radius. ``out`` is the sign of X from the bottom to the open side. The bottom lies between
+    ``low`` and ``high`` along Z; the flanks go ``low_run`` and ``high_run`` further up to the ``top``.
     """
 
     out: float
@@ -31,6 +35,8 @@ class Groove(NamedTuple):
     bottom: float
     low: float
     high: float
+    low_run: float = 0.0
+    high_run: float = 0.0
 
 
 def groove_of(cycle: Cycle) -> Groove:
@@ -38,9 +44,7 @@ def groove_of(cycle: Cycle) -> Groove:
     kind = (cycle.machining("VARI", range(1, 19)) - 1) % 10 + 1
     if kind > 8:
         raise cycle.wrong("VARI", "is none of 1 to 8 and 11 to 18", "Correct it.", 61002)
-    slanted = "write a groove with slanted flanks as a contour of CYCLE95"
-    for name in ("STA1", "ANG1", "ANG2"):
-        cycle.zero_only(name, slanted)
+    cycle.zero_only("STA1", "write a groove in a cone as a contour of CYCLE95")
     for name in ("RCO1", "RCO2", "RCI1", "RCI2"):
         cycle.zero_only(name, "write its corners as a contour of CYCLE95, or chamfer them with G1")
     if kind % 2 == 0:
@@ -50,16 +54,27 @@ def groove_of(cycle: Cycle) -> Groove:
     x, z = cycle.over_zero("SPD") / 2.0, cycle.needed("SPL")
     width, depth = cycle.over_zero("WIDG"), cycle.over_zero("DIAG", WRONG_FORM)
     out = -1.0 if inside else 1.0
-    low, high = (z - width, z) if right else (z, z + width)
+    here, there = _run(cycle, "ANG1", depth), _run(cycle, "ANG2", depth)
+    low, high = (z - here - width, z - here) if right else (z + here, z + here + width)
+    runs = (there, here) if right else (here, there)
     if x - out * depth < 0.0:
         raise cycle.wrong("DIAG", "reaches beyond the axis", "Correct SPD or DIAG.", WRONG_FORM)
-    return Groove(out, x, x - out * depth, low, high)
+    return Groove(out, x, x - out * depth, low, high, *runs)
 
 
-def tool_width(cycle: Cycle) -> tuple[float, bool]:
+def _run(cycle: Cycle, name: str, depth: float) -> float:
+    """How far a flank goes along Z from the bottom to the surface, mm. Raises ProgramError."""
+    angle = cycle.number(name)
+    if not 0.0 <= angle <= _STEEPEST:
+        raise cycle.wrong(name, "is an angle of a flank, 0 to under 90 degrees", "Correct it.")
+    return depth * tan(radians(angle))
+
+
+def tool_width(cycle: Cycle, widest: float) -> tuple[float, bool]:
     """Width of the tool, mm, and whether the edge in force is the one at the lower end of it.
 
-    Raises ProgramError where the table does not have both edges.
+    A tool that the table does not have starts nothing; it is taken for ``widest`` at most, with a warning.
+    Raises ProgramError where the table has one edge of the two.
     """
     state = cycle.state
     key, tools = state.modal.tool, state.setup.tools
@@ -68,6 +83,11 @@ def tool_width(cycle: Cycle) -> tuple[float, bool]:
         raise cycle.refused(NO_TOOL, text, "Write T and D before it.")
     number = cycle.whole("_DN", 0, 0, 9) or edge_of(key) + 1
     other = edge_key(tool_of(key), number)
+    if key not in tools and other not in tools:
+        width = min(_USUAL_WIDTH, widest)
+        text = f"{cycle.line.call} reckons with a tool {width:g} mm wide: {edge_name(key)} is not set."
+        cycle.warn("tool-width", text, "Set its two corners on the page of tool offsets (F8).")
+        return width, False
     if key not in tools or other not in tools:
         name = edge_name(other)
         text = f"{cycle.line.call} reckons with the tool's width, and {name}, its other corner, is not set."
@@ -84,8 +104,8 @@ def tool_width(cycle: Cycle) -> tuple[float, bool]:
 def groove(cycle: Cycle) -> Iterator[Block]:
     """Cuts side by side, each in steps of IDEP, then the flanks and the bottom. Raises ProgramError."""
     shape = groove_of(cycle)
-    width, at_low = tool_width(cycle)
     bottom_left, flank_left = cycle.size("FAL1"), cycle.size("FAL2")
+    width, at_low = tool_width(cycle, shape.high - shape.low - 2.0 * flank_left)
     room = shape.high - shape.low - 2.0 * flank_left - width
     if room < -_SAME:
         text = f"is {shape.high - shape.low:g} with FAL2 on both flanks, and the tool is {width:g} wide"
@@ -103,7 +123,9 @@ def groove(cycle: Cycle) -> Iterator[Block]:
     for k in range(count + 1):
         place = shape.high - flank_left - width - (room * k / count if count else 0.0)
         steps += plan.plunge(place, bottom)
-    if bottom_left or flank_left or count:
+    steps += plan.beside(shape.high - flank_left - width, shape.high_run, width, bottom)
+    steps += plan.beside(shape.low + flank_left, -shape.low_run, width, bottom)
+    if bottom_left or flank_left or count or shape.high_run or shape.low_run:
         steps += plan.finish(width)
     return cycle.blocks(steps)
 
@@ -138,16 +160,32 @@ class _Plan:
                 steps.append(self._to(depth + shape.out * RETRACT, place))
         return [*steps, *dwell(self._dwell), self._to(self._clear, place)]
 
+    def beside(self, place: float, run: float, width: float, bottom: float) -> list[Step]:
+        """Plunges outwards from ``place`` under a flank that rises by ``run``, each less deep."""
+        count = ceil(abs(run) / (width * _OVERLAP) - _WHOLE)
+        if count > MOST_PASSES:
+            raise self._cycle.wrong("ANG1", f"would take {count:,} cuts", "Look at the angles.")
+        steps: list[Step] = []
+        for share in (k / (count + 1) for k in range(1, count + 1)):
+            depth = bottom + (self._shape.top - bottom) * share
+            steps += self.plunge(place + run * share, depth)
+        return steps
+
     def finish(self, width: float) -> list[Step]:
         """Down each flank and along the bottom to the middle."""
         shape, feed = self._shape, self._feed
         high, middle = shape.high - width, (shape.low + shape.high - width) / 2.0
-        return [
-            self._to(self._clear, high), self._to(shape.bottom, high, feed),
-            self._to(shape.bottom, middle, feed), self._to(self._clear, middle),
-            self._to(self._clear, shape.low), self._to(shape.bottom, shape.low, feed),
-            self._to(shape.bottom, middle, feed), self._to(self._clear, middle),
-        ]  # fmt: skip
+        steps: list[Step] = []
+        for corner, run in ((high, shape.high_run), (shape.low, -shape.low_run)):
+            steps.append(self._to(self._clear, corner + run))
+            if run:
+                steps.append(self._to(shape.top, corner + run, feed))
+            steps += [
+                self._to(shape.bottom, corner, feed),
+                self._to(shape.bottom, middle, feed),
+                self._to(self._clear, middle),
+            ]
+        return steps
 
     def _to(self, depth: float, place: float, feed: float | None = None) -> Step:
         return Step(depth, place + self._corner, feed)

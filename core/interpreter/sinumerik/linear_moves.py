@@ -184,15 +184,16 @@ def _turn(state: State, statement: Statement, modal: Modal) -> float:
 
 def turn_of_c(state: State, statement: Statement, word: Word, form: Form, at: float) -> float:
     """Signed travel of C to where a word leads from ``at``. Raises ProgramError."""
-    value = state.number(statement, word)
+    value = state.third(statement, word)
+    limits = state.setup.limits
     try:
-        if state.setup.limits.c_modulo:
+        if limits.c_modulo:
             return third_axis.modulo_travel(form, value, at)
         travel = third_axis.linear_travel(form, value, at)
-        third_axis.check_reach(state.c + travel)
+        third_axis.check_reach(state.c + travel, limits.c_travel if limits.c_linear else third_axis.TURNS)
     except third_axis.TargetError as problem:
         raise statement.refuse(
-            word, problem.number, f"{word.text}: {problem}.", _HINTS[problem.number]
+            word, problem.number, f"{word.text}: {problem}.", _hint(problem.number, linear=limits.c_linear)
         ) from None
     return travel
 
@@ -202,6 +203,12 @@ def _form(state: State, word: Word) -> Form:
     if word.form is not Form.PLAIN:
         return word.form
     return Form.IC if state.modal.absolute is False else Form.AC
+
+
+def _hint(number: int, *, linear: bool) -> str:
+    if linear and number != third_axis.WRONG_RANGE:
+        return "This axis is linear; write AC( ) or IC( )."
+    return _HINTS[number]
 
 
 _WHOLE_TURN = "Write an angle from 0 to 359.999, or IC( ) for a distance."
@@ -223,7 +230,8 @@ def straight(state: State, statement: Statement) -> Block:
         return rapid(state, statement, travel)
     kind = Kind.ROTATE if travel.turn and not travel.length else Kind.FEED
     offset = travel.offset_x
-    feed = check_feed(state, statement, travel.x0 - offset, travel.x - offset, in_degrees=kind is Kind.ROTATE)
+    degrees = kind is Kind.ROTATE and not state.modal.linear_c
+    feed = check_feed(state, statement, travel.x0 - offset, travel.x - offset, in_degrees=degrees)
     return block_of(state, statement, travel, kind, feed)
 
 

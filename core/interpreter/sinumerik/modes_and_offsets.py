@@ -95,11 +95,11 @@ def _refuse_axes(statement: Statement, key: Word, what: str) -> None:
 
 
 def _shift(state: State, statement: Statement, name: str) -> float:
-    """One axis of TRANS or ATRANS: mm or degrees. X is a radius, whatever DIAMON says."""
+    """One axis of TRANS or ATRANS: mm, or degrees of C. X is a radius, whatever DIAMON says."""
     word = _plain(statement, name)
     if word is None:
         return 0.0
-    return state.number(statement, word) if name == "C" else state.length(statement, word)
+    return state.third(statement, word) if name == "C" else state.length(statement, word)
 
 
 def _factor(state: State, statement: Statement, name: str) -> float:

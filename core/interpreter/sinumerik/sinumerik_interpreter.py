@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import cached_property
@@ -64,6 +65,8 @@ from core.language.source import Source
 # Codes of findings that follow from where the machine stands and what is in force: behind a bad block nobody
 # knows either.
 _ENDS = frozenset({2, 17, 30})
+_NO_AXIS = re.compile(r"this lathe has no axis ([A-Z][0-9]?)")
+_ARC_IN_Y = re.compile(r": J: an arc in G18 has I and K")
 _BEHIND_ERROR = 20_000
 """Lines that are gone through behind the first error, for others that it may hide."""
 
@@ -72,7 +75,7 @@ _BY_STATE = frozenset(
     {
         *("14040", "arc-radius", "arc-no-chord", "10720", "corner-too-large", "corner-next"),
         *("10860", "g95-spindle-stopped", "dwell-spindle-stopped", "speed-missing", "surface-speed-missing"),
-        *("r-unset", "word-unused", str(NOT_DEFINED)),
+        *("word-unused", str(NOT_DEFINED)),
     }
 )
 
@@ -91,6 +94,7 @@ class Interpreter(Interpretation):
         self._setup = setup
         self._taken: Line | None = None  # a block at which block search has stopped
         self._approach: Iterator[Block] = iter(())
+        self._no_axis: set[str] = set()  # axes that this machine has not, as far as told
         if setup.begin is not None:
             self._go_on_from(setup.begin)
 
@@ -414,13 +418,26 @@ class Interpreter(Interpretation):
     def _refuse(self, found: Diagnostic) -> None:
         """Keep the error; what may come of it says nothing new."""
         follows = found.code in _BY_STATE or found.code.startswith("comp-")
-        if not (self._stopped and follows):
+        if not (self._stopped and follows) and not self._axis_is_told(found):
             self._log.add(self._flow.located(found))
         self._stopped = True
         self._corners.drop()
         self._compensation.drop()
         if self._transformed is not None:
             self._transformed.drop()
+
+    def _axis_is_told(self, found: Diagnostic) -> bool:
+        """Whether it was said before that this machine has no such axis: a mill's program names it all along.
+
+        J is a word of arcs in Y.
+        """
+        match = _NO_AXIS.search(found.message)
+        axis = "Y" if _ARC_IN_Y.search(found.message) else match[1] if match else ""
+        if not axis:
+            return False
+        told = axis in self._no_axis
+        self._no_axis.add(axis)
+        return told
 
     def _never_ends(self, line: Line) -> None:
         text = f"the program makes more than {MOST_BLOCKS:,} blocks or {MOST_LINES:,} executed lines."

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from enum import IntEnum
 
-from core.interpreter.actions import Action, Dwell
+from core.interpreter.actions import Action, Dwell, ProgramStop
 from core.interpreter.diagnostic_log import Log
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.formula_values import NoValueError, worth
@@ -15,8 +16,9 @@ from core.interpreter.sinumerik.programmed_frame import ProgrammedFrame
 from core.interpreter.sinumerik.sinumerik_statement import Statement
 from core.interpreter.sinumerik.system_variables import position_asked, system_value
 from core.interpreter.sinumerik.third_axis import wrapped
-from core.interpreter.sinumerik.variables import Refuse, Variables
+from core.interpreter.sinumerik.variables import UNSET, Refuse, Variables
 from core.interpreter.units import MM_PER_INCH
+from core.language.diagnostics import AT_THE_STOP, Diagnostic, ProgramError, Severity, resting_on
 from core.language.formulas import Formula, Parameter
 from core.language.sinumerik.sinumerik_words import Line, Word
 
@@ -86,15 +88,20 @@ class State:
         self.tap_lead = 0.0  # K of G331, mm
         self.lead_change, self.end_lead, self.start_turns = 0.0, 0.0, 0.0  # of G34, G35 and SF
         self.names: list[str] = []  # of tools that the table does not have, by their order
+        self.behind_stop = self.place_assumed = False  # a place was read behind a stop, where a hand may move
         self.told: set[str] = set()  # functions without effect that have been told
         self.variables = Variables()
+        self.variables.r.update(setup.r)
         self.modal_call: Line | None = None  # of MCALL
         self.transformation: PlaneInForce | None = None  # TRANSMIT or TRACYL
         self.master = 1  # SETMS: 2 is the live tool, whose S, M3 and G95 are meant then
         self.live_speed = 0.0  # S of the live tool, rpm
         self.live_rpm = 0.0  # by which it turns, signed
         wraps = setup.limits.c_enabled and setup.limits.c_modulo
-        self.modal = Modal(absolute=True, metric=True, diameter=True, rapid_rate=0.0, wraps_c=wraps)
+        slide = setup.limits.c_enabled and setup.limits.c_linear
+        self.modal = Modal(
+            absolute=True, metric=True, diameter=True, rapid_rate=0.0, wraps_c=wraps, linear_c=slide
+        )
 
     def adopt(self, modal: Modal) -> None:
         """Make ``modal`` the state in force; where it says nothing new, blocks go on sharing the old one."""
@@ -115,6 +122,10 @@ class State:
         """A length in mm: as written under G71, inches under G70."""
         return self.number(statement, word) * (1.0 if self.modal.metric else MM_PER_INCH)
 
+    def third(self, statement: Statement, word: Word) -> float:
+        """The value of a word of the third axis: degrees, or of a slide mm."""
+        return self.length(statement, word) if self.modal.linear_c else self.number(statement, word)
+
     def number(self, statement: Statement, word: Word) -> float:
         """The number of a word, or what its formula comes to. Raises ProgramError where that has no value."""
         if word.value is not None:
@@ -130,13 +141,29 @@ class State:
                 axis = position_asked(asked.letters)
                 read = self.position(axis) if axis else system_value(asked.letters, self.modal, self.edge)
                 if read is not None:
+                    self.place_assumed = self.place_assumed or bool(axis and self.behind_stop)
                     return read
-            return self.variables.value(asked, lambda index: worth(index, parameter), refuse)
+            try:
+                return self.variables.value(asked, lambda index: worth(index, parameter), refuse)
+            except ProgramError as problem:
+                if problem.diagnostic.code != UNSET:
+                    raise
+                self._tell_unset(problem.diagnostic)
+                return 0.0
 
         try:
             return worth(formula, parameter)
         except NoValueError as problem:
-            raise refuse("arithmetic", f"{problem}.", "Correct the formula.") from None
+            error = refuse("arithmetic", f"{problem}.", "Correct the formula.")
+            if self.place_assumed:
+                error = ProgramError(resting_on(error.diagnostic, AT_THE_STOP))
+            raise error from None
+
+    def _tell_unset(self, found: Diagnostic) -> None:
+        """Say once of each R parameter that it counts as 0."""
+        if found.hint not in self.told:  # it names the parameter, whatever line asks for it
+            self.told.add(found.hint)
+            self.log.add(replace(found, severity=Severity.WARNING))
 
     def rpm_at(self, x: float) -> float:
         """Commanded speed with the tip at radius ``x`` of the program; signed, 0 with the spindle stopped."""
@@ -176,6 +203,7 @@ class State:
 
     def action(self, line: int, text: str, action: Action) -> Block:
         """A block in which no axis moves."""
+        self.behind_stop = self.behind_stop or isinstance(action, ProgramStop)
         modal = self.modal
         x, z, c = self.x - modal.offset_x, self.z - modal.offset_z, self.c - modal.offset_c
         return Block(

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 from core.language.diagnostics import Diagnostic, ProgramError, Severity
 from core.language.sinumerik import sinumerik_words as known
 from core.language.sinumerik import word_table as table
+from core.language.sinumerik.iso_words import iso_habit
 from core.language.sinumerik.sinumerik_alarms import ONE_GROUP, TWICE, UNKNOWN_G, fault
 from core.language.sinumerik.sinumerik_lexer import variable
 from core.language.sinumerik.sinumerik_words import Line, Word
@@ -126,6 +127,8 @@ def _sort_g(statement: Statement, word: Word, group: str | None) -> None:
         why = known.WHY_OUTSIDE.get(f"G{int(word.value or 0)}")
         if why is not None:
             raise statement.refuse(word, "not-in-subset", f"{word.text}: {why}.", "Take it out.")
+        if habit := iso_habit(statement.line.text.upper()):
+            raise statement.refuse(word, "other-control", habit.text, habit.hint)
         raise statement.refuse(
             word, UNKNOWN_G, f"{word.text} is no G function of this control.", "Take it out."
         )
@@ -156,6 +159,8 @@ def _check_alone(statement: Statement) -> None:
         others = (
             statement.words.keys() - _DWELL_WORDS or statement.m or statement.sets or len(statement.g) > 1
         )
+        if habit := iso_habit(statement.line.text.upper()):
+            raise statement.refuse(dwell, "other-control", habit.text, habit.hint)
         if others or len(statement.words) != 1:
             text = "G4 needs a block of its own, with F (seconds) or S (revolutions)."
             raise statement.refuse(dwell, "own-block", text, "Split the block.")

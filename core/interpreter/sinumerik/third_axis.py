@@ -1,15 +1,21 @@
 """Where a word sends the axis C, and which way round: signed travel from the actual position. Degrees.
 
-The table is that of the modulo axis 0..<360 and of the linear axis -360..+360; nothing here knows of words,
+The table is that of the modulo axis 0..<360 and of the axis that does not wrap, -360..+360 or a slide between
+its ends in mm; nothing here knows of words,
 offsets or machines, so that it can be tried with any numbers.
 """
 
 from __future__ import annotations
 
+from math import inf
+
 from core.coded_error import CodedError
 from core.language.sinumerik.sinumerik_words import Form
 
 TURN = 360.0
+TURNS = (-TURN, TURN)
+"""Ends of a C that does not wrap."""
+
 ROUNDING = 1e-9
 """Degrees that are noise of sums in binary: a target as near as this is reached."""
 
@@ -65,10 +71,12 @@ def linear_travel(form: Form, value: float, position: float) -> float:
     return value if form is Form.IC else _unless_noise(value - position)
 
 
-def check_reach(end: float) -> None:
-    """Raises TargetError where a linear C would stand beyond -360..+360 of the machine's own count."""
-    if abs(end) > TURN + ROUNDING:
-        raise TargetError(WRONG_RANGE, f"the end point {end:g} lies beyond -360 to +360 of the machine")
+def check_reach(end: float, ends: tuple[float, float] | None = TURNS) -> None:
+    """Raises TargetError where an axis would stand beyond its ends in the machine's own count."""
+    low, high = ends or (-inf, inf)
+    if not low - ROUNDING <= end <= high + ROUNDING:
+        text = f"the end point {end:g} lies beyond {low:g} to {high:+g} of the machine"
+        raise TargetError(WRONG_RANGE, text)
 
 
 def _unless_noise(travel: float) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 
 from core.interpreter.actions import ToolChange
@@ -11,7 +12,7 @@ from core.interpreter.job_setup import ToolOffset
 from core.interpreter.sinumerik.sinumerik_state import State
 from core.interpreter.sinumerik.sinumerik_statement import Statement
 from core.language.sinumerik.sinumerik_words import Word
-from core.tool_edges import EDGES, NAMED_TOOLS, edge_key, edge_name, edge_of, tool_of
+from core.tool_edges import EDGES, NAMED_TOOLS, NamedTool, edge_key, edge_name, edge_of, tool_of
 
 WRONG_TOOL = 17190
 WRONG_EDGE = 17180
@@ -51,7 +52,7 @@ def _number(state: State, statement: Statement, word: Word) -> int:
             return tool_of(key)
     if wanted not in state.names:
         state.names.append(wanted)
-    return NAMED_TOOLS + state.names.index(wanted)
+    return NamedTool(NAMED_TOOLS + state.names.index(wanted), word.string)
 
 
 def _edge(state: State, statement: Statement, word: Word) -> int:
@@ -81,16 +82,28 @@ def _offset(state: State, statement: Statement, key: int, use: ToolUse) -> ToolO
     tools = state.setup.tools
     if key not in tools and tool_of(key) in tools:
         name, word = edge_name(key), statement.words.get("D")
-        text = f"{name} does not exist: T{tool_of(key)} has no such cutting edge in the tool offsets."
+        text = (
+            f"{name} does not exist: {edge_name(tool_of(key))} has no such cutting edge in the tool offsets."
+        )
         raise statement.refuse(word, WRONG_EDGE, text, f"Set {name} on the page of tool offsets (F8).")
     offset = use.offset(key, tools)
     if offset is None:
         word = statement.words.get("T") or statement.words.get("D")
-        name = f'T="{word.string}"' if word is not None and word.string else edge_name(key)
-        text = f"{name} has no tool offset; 0 is used, and the machine will refuse to start."
-        hint = "Enter the name as remark of a tool (F8)." if word is not None and word.string else _SET
+        text = f"{edge_name(key)} has no tool offset; 0 is used, and the machine will refuse to start."
+        hint = _hint(word)
         state.log.add(statement.warning(word, "tool-offset-missing", text, hint))
     return offset or ToolOffset()
 
 
+def _hint(word: Word | None) -> str:
+    """What to do where a tool has no offset; T0101 is how other controls write tool 1 and its offset."""
+    if word is not None and word.string:
+        return "Enter the name as remark of a tool (F8)."
+    if word is not None and (iso := _TOOL_AND_OFFSET.fullmatch(word.text)):
+        meant = f"T{int(iso[1])} D{max(int(iso[2]) % 10, 1)}"
+        return f"{word.text} is tool {int(word.text[1:])} here; write {meant}."
+    return _SET
+
+
+_TOOL_AND_OFFSET = re.compile(r"T([0-9]{1,2})([0-9]{2})")
 _SET = "Set the tool's offset on the page of tool offsets (F8); tools are T1 to T32."

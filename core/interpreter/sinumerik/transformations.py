@@ -64,6 +64,9 @@ def _check_machine(state: State, statement: Statement, word: Word) -> None:
     if not limits.c_enabled:
         text = f"{word.text} turns the part by C, and this machine has no third axis."
         raise statement.refuse(word, NOT_THERE, text, "Choose a machine file that has C.")
+    if limits.c_linear:
+        text = f"{word.text} turns the part by C, and the third axis of this machine is linear."
+        raise statement.refuse(word, NOT_THERE, text, "Choose a machine file that has C.")
     if modal.spindle:
         text = f"{word.text}: the spindle turns, and the part has to be held as C."
         raise statement.refuse(word, "transformation", text, "Write M5 or SPOS=0 before it.")

@@ -12,6 +12,7 @@ from core.language.sinumerik.array_values import Values
 from core.language.sinumerik.sinumerik_alarms import FIRST_INDEX, NOT_DEFINED, OTHER_INDEX
 from core.language.sinumerik.sinumerik_words import MOST_R
 
+UNSET = "r-unset"
 LARGEST_ARRAY = 10_000
 MOST_DIMENSIONS = 3
 
@@ -99,9 +100,9 @@ class Variables:
             return OTHER_INDEX if right else FIRST_INDEX, text, hint
         if letters == "R":
             return (
-                "r-unset",
-                f"{name} has no value: the program has not set it.",
-                f"Write {name}=… before it.",
+                UNSET,
+                f"{name} has no value, and counts as 0: neither the program nor the operator has set it.",
+                f"Write {name}=… before it, or set it as R PARAMETERS (F10).",
             )
         text = f"the name {name} is not defined: no DEF has named it."
         return NOT_DEFINED, text, f"Write DEF REAL {name} before it."

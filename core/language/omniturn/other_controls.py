@@ -6,6 +6,9 @@ import re
 
 from core.language.typography import typed
 
+LOOK_UP = "See the list of codes: Shift+F1 in the editor."
+"""The remedy where no other one can be named; in the editor, Shift+F1 opens the list."""
+
 _HERE: dict[str, tuple[str, str]] = {
     "G05": ("High-speed modes have no code here.", "Take it out."),
     "G07": ("Milling round the part is (~PLZC) here.", "Write (~PLZC) … (END)."),
@@ -49,7 +52,7 @@ _HERE: dict[str, tuple[str, str]] = {
     "H": ("The offset of a tool is T here, and a second one D.", "Write T or D."),
     "Q": (
         "Q is a word of other controls' cycles; here they are G33, G74, G75, G81 and G83.",
-        "See the language page.",
+        LOOK_UP,
     ),
     "U": ("Incremental moves are X and Z under G91 here.", "Write G91 and X."),
     "W": ("Incremental moves are X and Z under G91 here.", "Write G91 and Z."),

@@ -178,5 +178,5 @@ def _unknown_letter(line: int, column: int, letter: str) -> Diagnostic:
         return refusal(
             line, column, "unknown-letter", f"{letter} is no word of the language. {habit[0]}", habit[1]
         )
-    hint = "Look the word up in the language page."
-    return refusal(line, column, "unknown-letter", f"{letter} is no word of the language.", hint)
+    said = f"{letter} is no word of the language."
+    return refusal(line, column, "unknown-letter", said, other_controls.LOOK_UP)

@@ -11,6 +11,7 @@ from core.language.sinumerik import sinumerik_words as known
 from core.language.sinumerik.array_values import read_values
 from core.language.sinumerik.call_arguments import Argument, read_arguments
 from core.language.sinumerik.cycle_names import CYCLES, CYCLES_OUTSIDE, CYCLES_TAKEN
+from core.language.sinumerik.iso_words import iso_habit
 from core.language.sinumerik.program_jumps import Jump, Steering, read_jump, steering_word
 from core.language.sinumerik.sinumerik_alarms import SYNTAX, fault
 from core.language.sinumerik.sinumerik_formulas import GRAMMAR
@@ -91,6 +92,7 @@ _QUOTED = re.compile(r'"([^"]*)"')
 _BLANK = re.compile(r"\s*\([^()]*\)")
 _NUMBERED = re.compile(r"\s*\(\s*([0-9]*)\s*\)")
 _ELEMENT = re.compile(r"(R|[A-Z_][A-Z_][A-Z0-9_]*)\s*\[\s*")
+_OF_AN_AXIS = re.compile(r"(?:[ABCUVWXYZ][0-9]?|AX[0-9]+)\s*\]")
 _SET = re.compile(r"\s*=(?!=)\s*")
 _SYSTEM = re.compile(r"\$[A-Z0-9_]+")
 _BRACKET = re.compile(r"\s*\(")
@@ -127,6 +129,8 @@ def lex_line(number: int, text: str, third_axis: str = OWN) -> Line:
         scanner.steer(head.end(), steering)
     else:
         scanner.scan(head.end())
+    if scanner.errors and len(text) <= LONGEST_LINE:
+        scanner.tell_habit()
     words = scanner.words
     if third_axis != OWN:
         words = [w._replace(text=f"{third_axis}{w.text[1:]}") if w.name == OWN else w for w in words]
@@ -211,6 +215,12 @@ class _Scanner:
         """A word of C on a machine whose third axis has another name."""
         self._outside(at, at + 1, OWN, f"this lathe has no axis C; its third axis is {third_axis}")
 
+    def tell_habit(self) -> None:
+        """Where the block is one of the ISO mode, what stands for it here, in place of the first mistake."""
+        if habit := iso_habit(self._text):
+            number, block = self._number, self._block
+            self.errors[:] = [fault(number, habit.at + 1, "other-control", block, habit.text, habit.hint)]
+
     def refuse(self, column: int, text: str, hint: str) -> None:
         """A syntax alarm at this column."""
         self._tell(fault(self._number, column, SYNTAX, self._block, f"syntax error: {text}.", hint))
@@ -257,8 +267,7 @@ class _Scanner:
         if name in _CALLS and not self.words:
             return self._behind_call(name, at, end)
         if name in known.NAMES_OUTSIDE:
-            why = known.WHY_OUTSIDE.get(name, "this control does not execute it")
-            return self._outside(at, end, name, why)
+            return self._outside(at, end, name, known.WHY_OUTSIDE[name])
         base = name.rstrip("0123456789")
         if name in known.ASSIGNED or base in known.ASSIGNED - known.LETTERS:
             return self._skip(at, f"{base} lacks its =", f"Write {base}=…")
@@ -330,10 +339,10 @@ class _Scanner:
 
     def _element(self, match: re.Match[str]) -> int:
         """R[ ]= or an element of an array."""
-        if match[1] in known.NAMES_OUTSIDE:
-            why = known.WHY_OUTSIDE.get(match[1], "this control does not execute it")
-            return self._outside(match.start(), match.end(), match[1], why)
         name, at = match[1], match.start()
+        if name in known.NAMES_OUTSIDE or _OF_AN_AXIS.match(self._text, match.end()):
+            why = known.WHY_OUTSIDE.get(name, "words of a single axis are not executed here")
+            return self._outside(at, match.end(), name, why)
         try:
             reader = FormulaReader(GRAMMAR, self._text, self._text.index("[", at))
             place = reader.index()

@@ -9,8 +9,9 @@ from core.language.diagnostics import Diagnostic
 from core.language.formulas import Formula
 from core.language.sinumerik.array_values import Values
 from core.language.sinumerik.call_arguments import Argument
+from core.language.sinumerik.outside_words import OUTSIDE
 from core.language.sinumerik.program_jumps import Jump
-from core.language.sinumerik.word_table import FUNCTIONS, OUTSIDE, WORDS
+from core.language.sinumerik.word_table import FUNCTIONS, WORDS
 
 LONGEST_LINE = 512
 
@@ -152,16 +153,12 @@ LETTERS_OUTSIDE = {
     "U": "this lathe has no axis U; incremental words are written with IC( ), such as X=IC(1)",
     "W": "this lathe has no axis W; incremental words are written with IC( ), such as Z=IC(1)",
     "P": "P stands only behind the name of a subprogram",
-    "R": "an R parameter stands behind = or is set with =, such as R1=10",
+    "R": "an R parameter stands behind = or is set with =, as R1=10; a radius is CR=, a rounding RND=",
 }
 """Letters that a program of the trade may hold, and what to do about them here."""
 
-_OUTSIDE = """
-    AROTS ASPOS CYCLE DEFAULT DEFINE ENDPROC GOTOC OEMIPO POLF POS POSA REPOS ROTS SAVE SPCOF SPCON
-    VELOLIM WAITM WAITP
-"""
-NAMES_OUTSIDE = (frozenset(_OUTSIDE.split()) | OUTSIDE.keys()) - ASSIGNED
+NAMES_OUTSIDE = OUTSIDE.keys() - ASSIGNED
 """Names of the language that are no subprograms, and that this control does not execute."""
 
 WHY_OUTSIDE = OUTSIDE
-"""What to do instead, of those where something can be told."""
+"""What to do instead."""

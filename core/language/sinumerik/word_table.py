@@ -1,7 +1,6 @@
 """Every G function and word of SINUMERIK turning: its group, what it means here, and an example that runs.
 
-``OUTSIDE`` names what a program of the trade may hold and this control does not execute, with what to write
-instead. The code book (``sinumerik_book``, printed as ``docs/sinumerik-codes.md``) is made of these tables.
+The code book (``sinumerik_book``, printed as ``docs/sinumerik-codes.md``) is made of these tables.
 """
 
 from __future__ import annotations
@@ -302,44 +301,3 @@ M_FUNCTIONS: Mapping[int, Entry] = {
     },
 }
 """M functions; the machine file adds its own."""
-
-_ONE_CHANNEL = "this control has one channel, and its axes are its own"
-_FEEDS = "F is the feed of the path; write F, FB or OVR"
-_SYNCHRONOUS = "synchronized actions are not executed here"
-_MEASURES = "measuring in the program is not executed here; touch the tool off on the Jog page"
-_ISO = "the other language mode is not read here"
-_TOOL_AXIS = "this lathe has no orientation axes"
-_SMOOTH = "smooth approach and retract is not executed here; write G41 or G42 with NORM or KONT"
-_SIX = "this control keeps six settable offsets; write G54 to G59"
-_SPLINE = "write the curve as lines and arcs"
-
-OUTSIDE: Mapping[str, str] = {
-    "G63": "write CYCLE840, which feeds the tap by its lead and turns it back",
-    "G93": "inverse time feed is not executed here; write G94 or G95 with F",
-    "G931": "feed by the time of the move is not executed here; write G94 or G95 with F",
-    "G5": "G5 is not executed here; write the arc with CIP",
-    "KONTC": "approach on a curve is not executed here; write KONT or NORM",
-    "KONTT": "approach on a curve is not executed here; write KONT or NORM",
-    "ASPLINE": _SPLINE,
-    "BSPLINE": _SPLINE,
-    "CSPLINE": _SPLINE,
-    "POLY": _SPLINE,
-    "INVCW": _SPLINE,
-    "INVCCW": _SPLINE,
-    "TURN": "a helix needs a third axis of the slides",
-    "DIAMCYCOF": "write DIAMON, DIAMOF or DIAM90",
-    "DISC": "write G450 or G451",
-    "EXTCALL": "programs from outside are not called; put the file beside the main program and call its name",
-    "TRAANG": "this lathe has no inclined axis",
-    "FLIN": "write G1 with F a block",
-    "FCUB": "write G1 with F a block",
-    **dict.fromkeys(("TRAORI", "ORIWKS", "ORIMKS", "ORIAXES"), _TOOL_AXIS),
-    **dict.fromkeys(("GEOAX", "GET", "GETD", "RELEASE", "COUPON", "COUPOF", "COUPDEF"), _ONE_CHANNEL),
-    **dict.fromkeys(("FGROUP", "ACC", "FA", "FD", "FZ", "OVRA", "VELOLIMA", "JERKLIM", "SVC"), _FEEDS),
-    **dict.fromkeys(("WHEN", "WHENEVER", "EVERY", "CANCEL"), _SYNCHRONOUS),
-    **dict.fromkeys(("MEAS", "MEAW", "MEAC"), _MEASURES),
-    "G291": _ISO,
-    **dict.fromkeys((f"G{code}" for code in (147, 148, 247, 248, 340, 341, 347, 348)), _SMOOTH),
-    **dict.fromkeys((f"G{code}" for code in range(507, 600)), _SIX),
-}
-"""Functions that this control does not execute, with what to do instead."""

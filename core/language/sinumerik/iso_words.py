@@ -1,0 +1,140 @@
+"""What the ISO mode and controls like it write, and what says the same in the SINUMERIK language."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from typing import NamedTuple
+
+
+class Habit(NamedTuple):
+    """Something that is written otherwise here: where it begins (an index), what it is, what to write."""
+
+    at: int
+    text: str
+    hint: str
+
+
+_NUMBER = r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)"
+_Rule = tuple[re.Pattern[str], Callable[[re.Match[str]], tuple[str, str]]]
+
+
+def _g(codes: str) -> str:
+    """One of these G codes, with leading zeros or without."""
+    return rf"(?<![A-Z0-9_])G0*(?:{codes})(?![0-9.])"
+
+
+def _seconds(letter: str, number: str) -> str:
+    """The time of a dwell: P counts milliseconds where it has no point."""
+    value = float(number)
+    return f"{value / 1000.0 if letter == 'P' and '.' not in number else value:g}"
+
+
+def _dwell(match: re.Match[str]) -> tuple[str, str]:
+    letter, number = match["letter"], match["number"]
+    text = f"{letter}{number} is the time of a dwell in ISO, and here it is F, in seconds."
+    return text, f"Write G4 F{_seconds(letter, number)}."
+
+
+def _radius(match: re.Match[str]) -> tuple[str, str]:
+    number = match["number"].rstrip(".")
+    return f"R{number}: CR={number} is the radius of an arc here.", f"Write CR={number}."
+
+
+def _corner(match: re.Match[str]) -> tuple[str, str]:
+    number = match["number"].rstrip(".")
+    word = f"CHR={number}" if match["letter"] == "C" else f"RND={number}"
+    return f"{match['word']}: {word} makes a corner here.", f"Write {word}."
+
+
+def _variable(match: re.Match[str]) -> tuple[str, str]:
+    return f"#{match['number']}: variables are R parameters here.", f"Write R{match['number']}."
+
+
+def _home(match: re.Match[str]) -> tuple[str, str]:
+    return f"{match['word']}: home is G74 here, and a fixed point G75.", "Write G74 X1=0 Z1=0."
+
+
+def _speed_limit(match: re.Match[str]) -> tuple[str, str]:
+    return f"{match['word']}: the highest speed is LIMS= here.", f"Write LIMS={match['number'].rstrip('.')}."
+
+
+def _preset(match: re.Match[str]) -> tuple[str, str]:
+    return f"{match['word']} presets a position in ISO; here zero is shifted by TRANS.", "Write TRANS."
+
+
+def _cycle(match: re.Match[str]) -> tuple[str, str]:
+    code = int(match["code"])
+    name = {74: "CYCLE83", 75: "CYCLE93", 76: "CYCLE97", 32: "G33", 92: "CYCLE97"}.get(code, "CYCLE95")
+    return f"G{code} of ISO is {name} here.", f"Write {name}."
+
+
+def _inches(match: re.Match[str]) -> tuple[str, str]:
+    name = "G70" if match["code"] == "20" else "G71"
+    return f"G{match['code']}: the unit is {name} here.", f"Write {name}."
+
+
+def _feed(match: re.Match[str]) -> tuple[str, str]:
+    name = "G94" if match["code"] == "98" else "G95"
+    return f"G{match['code']}: the kind of feed is {name} here.", f"Write {name}."
+
+
+def _call(match: re.Match[str]) -> tuple[str, str]:
+    number = match["number"]
+    return f"{match['word']}: a subprogram is called by its name here.", f"Write L{number}."
+
+
+def _program(match: re.Match[str]) -> tuple[str, str]:
+    return f"{match['word']}: a program has the name of its file here.", "Take it out."
+
+
+def _comment(match: re.Match[str]) -> tuple[str, str]:
+    del match
+    return "a comment in brackets is one of ISO; here it begins with ;.", "Write ; before it."
+
+
+def _jump(match: re.Match[str]) -> tuple[str, str]:
+    number = match["number"]
+    return f"GOTO {number}: a jump names a label or a block here.", f"Write GOTO N{number}."
+
+
+def _distance(match: re.Match[str]) -> tuple[str, str]:
+    axis = {"U": "X", "W": "Z"}[match["letter"]]
+    word = f"{axis}=IC({match['number']})"
+    return (
+        f"{match['word']}: a distance is {word} here; this lathe has no axis {match['letter']}.",
+        f"Write {word}.",
+    )
+
+
+_RULES: tuple[_Rule, ...] = (
+    (re.compile(r"^\s*\("), _comment),
+    (re.compile(r"^\s*(?P<word>O[0-9]+)"), _program),
+    (re.compile(r"(?P<word>#(?P<number>[0-9]+))"), _variable),
+    (re.compile(rf"{_g('4')}(?!.*[FS][0-9=.]).*?(?<![A-Z])(?P<letter>[XUP])(?P<number>{_NUMBER})"), _dwell),
+    (re.compile(rf"(?P<word>{_g('28|30')})"), _home),
+    (re.compile(rf"(?P<word>{_g('50|92')})\s*S(?P<number>{_NUMBER})"), _speed_limit),
+    (re.compile(rf"(?<![A-Z0-9_])G(?P<code>7[0-6])(?=.*(?<![A-Z])[PQRUW]{_NUMBER})"), _cycle),
+    (re.compile(rf"(?<![A-Z0-9_])G(?P<code>32|92)(?=.*F{_NUMBER})"), _cycle),
+    (re.compile(rf"(?P<word>{_g('50|92')})"), _preset),
+    (re.compile(r"(?<![A-Z0-9_])G(?P<code>20|21)(?![0-9.])"), _inches),
+    (re.compile(r"(?<![A-Z0-9_])G(?P<code>98|99)(?![0-9.])"), _feed),
+    (re.compile(r"(?P<word>M98)\s*P0*(?P<number>[0-9]+)"), _call),
+    (re.compile(r"GOTO\s*(?P<number>[0-9]+)"), _jump),
+    (re.compile(rf"(?P<word>,\s*(?P<letter>[CR])(?P<number>{_NUMBER}))"), _corner),
+    (re.compile(rf"{_g('2|3')}.*?(?<![A-Z])R(?P<number>{_NUMBER})"), _radius),
+    (re.compile(rf"{_g('1')}.*?(?<![A-Z])(?P<word>(?P<letter>R)(?P<number>{_NUMBER}))"), _corner),
+    (re.compile(rf"(?<![A-Z0-9_])(?P<word>(?P<letter>[UW])(?P<number>{_NUMBER}))"), _distance),
+)
+"""The first that fits a line is told. They are asked of lines alone that cannot be read as they stand."""
+
+
+def iso_habit(code: str) -> Habit | None:
+    """What of a block, in capitals and without its comment, is written as in ISO; None where nothing is."""
+    for pattern, told in _RULES:
+        if match := pattern.search(code):
+            groups = match.groupdict()
+            part = next((name for name in ("word", "letter", "code", "number") if groups.get(name)), 0)
+            at = match.start(part)
+            return Habit(at - (part == "code"), *told(match))
+    return None

@@ -1,0 +1,147 @@
+"""No start without a verdict on its first move: for this job, this position and the part as it is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import pytest
+
+from core.executor.commands import CycleStart, GiveClearance, JogStep, Prepare, SetSwitch
+from core.executor.job import Job
+from core.executor.snapshot import Starts, State
+from core.executor.start_clearance import CROSSES, INSIDE, UNCHECKED, Clearance
+from tests.executor.lines import TOOLS
+from tests.executor.rig import Rig
+from tests.executor.test_restart import PART
+
+END = "G90G94F300\nT1\nX1Z.2\nM30\n"
+WHY = "the first move takes T1 through the part"
+
+
+@dataclass
+class Checked(Rig):
+    """A rig whose control demands a verdict."""
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        self.executor._control.status.checks_starts = True
+
+    def clear(self, loaded: Job, code: str = "", warned: str = "", **changes: object) -> None:
+        shot = self.shot
+        why = WHY if code else ""
+        found = Clearance(loaded.digest, shot.demand, shot.begun, code, why, warned)
+        self.post(GiveClearance((replace(found, **changes),)))  # type: ignore[arg-type]
+
+    def starts(self) -> bool:
+        self.run(0.4)
+        self.post(CycleStart())
+        return self.state is not State.IDLE
+
+
+def loaded() -> tuple[Checked, Job]:
+    rig = Checked()
+    rig.ready()
+    return rig, rig.load(PART, TOOLS)
+
+
+def test_without_a_verdict_nothing_starts_and_with_a_good_one_it_does() -> None:
+    rig, job = loaded()
+    assert not rig.starts()
+    assert rig.shot.start_code == UNCHECKED
+    rig.clear(job)
+    assert (rig.shot.start_refused, rig.shot.start_code) == ("", "")
+    assert rig.starts()
+
+
+@pytest.mark.parametrize("code", [INSIDE, CROSSES])
+def test_a_refusal_has_its_code_and_its_sentence(code: str) -> None:
+    rig, job = loaded()
+    rig.clear(job, code)
+    assert not rig.starts()
+    assert (rig.shot.start_code, rig.shot.start_refused) == (code, WHY)
+
+
+def test_a_verdict_for_another_position_is_none() -> None:
+    rig, job = loaded()
+    rig.clear(job)
+    rig.post(JogStep("X", -0.5, 5.0))
+    rig.run(1.0)
+    assert rig.state is State.IDLE
+    assert not rig.starts()
+    assert rig.shot.start_code == UNCHECKED
+    rig.clear(job)
+    assert rig.starts()
+
+
+def test_a_verdict_for_another_job_or_before_another_run_is_none() -> None:
+    rig, job = loaded()
+    rig.clear(job, job="another")
+    assert not rig.starts()
+    rig.clear(job, begun=rig.shot.begun + 1)
+    assert not rig.starts()
+    assert rig.shot.start_code == UNCHECKED
+
+
+def test_what_was_computed_before_a_run_does_not_count_after_it() -> None:
+    rig = Checked()
+    rig.ready()
+    job = rig.load(END, TOOLS)
+    rig.clear(job)
+    early = rig.executor._control.status.clearances
+    assert rig.starts()
+    rig.until(State.IDLE)
+    rig.post(GiveClearance(tuple(replace(each, at=rig.shot.demand) for each in early)))
+    assert not rig.starts()
+    assert rig.shot.start_code == UNCHECKED
+
+
+def test_what_is_assumed_is_announced_before_the_start() -> None:
+    rig, job = loaded()
+    rig.clear(job, warned="LOOK")
+    assert any("LOOK" in each for each in rig.shot.announced)
+    assert rig.starts()
+
+
+def prepares(rig: Checked, job: Job, clearance: Clearance | None) -> None:
+    proof = rig.executor._control.status.proof
+    rig.post(Prepare(Starts.LINE, job, proof, clearance))
+
+
+def test_the_verdict_on_the_program_is_none_on_a_line() -> None:
+    rig, job = loaded()
+    prepares(rig, job, None)
+    rig.clear(job)
+    assert not rig.starts()
+    assert rig.shot.start_code == UNCHECKED
+
+
+def test_a_line_is_prepared_with_its_verdict_and_starts() -> None:
+    rig, job = loaded()
+    prepares(rig, job, Clearance(job.digest, rig.shot.demand, rig.shot.begun))
+    assert rig.starts()
+
+
+def test_a_line_whose_first_move_crosses_is_refused_until_another_is_prepared() -> None:
+    rig, job = loaded()
+    rig.clear(job)
+    prepares(rig, job, Clearance(job.digest, rig.shot.demand, rig.shot.begun, CROSSES, WHY))
+    assert not rig.starts()
+    assert (rig.shot.start_code, rig.shot.start_refused) == (CROSSES, WHY)
+    rig.post(Prepare(Starts.PROGRAM))
+    assert (rig.shot.start_code, rig.shot.start_refused) == ("", "")
+    assert rig.starts()
+
+
+def test_cycle_repeat_does_not_begin_a_move_that_crosses_the_part() -> None:
+    rig = Checked()
+    rig.ready()
+    job = rig.load(END, TOOLS)
+    shot = rig.shot
+    end = (TOOLS[1].x + 25.4, TOOLS[1].z + 0.2 * 25.4, shot.demand[2])
+    here = Clearance(job.digest, shot.demand, shot.begun)
+    rig.post(GiveClearance((here, replace(here, at=end, code=CROSSES, why=WHY, repeats=True))))
+    rig.post(SetSwitch("cycle_repeat", True))
+    assert rig.starts()
+    rig.until(State.IDLE)
+    assert rig.shot.parts == 1
+    assert any(WHY in each for each in rig.said("refused"))

@@ -1,0 +1,120 @@
+"""What is checked of cuts in every language, and what a proof says of names and of modulo axes."""
+
+from __future__ import annotations
+
+import copy
+import pickle
+
+import pytest
+
+from app.compose.machine_files import shipped_machine
+from app.compose.machine_setup import setup_for
+from core.interpreter.job_setup import ToolOffset
+from core.language.source import Source
+from core.proving.proof_pass import turned_range
+from core.proving.proof_report import Report
+from core.proving.prove_program import prove
+from core.tool_edges import NAMED_TOOLS, NamedTool, edge_key, edge_name, tool_of
+
+LATHE, MILL = shipped_machine("sinumerik-modulo"), shipped_machine("ac-table-mill")
+
+
+def turned(text: str) -> Report:
+    """The proof of a SINUMERIK program with T1."""
+    tools = {1: ToolOffset()}
+    return prove(Source("a.mpf", text), setup_for(LATHE, tools=tools, secondary={}), LATHE)
+
+
+def milled(text: str) -> Report:
+    """The proof of a Klartext program with tool 1."""
+    tools = {1: ToolOffset()}
+    whole = f"BEGIN PGM A MM\n{text}\nEND PGM A MM\n"
+    return prove(Source("a.h", whole), setup_for(MILL, tools=tools, secondary={}), MILL)
+
+
+def found(report: Report, code: str) -> list[tuple[int, str]]:
+    return [(each.line, str(each.severity)) for each in report.diagnostics if each.code == code]
+
+
+CUT = "G0 X30 Z2\nG94 G1 Z-10 F100\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        (f"S1000 M3\n{CUT}", [(3, "warning")]),
+        (f"S1000 M3\n{CUT}T1 D1\n{CUT}", [(3, "error")]),
+        (f"T1 D1\nS1000 M3\n{CUT}T0\n{CUT}", [(7, "error")]),
+        (f"T1 D1\nS1000 M3\n{CUT}", []),
+        ("S1000 M3\nG0 X30 Z2\nX60", []),
+    ],
+)
+def test_a_turned_cut_without_a_tool(text: str, told: list[tuple[int, str]]) -> None:
+    assert found(turned(text), "no-tool") == told
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("L Z+5 R0 FMAX\nL Z-5 F200", [(3, "warning")]),
+        ("L Z+5 R0 FMAX\nL Z-5 F200\nTOOL CALL 1 Z S100\nL Z-9 M3", [(3, "error")]),
+        ("TOOL CALL 1 Z S100\nL Z+5 R0 FMAX M3\nL Z-5 F200", []),
+    ],
+)
+def test_a_milled_cut_without_a_tool(text: str, told: list[tuple[int, str]]) -> None:
+    assert found(milled(text), "no-tool") == told
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        (f"T1 D1\nS1000\n{CUT}", [(4, "warning")]),
+        (f"T1 D1\nS1000 M3\nM5\n{CUT}", [(5, "warning")]),
+        (f"T1 D1\nS1000 M3\n{CUT}", []),
+        ("T1 D1\nSPOS=0\nG0 X30 Z2 C0\nG94 G1 C90 F100", []),
+    ],
+)
+def test_a_forgotten_m3(text: str, told: list[tuple[int, str]]) -> None:
+    around = setup_for(LATHE, tools={1: ToolOffset()}, secondary={})
+    report = prove(Source("a.mpf", text), around, LATHE)
+    assert found(report, "spindle-off") == told
+
+
+def test_a_tool_by_name_keeps_its_name() -> None:
+    """Beyond copies, processes and edges: it is shown as the program writes it."""
+    report = turned(f'T="Rough er" D1\nS1000 M3\n{CUT}')
+    assert [edge_name(each) for each in report.tools] == ['T="Rough er"']
+    tool = NamedTool(NAMED_TOOLS, "ROUGH")
+    for same in (copy.deepcopy(tool), pickle.loads(pickle.dumps(tool)), tool_of(edge_key(tool, 2))):
+        assert (same, edge_name(same)) == (NAMED_TOOLS, 'T="ROUGH"')
+    assert edge_name(edge_key(tool, 2)) == 'T="ROUGH" D2'
+    assert (edge_name(3), edge_name(edge_key(3, 2))) == ("T3", "T3 D2")
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "shown"),
+    [
+        (0.0, 90.0, (0.0, 90.0)),
+        (-90.0, 0.0, (270.0, 360.0)),
+        (-90.0, 10.0, (0.0, 360.0)),
+        (360.0, 450.0, (0.0, 90.0)),
+        (0.0, 1080.0, (0.0, 360.0)),
+        (725.0, 725.0, (5.0, 5.0)),
+    ],
+)
+def test_the_range_of_a_modulo_axis(low: float, high: float, shown: tuple[float, float]) -> None:
+    assert turned_range(low, high) == pytest.approx(shown)
+
+
+def test_modulo_axes_are_told_in_their_range() -> None:
+    report = milled("TOOL CALL 1 Z S100\nL A+0 C+0 R0 FMAX\nL IC+810 FMAX")
+    assert report.mill is not None
+    assert dict(zip(report.mill.axes, report.mill.reach, strict=True))["C"] == (0.0, 360.0)
+    assert turned("T1 D1\nG0 X30 Z2\nG0 C=IC(-400)").reach.c == (0.0, 360.0)
+
+
+@pytest.mark.parametrize(("text", "named"), [("T1 D1\nG0 X40 Z-9000", False)])
+def test_what_shifts_a_program_is_told_in_its_language(text: str, named: bool) -> None:
+    (error,) = turned(text).errors
+    assert error.code == "soft-limit"
+    assert ("G10" in error.hint, "G54" in error.hint) == (named, True)

@@ -1,0 +1,60 @@
+"""A place that a hand may have changed at a stop: what fails with it in the proof is a warning."""
+
+from __future__ import annotations
+
+import pytest
+
+from app.compose.machine_files import shipped_machine
+from app.compose.machine_setup import setup_for
+from core.interpreter.dialects import interpretation
+from core.interpreter.job_setup import ToolOffset
+from core.language.source import Source
+from core.proving.prove_program import prove
+
+LATHE, MILL = shipped_machine("sinumerik-modulo"), shipped_machine("ac-table-mill")
+STOP, READ = "M0", "R1=$AA_IW[Z]"
+
+
+def told(name: str, text: str, code: str) -> list[tuple[int, str]]:
+    machine = MILL if name.endswith(".h") else LATHE
+    setup = setup_for(machine, tools={1: ToolOffset()}, secondary={})
+    report = prove(Source(name, text), setup, machine)
+    return [(each.line, str(each.severity)) for each in report.diagnostics if each.code == code]
+
+
+@pytest.mark.parametrize(
+    ("lines", "weight"),
+    [
+        (("G0 X30 Z0", STOP, READ, "R2=10/R1"), "warning"),
+        (("G0 X30 Z0", STOP, "G0 X=10/$AA_IW[Z]", ""), "warning"),
+        (("G0 X30 Z0", READ, STOP, "R2=10/R1"), "error"),
+        (("G0 X30 Z0", STOP, "R1=0", "R2=10/R1"), "error"),
+        (("G0 X30 Z0", "", READ, "R2=10/R1"), "error"),
+    ],
+)
+def test_of_a_lathe(lines: tuple[str, ...], weight: str) -> None:
+    ((_, severity),) = told("a.mpf", "T1 D1\n" + "\n".join(lines) + "\nM30\n", "arithmetic")
+    assert severity == weight
+
+
+@pytest.mark.parametrize(
+    ("lines", "weight"),
+    [
+        (("STOP", "FN 18: SYSREAD Q1 = ID270 NR1 IDX1", "Q2 = 1 / Q1"), "warning"),
+        (("M0", "FN 18: SYSREAD Q1 = ID270 NR1 IDX1", "FN 4: Q2 = +1 DIV +Q1"), "warning"),
+        (("FN 18: SYSREAD Q1 = ID270 NR1 IDX1", "STOP", "Q2 = 1 / Q1"), "error"),
+        (("STOP", "Q1 = 0", "Q2 = 1 / Q1"), "error"),
+    ],
+)
+def test_of_a_mill(lines: tuple[str, ...], weight: str) -> None:
+    head = "BEGIN PGM A MM\nTOOL CALL 1 Z S100\nL X+0 Y+0 Z+5 R0 FMAX\n"
+    ((_, severity),) = told("a.h", head + "\n".join(lines) + "\nEND PGM A MM\n", "Arithmetical error")
+    assert severity == weight
+
+
+def test_the_run_itself_stops_there() -> None:
+    """What the executor goes through has it as an error, for it knows where the axes stand."""
+    text = f"T1 D1\nG0 X30 Z0\n{STOP}\n{READ}\nR2=10/R1\nM30\n"
+    running = interpretation(Source("a.mpf", text), setup_for(LATHE, tools={1: ToolOffset()}, secondary={}))
+    assert [block.line for block in running.blocks()] == [1, 2, 3]
+    assert running.failed

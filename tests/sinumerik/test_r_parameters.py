@@ -1,0 +1,121 @@
+"""R parameters of the operator: kept, what programs begin with; an unset one is 0, with a warning."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from app.compose.journal import Journal
+from app.compose.screen_desk import desk_and_executor
+from app.compose.stored_offsets import offsets_of, setup_with, stored_offsets
+from app.offsets.offsets_in_force import R_PARAMETERS, r_parameters
+from app.special.r_parameters import RParameters
+from app.special.special_functions import SpecialFunctions
+from core.executor.job import make_job
+from core.language.diagnostics import Severity
+from core.store.store import Store
+from drivers.clocks import StepClock
+from tests.sinumerik.lathe import MODULO, good, run, setup, source
+
+WAY = "G0 X=R1 Z5"
+
+
+def test_a_program_begins_with_what_the_operator_has_set() -> None:
+    """X40 as a diameter: radius 20."""
+    (move,) = good(WAY, replace(setup(), r={1: 40.0}))
+    assert move.x == 20.0
+    assert [b.x for b in good("R1=30\nG0 X=R1 Z5", replace(setup(), r={1: 40.0}))] == [15.0]
+
+
+def test_one_that_nobody_has_set_is_0_and_said_once() -> None:
+    passed = run("G0 X=R7 Z5\nG0 Z=R7+1\nIF R8==0 GOTOF DONE\nG0 Z9\nDONE: G0 X=R7+2")
+    assert [(each.line, each.code, each.severity) for each in passed.found] == [
+        (1, "r-unset", Severity.WARNING),
+        (3, "r-unset", Severity.WARNING),
+    ]
+    assert [(b.x, b.z) for b in passed.moves] == [(0.0, 5.0), (0.0, 1.0), (1.0, 1.0)]
+
+
+@pytest.mark.parametrize(
+    ("text", "code"), [("G0 Z=1/R7", "arithmetic"), ("G0 Z=LENGTH", "12550"), ("G0 Z=R300", "12080")]
+)
+def test_what_has_no_value_all_the_same(text: str, code: str) -> None:
+    assert [each.code for each in run(text).errors] == [code]
+
+
+def test_other_values_are_another_job() -> None:
+    jobs = [make_job(source(WAY), replace(setup(), r=r)).digest for r in ({}, {1: 40.0}, {1: 41.0})]
+    assert len(set(jobs)) == 3
+
+
+def test_the_store_keeps_them(tmp_path: Path) -> None:
+    with Store.open(tmp_path) as store:
+        store.set_setting(R_PARAMETERS, {"1": 40.0, "299": -2.5}).result()
+    with Store.open(tmp_path) as store:
+        assert offsets_of(store).r == {1: 40.0, 299: -2.5}
+        assert setup_with(MODULO, offsets_of(store)).r[1] == 40.0
+
+
+@pytest.mark.parametrize("kept", [None, 3, [1], {"R1": 3.0}, {"300": 1.0}, {"1": "x"}, {"-1": 2.0}])
+def test_what_is_no_parameter_is_left_out(kept: object) -> None:
+    assert r_parameters(kept) == {}
+
+
+# --- their page ------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def page(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[RParameters]:
+    file = tmp_path / "own.toml"
+    file.write_text(MODULO.text)
+    monkeypatch.setenv("TURNDESK_HOME", str(tmp_path / "home"))
+    clock, journal = StepClock(), Journal.at_home()
+    desk, executor = desk_and_executor(str(file), stored_offsets, clock, journal)
+    executor.tick()
+    functions = desk.attached(SpecialFunctions)
+    assert functions is not None
+    (found,) = [each for each in functions.functions if isinstance(each, RParameters)]
+    yield found
+    desk.close()
+    journal.close()
+
+
+def types(page: RParameters, keys: str) -> None:
+    for key in (*keys, "Enter"):
+        page.typed(key)
+
+
+def row(page: RParameters, number: int) -> tuple[str, ...]:
+    return page.sheet(page.desk.snapshot()).rows[number].cells
+
+
+def test_what_is_typed_is_kept_for_every_program(page: RParameters) -> None:
+    page.typed("Down")
+    types(page, "2*20.5")
+    assert row(page, 1) == ("R1", "41")
+    page._worker.settle(60.0)
+    assert stored_offsets().r == {1: 41.0}
+
+
+def test_a_value_is_taken_away(page: RParameters) -> None:
+    types(page, "5")
+    assert page.values == {0: 5.0}
+    page.keys()["F4"].action()
+    page._worker.settle(60.0)
+    assert stored_offsets().r == {}
+    assert (page.values, row(page, 0)) == ({}, ("R0", "–"))
+
+
+@pytest.mark.parametrize("typed", ["1..2", "1/0", "99999999999", "--", "("])
+def test_what_is_no_figure_is_refused(page: RParameters, typed: str) -> None:
+    types(page, typed)
+    assert page.values == {}
+
+
+def test_the_mark_stays_on_the_300_parameters(page: RParameters) -> None:
+    for _ in range(40):
+        page.typed("Page down")
+    assert page.marked == 299
