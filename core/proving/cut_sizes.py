@@ -15,11 +15,9 @@ from core.proving.thread_checks import Found
 from core.proving.tip_moves import TipMove
 from core.tool_edges import edge_name
 
-# Largest depth of cut in lengths of the cutting edge (a round insert: diameters), for medium geometries and
-# for the strongest: Widia, "Selection of insert", the columns -LM and ..M of its table of effective lengths.
-# There V has .2 in both; profiles with it are deeper for a moment, so that only .5 is an error.
-MEDIUM: Mapping[str, float] = {"S": 0.5, "C": 0.5, "W": 0.4, "T": 0.3, "D": 0.3, "V": 0.2, "R": 0.3}
-STRONGEST: Mapping[str, float] = {"S": 0.7, "C": 0.7, "W": 0.5, "T": 0.5, "D": 0.5, "V": 0.5, "R": 0.4}
+# Largest usual depth of cut in lengths of the cutting edge (a round insert: diameters), for medium
+# geometries: Widia, "Selection of insert", the column -LM of its table of effective lengths.
+USUAL: Mapping[str, float] = {"S": 0.5, "C": 0.5, "W": 0.4, "T": 0.3, "D": 0.3, "V": 0.2, "R": 0.3}
 _OTHER_SHAPE = 0.5
 _OF_BAR = 0.5  # of a boring bar's diameter
 _USUAL = insert_of("C", 12.7, 0.8)  # CNMG432, the largest that a small lathe usually has
@@ -100,17 +98,15 @@ def _depth(
     """Depth of a cut against the length of the edge, and against the bar of a boring tool.
 
     It is the mean depth: a finishing pass that ends in a shoulder shaves all of it for a moment. Across it is
-    the mean of Z. No pass is deeper anywhere than its edge reaches.
+    the mean of Z. A pass that is deeper anywhere than its edge is long is an error.
     """
     along, text = _is_along(move), move.modal.length_text
-    deep, most = _mean(met, along=along), depth_limit(shape, STRONGEST)
+    deep = _mean(met, along=along)
     if along and cutter.held and met.depth > cutter.height:
-        deep, most = met.depth, cutter.height
-    if along and cutter.held and deep > most:
-        words = f"{edge_name(tool)} cuts {text(deep)} deep; its edge can cut {text(most)}."
+        words = f"{edge_name(tool)} cuts {text(met.depth)} deep; its edge is {text(cutter.height)} long."
         yield Found("feed-into-holder", words)
         return
-    usual = depth_limit(shape if cutter.held else replace(shape, insert=""), MEDIUM)
+    usual = depth_limit(shape if cutter.held else replace(shape, insert=""))
     if shape.kind is ToolKind.BORING and shape.diameter:
         usual = min(usual, _OF_BAR * shape.diameter)
     if stock_given and deep > usual:
@@ -125,10 +121,10 @@ def _mean(met: Cut, *, along: bool) -> float:
     return min(met.width, met.area / met.depth)
 
 
-def depth_limit(shape: ToolShape, shares: Mapping[str, float]) -> float:
-    """Largest depth of cut, mm: a share of the straight part of the edge, or of a round insert's diameter."""
+def depth_limit(shape: ToolShape) -> float:
+    """Return the largest usual depth of cut, mm: a share of the straight edge or of a round insert."""
     insert = _insert(shape)
-    share = shares.get(insert.shape, _OTHER_SHAPE)
+    share = USUAL.get(insert.shape, _OTHER_SHAPE)
     edge = insert.edges[0] - insert.nose_radius if insert.edges else insert.inscribed_circle
     return share * edge
 

@@ -37,8 +37,7 @@ CHECKS: Mapping[str, Check] = {
     "feed-into-holder": Check(
         _ERROR,
         "Metal is fed into holder, shank or boring bar.",
-        "At a feed an outline that cannot cut meets more than .001 in, or a cut along Z is deeper on "
-        "the average than .7 of the edge of a C or S insert, .5 of others (Widia, for strong geometries).",
+        "At a feed an outline that cannot cut meets more than .001 in.",
         "Use a longer or slimmer tool, or another direction of cut, or less depth.",
     ),
     "holder-into-stock": Check(
@@ -133,12 +132,6 @@ CHECKS: Mapping[str, Check] = {
         "The tool rubs along the finished surface.",
         "A described turning tool returns along Z by a rapid, .1 in and more, on the radius it has turned.",
         "Move X away from the part before Z.",
-    ),
-    "after-part-off": Check(
-        _WARNING,
-        "The blade goes through the place of the part that it has parted off.",
-        "The first rapid leads more than .1 in towards Z+ inside the outside of the piece.",
-        "Retract X before Z.",
     ),
     "drill-too-deep": Check(
         _ERROR,
@@ -250,7 +243,7 @@ CHECKS: Mapping[str, Check] = {
     "thread-in-air": Check(
         _WARNING,
         "The first passes of a thread cut nothing.",
-        "Three passes and more stay outside the metal.",
+        "With a stated stock, three passes and more stay outside the metal.",
         "Begin at the diameter of the first pass: check X where the thread starts.",
     ),
     "thread-form": Check(

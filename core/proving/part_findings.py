@@ -67,7 +67,6 @@ class PartFindings:
     _tailstock: TurnedPart | None = None
     _whirls: float = 0.0  # rpm at which the stock begins to whirl; 0: not known
     _before: TipMove | None = None
-    _fallen: float = 0.0  # mm of radius, of the piece that the last move has parted off
 
     def __post_init__(self) -> None:
         given = not self.not_said((STOCK,))
@@ -121,7 +120,6 @@ class PartFindings:
         if move.quick:
             self._rapid(move, met, certain=inside)
             self._rubs(move, met, cutter, part, tool)
-            self._follows_part_off(move)
             self._found_by(move, self._airs.rapid(move, met, tool))
         else:
             shape = self.shape(tool)
@@ -201,15 +199,6 @@ class PartFindings:
         if cutter.meets(part, (z0, deeper), (z1, deeper)).width > _LONG:
             self._add("rubs-surface", move, f"{edge_name(tool)} returns by a rapid along what it has turned.")
 
-    def _follows_part_off(self, move: TipMove) -> None:
-        """The first rapid once a piece has come off: out along X, and not through the place of the piece."""
-        radius, self._fallen = self._fallen, 0.0
-        (z0, r0), (z1, r1) = move.points[0], move.points[-1]
-        if z1 - z0 > _LONG and max(abs(r0), abs(r1)) < radius - RAPID:
-            self._add(
-                "after-part-off", move, "A rapid goes through the place of the part that was parted off."
-            )
-
     def pause(self) -> None:
         """The program waits, or switches something."""
         self._airs.pause()
@@ -272,14 +261,11 @@ class PartFindings:
             )
         self._left = None
 
-    def parted(self, move: TipMove, piece: Piece, tool: int) -> None:
+    def parted(self, move: TipMove, piece: Piece) -> None:
         """A piece has come off."""
         self._left = None
         if not piece.outside:
             return
-        shape = self.shape(tool)
-        if shape is not None and shape.kind is ToolKind.PARTING:
-            self._fallen = max(r for _, r in piece.outside)
         length = piece.outside[0][0] - piece.outside[-1][0]
         thick = 2.0 * max(r for _, r in piece.outside)
         if thick and length > _SLENDER * thick:

@@ -49,7 +49,7 @@ class PartMaking:
             stock,
             setting.clamping,
             Neighbours(setting.shapes, setting.gang) if setting.gang else None,
-            ThreadChecks(setting.drives, tools.releases),
+            ThreadChecks(setting.drives, tools.releases, self._stock_said),
             self._not_said,
             setting.silenced,
             tools.parted_at,
@@ -182,7 +182,7 @@ class PartMaking:
         if self.milling is not None:
             part.pieces[before:] = [self.milling.less_milled(piece) for piece in part.pieces[before:]]
         for piece in part.pieces[before:]:
-            self.findings.parted(move, piece, self._tool)
+            self.findings.parted(move, piece)
 
     def _stands(self, move: TipMove, cutter: Cutter, part: TurnedPart) -> bool:
         """Whether metal is met while the spindle stands again, or left behind such a cut: that turns nothing.

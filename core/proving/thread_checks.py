@@ -56,6 +56,7 @@ class ThreadChecks:
 
     drives: Drives = UNKNOWN
     releases: Callable[[int], bool] = lambda _: False
+    stock_given: bool = False  # and not assumed
     _crest: tuple[int, int, FloatArray, float] | None = None  # line, first column, radii, 1: towards the axis
     _pass: tuple[TipMove, Cut] | None = None  # of a thread, until it is known how it ends
     _fed: TipMove | None = None  # the last feed of a tap into its hole
@@ -106,7 +107,7 @@ class ThreadChecks:
         text = move.modal.length_text
         deep, angle = self._depth(move, part), _POINT
         self._idle = 0 if met or deep else self._idle + 1
-        if self._idle == _IDLE:
+        if self._idle == _IDLE and self.stock_given:
             yield Found("thread-in-air", f"The first {_IDLE} passes of this thread meet no metal.")
         if shape is not None and shape.kind is ToolKind.THREADING and shape.point:
             angle = shape.point

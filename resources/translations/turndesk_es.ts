@@ -29965,8 +29965,8 @@
     </message>
     <message>
       <location filename="core/proving/cut_sizes.py" />
-      <source>%1 cuts %2 deep; its edge can cut %3.</source>
-      <translation>%1 corta %2 de profundidad; su filo puede cortar %3.</translation>
+      <source>%1 cuts %2 deep; its edge is %3 long.</source>
+      <translation type="unfinished" />
     </message>
     <message>
       <location filename="core/proving/cut_sizes.py" />
@@ -30440,8 +30440,8 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>At a feed an outline that cannot cut meets more than .001 in, or a cut along Z is deeper on the average than .7 of the edge of a C or S insert, .5 of others (Widia, for strong geometries).</source>
-      <translation>En un avance, un contorno que no puede cortar encuentra más de .001 in, o un corte a lo largo de Z es en promedio más profundo que .7 del filo de una plaquita C o S, .5 de otras (Widia, para geometrías robustas).</translation>
+      <source>At a feed an outline that cannot cut meets more than .001 in.</source>
+      <translation type="unfinished" />
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -30700,11 +30700,6 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>Retract X before Z.</source>
-      <translation>Retire X antes que Z.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/part_checks.py" />
       <source>Reverse the spindle at the bottom and feed out by the pitch.</source>
       <translation>Invierta el husillo en el fondo y salga avanzando según el paso.</translation>
     </message>
@@ -30760,11 +30755,6 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>The blade goes through the place of the part that it has parted off.</source>
-      <translation>La cuchilla atraviesa el lugar de la pieza que ha tronzado.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/part_checks.py" />
       <source>The edge meets more than .001 in of metal in r and in Z.</source>
       <translation>El filo encuentra más de .001 in de metal en r y en Z.</translation>
     </message>
@@ -30792,11 +30782,6 @@
       <location filename="core/proving/part_checks.py" />
       <source>The first passes of a thread cut nothing.</source>
       <translation>Las primeras pasadas de una rosca no cortan nada.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/part_checks.py" />
-      <source>The first rapid leads more than .1 in towards Z+ inside the outside of the piece.</source>
-      <translation>El primer rápido lleva más de .1 in hacia Z+ dentro del contorno exterior de la pieza.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -30855,11 +30840,6 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>Three passes and more stay outside the metal.</source>
-      <translation>Tres pasadas o más quedan fuera del metal.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/part_checks.py" />
       <source>Two tools have the same offset.</source>
       <translation>Dos herramientas tienen el mismo corrector.</translation>
     </message>
@@ -30897,6 +30877,11 @@
       <location filename="core/proving/part_checks.py" />
       <source>With a stated stock, the mean depth: over .5 of the cutting edge of a C or S insert, .4 of W, .3 of T and D, .2 of V (Widia's limits for medium geometries, nose radius left off; CNMG432 where no insert is stated), or over half the diameter of a boring bar. The material is not known: soft metal may allow more.</source>
       <translation>Con un material indicado, la profundidad media: más de .5 del filo de una plaquita C o S, .4 de W, .3 de T y D, .2 de V (límites de Widia para geometrías medias, sin el radio de punta; CNMG432 donde no se indica plaquita), o más de la mitad del diámetro de una barra de mandrinar. La clase de metal no se conoce: un metal blando puede admitir más.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>With a stated stock, three passes and more stay outside the metal.</source>
+      <translation type="unfinished" />
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -30982,11 +30967,6 @@
       <location filename="core/proving/part_findings.py" />
       <source>A rapid goes into metal, %1.</source>
       <translation>Un rápido entra en el metal, %1.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/part_findings.py" />
-      <source>A rapid goes through the place of the part that was parted off.</source>
-      <translation>Un rápido atraviesa el lugar de la pieza tronzada.</translation>
     </message>
     <message>
       <location filename="core/proving/part_findings.py" />

@@ -7,7 +7,7 @@ import pytest
 from core.part.clamping import Clamping
 from core.part.stock import bar, tube
 from core.part.tool_shape import ToolKind, ToolShape
-from core.proving.cut_sizes import MEDIUM, STRONGEST, depth_limit
+from core.proving.cut_sizes import depth_limit
 from tests.proving.test_edge_checks import part_of
 from tests.proving.test_part_proof import WAYS, text
 from tests.proving.test_sound_programs import part_of as assumed_part_of
@@ -20,27 +20,26 @@ PASS = "T1\nX[.6]Z[.05]\nX[{r}]\nG95F[.006]Z[-.5]\nX[.6]\nG94F[300]Z[1]"
 
 
 @pytest.mark.parametrize(
-    ("insert", "medium", "strongest"),
+    ("insert", "usual"),
     [
         # edge: 12.7 / sin 80° = 12.896 mm, less the nose of .794 mm (1/32 in): 12.102 mm
-        ("CNMG432", 6.051, 8.471),
+        ("CNMG432", 6.051),
         # 16.5 mm (9.525 x √3 = 16.498), less .397: 16.101
-        ("TNMG331", 4.830, 8.050),
+        ("TNMG331", 4.830),
         # 9.525 / sin 35° = 16.606, less .397: 16.209
-        ("VNMG331", 3.242, 8.105),
-        ("", 6.048, 8.467),  # as CNMG 120408, with a nose of .8
+        ("VNMG331", 3.242),
+        ("", 6.048),  # as CNMG 120408, with a nose of .8
     ],
 )
-def test_the_depth_that_an_edge_can_cut(insert: str, medium: float, strongest: float) -> None:
+def test_the_depth_that_is_usual_for_an_edge(insert: str, usual: float) -> None:
     shape = ToolShape(ToolKind.TURNING, insert=insert)
-    assert depth_limit(shape, MEDIUM) == pytest.approx(medium, abs=2e-3)
-    assert depth_limit(shape, STRONGEST) == pytest.approx(strongest, abs=2e-3)
+    assert depth_limit(shape) == pytest.approx(usual, abs=2e-3)
 
 
 @pytest.mark.parametrize(
     ("r", "expected"),
-    [(".25", [("depth-of-cut", 6)]), (".27", []), (".15", [("feed-into-holder", 6)])],
-    # .25 in = 6.35 mm over 6.05; .23 in = 5.84 mm; .35 in = 8.89 mm over 8.47
+    [(".25", [("depth-of-cut", 6)]), (".27", []), (".15", [("depth-of-cut", 6)])],
+    # .25 in = 6.35 mm over 6.05; .23 in = 5.84 mm; .35 in = 8.89 mm
 )
 @pytest.mark.parametrize(("metric", "diameter"), WAYS)
 def test_a_pass_of_a_cnmg432(r: str, expected: list[tuple[str, int]], metric: bool, diameter: bool) -> None:

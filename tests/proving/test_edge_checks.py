@@ -102,7 +102,7 @@ CASES = {
     "feed-breaks-tool": (PASS.format(r=".4", f=".064"), PASS.format(r=".4", f=".012"), ROD, 6),
     # DCMT11T304: edge 11.6 mm, less the nose .4; .3 of it is 3.37 mm or .1325 in, .5 is .221 in
     "depth-of-cut": (PASS.format(r=".36", f=".004"), PASS.format(r=".38", f=".004"), ROD, 6),
-    "feed-into-holder by depth": (PASS.format(r=".27", f=".004"), PASS.format(r=".38", f=".004"), ROD, 6),
+    "depth-of-cut along Z": (PASS.format(r=".27", f=".004"), PASS.format(r=".38", f=".004"), ROD, 6),
     # a face .14 in deep, and one of .09
     "depth-of-cut of a face": (FACE.format(z="-.14"), FACE.format(z="-.09"), ROD, 6),
     # DCMT070204: .3 of 7.75 - .4 is 2.2 mm; from r 10 to .49 in are 2.45 mm, to .47 in 1.94 mm
@@ -115,10 +115,6 @@ CASES = {
     "rubs-surface": (
         PASS.format(r=".4", f=".004").replace("X[.6]\nG94F[300]Z[1]", "G94F[300]Z[.1]\nX[.6]"),
         PASS.format(r=".4", f=".004"), ROD, 7,
-    ),
-    "after-part-off": (
-        SHAFT.format(z="-.92", r="-.01").replace("G94F[300]X[.6]", "G94F[300]Z[.1]\nX[.6]"),
-        SHAFT.format(z="-.92", r="-.01"), LONG, 12,
     ),
     # the arc begins .02 in past the part-off, or .2 before it
     "contour-past-part-off": (

@@ -130,7 +130,7 @@ def test_a_first_line_that_block_delete_takes_away() -> None:
 
 def test_klartext_and_sinumerik_lines_with_a_slash_are_proved_both_ways() -> None:
     machine = load_machine(None)
-    text = "N10 G18 G90 G54 G94\nN20 G0 X20 Z3\n/N30 G1 Z-900 F300\nN40 M30\n"
+    text = "N10 G18 G90 G54 G94 T1 D1\nN20 G0 X20 Z3\n/N30 G1 Z-900 F300\nN40 M30\n"
     report = prove(Source("a.mpf", text), replace(circumstances(), block_delete=True), machine)
     assert [(d.line, d.code, d.severity) for d in report.diagnostics if d.line == 3] == [
         (3, "soft-limit", Severity.WARNING)

@@ -14,7 +14,7 @@ from core.executor.start_clearance import CROSSES
 from tests.attached import attached
 from tests.screen.lathe import Key, Operator
 from tests.screen.yes import twist_out
-from tests.texts import begins
+from tests.texts import shows
 
 # T3 drills, T2 bores; line 3 goes to the outside, so that the straight path out of the bore crosses its wall.
 BORE = (
@@ -75,7 +75,8 @@ def take_way_out(operator: Operator) -> None:
 
 def test_out_of_the_bore_no_start_is_offered_and_the_way_out_is_named(in_the_bore: Operator) -> None:
     operator = in_the_bore
-    assert begins(operator.prompt(), "screen.first-move-crosses", tool="T2", direction="Z+")
+    assert shows(operator.prompt(), "screen.first-move-crosses", tool="T2")
+    assert shows(operator.prompt(), "screen.jog-until-clear", direction="Z+")
     assert offered(operator) == ["F6"]
     assert dock(operator).barred
     assert len(operator.frame.automatic.path.legs) == 2  # the line that is refused is drawn
@@ -85,7 +86,7 @@ def test_y_and_both_palms_begin_nothing(in_the_bore: Operator) -> None:
     operator = in_the_bore
     at = operator.shot.actual
     operator.key(Key.Key_Y)
-    assert begins(operator.frame.prompt.answer, "screen.first-move-crosses")
+    assert shows(operator.frame.prompt.answer, "screen.first-move-crosses")
     assert not operator.shot.confirmed
     operator.palms()
     assert (operator.shot.state, operator.shot.actual) == (State.IDLE, at)
@@ -139,7 +140,7 @@ def test_a_line_of_mdi_is_drawn_before_it_starts(operator: Operator) -> None:
 def test_where_nothing_was_interrupted_a_start_from_home_is_offered(operator: Operator) -> None:
     operator.stage.make_ready()
     operator.window.refresh()
-    assert not begins(operator.prompt(), "screen.first-move-crosses")
+    assert not shows(operator.prompt(), "screen.first-move-crosses")
     assert not dock(operator).barred
     assert len(operator.frame.automatic.path.legs) == 2
     operator.palms()
