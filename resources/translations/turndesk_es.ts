@@ -29966,7 +29966,7 @@
     <message>
       <location filename="core/proving/cut_sizes.py" />
       <source>%1 cuts %2 deep; its edge is %3 long.</source>
-      <translation type="unfinished" />
+      <translation>%1 corta con %2 de profundidad; su filo mide %3.</translation>
     </message>
     <message>
       <location filename="core/proving/cut_sizes.py" />
@@ -30441,7 +30441,7 @@
     <message>
       <location filename="core/proving/part_checks.py" />
       <source>At a feed an outline that cannot cut meets more than .001 in.</source>
-      <translation type="unfinished" />
+      <translation>En avance, un contorno que no puede cortar entra en más de .001 in.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -30881,7 +30881,7 @@
     <message>
       <location filename="core/proving/part_checks.py" />
       <source>With a stated stock, three passes and more stay outside the metal.</source>
-      <translation type="unfinished" />
+      <translation>Con un material en bruto declarado, tres o más pasadas quedan fuera del metal.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
