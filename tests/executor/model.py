@@ -99,6 +99,8 @@ class ExecutorModel(RuleBasedStateMachine):
         self.machine.broken[port].stalls[calls[which % len(calls)]] = round(late, 3)
         self.machine.tick()
         self.machine.broken[port].stalls.clear()
+        # Palms that were let go and pressed again meanwhile are one press to a control that was away.
+        self.machine.last_press = self.machine.clock.now()
 
     # --- the operator -------------------------------------------------------------------------------------
 
