@@ -155,7 +155,12 @@ class StartCheck:
         return self.history.making_at(block, _tip(where, zero) if zero is not None else None, watch)
 
     def _is_assumed(self, body: Body, tool: int, now: StartNow) -> bool:
-        """Whether the finding rests on something assumed. A tool that was stopped in a cut is in the part."""
+        """Whether the finding rests on something assumed. A tool that was stopped in a cut is in the part.
+
+        Without a tool in work nobody knows which one cuts, and where its tip is.
+        """
+        if tool == 0:
+            return True
         if body is Body.PART and now.broken is None and not self.stock_specified:
             return True
         return now.broken is None and not self.history.tools.described(tool)

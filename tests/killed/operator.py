@@ -48,16 +48,21 @@ class Operator:
         while True:
             if self._asked:
                 self._key(Key.Key_Y)  # he has read which job was interrupted, and means to begin anew
-                read = time.monotonic() + 1.2  # an answer is no start: he looks before his hands come down
-                while time.monotonic() < read:
-                    yield False
-            elif self._state is State.IDLE:
+                yield from self._wait(1.2)  # an answer is no start: he looks before his hands come down
+            elif self._state is State.IDLE and self._checked:
                 for key in (Key.Key_F11, Key.Key_F12):
                     QTest.keyPress(self._window, key)
                 yield True
                 for key in (Key.Key_F11, Key.Key_F12):
                     QTest.keyRelease(self._window, key)
+                yield from self._wait(0.6)  # the relay of the two buttons wants them up
             yield True
+
+    @staticmethod
+    def _wait(seconds: float) -> Iterator[bool]:
+        over = time.monotonic() + seconds
+        while time.monotonic() < over:
+            yield False
 
     def _set_tool_nine(self) -> Iterator[bool]:
         if 9 in self._frame.desk.book.tools:
@@ -79,6 +84,11 @@ class Operator:
     @property
     def _ready(self) -> bool:
         return self._frame.prompt.text.startswith(("TO START", "PRESS", "LINE"))
+
+    @property
+    def _checked(self) -> bool:
+        watch = self._frame.desk.first_move
+        return watch is None or not watch.checking
 
     @property
     def _asked(self) -> bool:
