@@ -112,6 +112,7 @@ class SearchtoModel:
         """Nothing is shown and nothing is ready."""
         self._withdraw()
         if self.open and self.has_keyboard:
+            self._going_out = False  # a key pressed as it ends is not undone by its end
             self.post(Prepare(Starts.RESTART))
 
     def _withdraw(self) -> None:

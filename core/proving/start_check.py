@@ -189,6 +189,22 @@ class StartCheck:
                     if met.area > standing.area + MET * MET and not self._cuts(body, move, now):
                         return number, met.front, False
             self._cut(body, metal, move, now)
+        if body is Body.PART and now.strict and now.broken is not None:
+            return self._enclosing(metal, now)
+        return None
+
+    def _enclosing(self, metal: TurnedPart, now: StartNow) -> tuple[int, float, bool] | None:
+        """Return the hit of a tool that stopped in a bore; None where nothing is radially outside its tip.
+
+        The first move may stay in the bore. The next tools then take this one along through the wall.
+        """
+        zero = self._zero(now.tool)
+        if zero is None:
+            return None
+        z, r = _tip((now.at[0], now.at[1]), zero)
+        around = metal.outermost[abs(metal.columns.middles - z) <= max(2 * MET, metal.columns.step)]
+        if len(around) and float(around.min()) > abs(r) + MET:
+            return now.tool, z, True
         return None
 
     def _cuts(self, body: Body, move: TipMove, now: StartNow) -> bool:

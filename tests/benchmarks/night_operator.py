@@ -19,7 +19,7 @@ from core.store import measured_parts, tool_lives
 from core.store.measured_parts import FeatureRow
 from core.store.store_rows import Kind
 from core.store.tool_lives import LifeRow
-from tests.benchmarks.night_shift import INCH, NAME, PATIENCE, TOOLS, NightShift
+from tests.benchmarks.night_shift import FRAME, INCH, NAME, PATIENCE, TICK, TOOLS, NightShift
 
 PINS, INSERT = 40, 1500  # pins of a bar, parts of an insert
 WEARS = 1.5e-6 * INCH  # mm by which each pin makes the next one's diameter larger
@@ -162,7 +162,8 @@ class Operator:
         if shot.interrupted is not None:
             desk.clear()
             desk.yes()
-        self.shift.run(0.9)
+        self._first_move_is_checked()
+        self.shift.run(0.9)  # what it warns of is read
         self.shift.witness.anew()
         self.did["start"] += 1
         self._palms()
@@ -220,6 +221,13 @@ class Operator:
             return desk.session.now.phase in {Phase.READY, Phase.REFUSED} and not waits
 
         self.shift.settle(ready)
+
+    def _first_move_is_checked(self) -> None:
+        """Wait for the worker: a start that comes before its verdict is refused."""
+        watch = self.desk.first_move
+        assert watch is not None
+        self.shift.run(FRAME * TICK)
+        self.shift.settle(lambda: not watch.checking)
 
     # --- measuring ------------------------------------------------------------------------------------------
 

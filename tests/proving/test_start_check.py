@@ -103,6 +103,25 @@ def test_a_start_at_line_1_out_of_the_bore_goes_through_its_wall() -> None:
     ]
 
 
+@pytest.mark.parametrize(
+    ("place", "line", "jogged", "inside"),
+    [
+        (IN_THE_BORE, DEEPER, 0.0, True),
+        (IN_THE_BORE, DEEPER, 0.2, True),
+        (IN_THE_BORE, DEEPER, 0.3, False),  # before the face, which the first line cut
+        ((1, 0.6, -0.3), 21, 0.0, False),  # on the outer diameter, uncut metal behind it
+        ((1, 0.6, -0.5), 21, 0.0, False),  # at the shoulder
+    ],
+)
+def test_a_tool_that_stopped_in_a_bore_is_inside_although_the_first_move_meets_nothing(
+    place: tuple[int, float, float], line: int, jogged: float, inside: bool
+) -> None:
+    """The next tools would take the boring bar along through the wall."""
+    job = job_of(BORE)
+    found = check_of(job).find(lambda _at: (), interrupted(job, place, line, jogged=jogged))
+    assert (found.met is Body.PART, found.inside) == (inside, inside)
+
+
 def test_jogged_out_of_the_bore_it_is_clear() -> None:
     job = job_of(BORE.replace("X.9Z-.3\n", ""))
     assert check_of(job).find(passes(job), interrupted(job, jogged=0.8)).met is None

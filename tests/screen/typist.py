@@ -25,6 +25,7 @@ from app.screen import page_table
 from core.executor.commands import (
     Command,
     ConfirmStart,
+    GiveClearance,
     GiveProof,
     LoadJob,
     PartsMade,
@@ -46,7 +47,16 @@ NONE, SHIFT, CTRL = (
     Qt.KeyboardModifier.ControlModifier,
 )
 STATION = ("press_estop", "release_estop", "press_hold", "set_spindle_auto", "press_left", "press_right")
-QUIET = (GiveProof, LoadJob, PartsMade, Prepare, Renew, UseOffsets, WheelOff)  # of pages and workers
+QUIET = (
+    GiveClearance,
+    GiveProof,
+    LoadJob,
+    PartsMade,
+    Prepare,
+    Renew,
+    UseOffsets,
+    WheelOff,
+)  # of pages and workers
 UNCHANGING = frozenset({"events"})  # tables that only log
 
 

@@ -202,9 +202,12 @@ def test_a_tool_is_touched_off_where_the_setter_stands(homed: LiveLathe) -> None
         homed.executor.post(Touch("X", -1, 0.5, 1))
         return shot.touched is not None
 
+    began = homed.clock.now()
     homed.until(touched_under_a_lease)
     touched = homed.shot.touched
     assert touched is not None
+    if homed.stalled_at > began:  # the first touch may have been seen further away than the slide backs off
+        tell("late")
     assert touched.place is not None, touched.why
     assert touched.place == pytest.approx(TIP - home, abs=touched.error + 0.001)
     assert touched.error < 0.005
