@@ -47,7 +47,7 @@ from core.executor.commands import (
     Reset,
     SetSwitch,
 )
-from core.executor.snapshot import Event, Snapshot, Starts, State
+from core.executor.snapshot import LINES, Event, Snapshot, Starts, State
 from core.store.store_errors import StoreError
 
 if TYPE_CHECKING:
@@ -319,7 +319,7 @@ class Desk:
         loaded = self.session.now
         if self.first_move is not None:
             self.first_move.see(snapshot, loaded)
-        if snapshot.starts is not Starts.LINE:  # a line of MDI is no run of the program
+        if snapshot.starts not in LINES:  # a line of MDI is no run of the program
             text = loaded.job.text_digest if loaded.job is not None else self.counter.text
             self.counter.see(snapshot, self.post, self.say, text)
             self.record.see(snapshot, loaded)

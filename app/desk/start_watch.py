@@ -20,7 +20,7 @@ from app.desk.translation import tr
 from app.path.path_aspects import DrawnLeg
 from core.executor.commands import Command, GiveClearance
 from core.executor.job import Job
-from core.executor.snapshot import CYCLE, Snapshot, Starts, State
+from core.executor.snapshot import CYCLE, LINES, Snapshot, Starts, State
 from core.executor.start_clearance import Clearance
 
 _AT_REST = frozenset({State.IDLE, State.DISABLED})
@@ -92,7 +92,7 @@ class StartWatch:
         """An interrupted part stays in the chuck, whatever is loaded, until a program begins."""
         found, job, picture = snapshot.interrupted, loaded.job, loaded.picture
         self._loaded = KnownPart(job, picture) if job is not None and picture is not None else None
-        if snapshot.state in CYCLE and snapshot.starts is not Starts.LINE:
+        if snapshot.state in CYCLE and snapshot.starts not in LINES:
             self._part = None
         elif found is not None and self._loaded is not None and found.text == self._loaded.job.text_digest:
             self._part = self._loaded._replace(broken=found)

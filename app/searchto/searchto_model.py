@@ -365,7 +365,7 @@ class SearchtoModel:
             self.say(tr("WILL NOT START: {why}").format(why=proved.proof.errors[0]))
             return
         self.stage, self._job, self._accepted = SearchtoStage.READY, job, False
-        starts = Starts.RESTART if self.leaving is None else Starts.LINE
+        starts = Starts.RESTART if self.leaving is None else Starts.WAY_OUT
         self.post(Prepare(starts, job, proved.proof, proved.clearance))
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from app.desk.machine_status import SilenceWatch
 from core.alarms import CATALOGUE, Code, Reaction
 from core.executor.interrupted_job import InterruptedJob
-from core.executor.snapshot import Alarm, Snapshot, Starts, State
+from core.executor.snapshot import LINES, Alarm, Snapshot, State
 from core.machine.machine_model import Machine
 from core.ports import Unknown
 
@@ -141,7 +141,7 @@ def mode_of(snapshot: Snapshot) -> str:
     """What Cycle Start begins, and how; this control has no mode switch."""
     if snapshot.state in {State.JOG, State.HOME}:
         return MANUAL
-    if snapshot.starts is Starts.LINE:
+    if snapshot.starts in LINES:
         return MDI
     return SINGLE if snapshot.single_block else AUTOMATIC
 

@@ -10,7 +10,7 @@ from core.executor.control_status import modal_with_offsets
 from core.executor.jogging import at_the_end
 from core.executor.machine_context import MachineContext
 from core.executor.machine_control import MachineControl
-from core.executor.snapshot import CYCLE, Starts, State
+from core.executor.snapshot import CYCLE, LINES, Starts, State
 from core.executor.station_signals import StationWatch
 
 LAMP_TEST = 2.0  # s
@@ -268,7 +268,7 @@ class CommandHandler:
 
     def _stop_spindle(self, _: commands.SpindleStop) -> None:
         if self._control.state in CYCLE:
-            if self._control.status.starts is Starts.LINE:  # begun behind what the screen could see
+            if self._control.status.starts in LINES:  # begun behind what the screen could see
                 self._control.reset()
             else:
                 self._refuse("a program is under way: its spindle is stopped by feed hold and reset")

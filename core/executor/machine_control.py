@@ -22,7 +22,7 @@ from core.executor.program_run import ProgramRun
 from core.executor.raised_alarm import AlarmError, alarm_and_reaction, log_alarm, log_line
 from core.executor.read_ahead import ProgramPass
 from core.executor.safe_stop import SafeStop
-from core.executor.snapshot import ACTIVE, BY_HAND, CYCLE, STOPPED, Event, Starts, State, demand_allowed
+from core.executor.snapshot import ACTIVE, BY_HAND, CYCLE, LINES, STOPPED, Event, State, demand_allowed
 from core.executor.start_conditions import SPINDLE, Announcement, Starting
 from core.executor.supervision import OutputsWatch, Supervisor
 from core.executor.touch_off import TouchOff
@@ -165,7 +165,7 @@ class MachineControl:
         """What the proof of the program that would begin has warned of: it is read before it is begun."""
         status = self.status
         job, proof = status.job, status.proof
-        if self.state not in _AT_REST or status.starts is Starts.LINE or job is None or proof is None:
+        if self.state not in _AT_REST or status.starts in LINES or job is None or proof is None:
             return
         if proof.digest == job.digest and proof.warned and not proof.errors:  # else nothing begins
             first, more = proof.warned[0], len(proof.warned) - 1

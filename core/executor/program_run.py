@@ -20,7 +20,7 @@ from core.executor.machine_context import MachineContext
 from core.executor.parts_made import PartCount
 from core.executor.read_ahead import ProgramPass
 from core.executor.setpoint_motion import SetpointMotion
-from core.executor.snapshot import Starts, State
+from core.executor.snapshot import LINES, Starts, State
 from core.executor.start_clearance import UNCHECKED
 from core.interpreter.actions import ProgramEnd
 from core.interpreter.job_setup import Setup
@@ -74,7 +74,7 @@ class ProgramRun:
         assert job is not None
         self.counters.cycle = 0.0
         self.counters.begun += 1
-        self._line = status.starts is Starts.LINE
+        self._line = status.starts in LINES
         self.counters.lines += self._line
         if status.starts is Starts.RESTART:
             status.starts = Starts.PROGRAM

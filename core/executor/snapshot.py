@@ -43,6 +43,11 @@ class Starts(StrEnum):
     PROGRAM = "program"
     LINE = "line"
     RESTART = "restart"
+    WAY_OUT = "way out"  # of the part, after a stop; what was interrupted stays so
+
+
+LINES = frozenset({Starts.LINE, Starts.WAY_OUT})
+"""What is no run of the program."""
 
 
 @dataclass(frozen=True, slots=True)

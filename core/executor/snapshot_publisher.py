@@ -122,15 +122,18 @@ class Publisher:
         """Return whether X is read as a diameter.
 
         The mode of the last program, or of the last line of MDI, remains after its end, a reset or an E-stop:
-        the tool may still be in the part, and a value that halves on its own misleads. Another program, and
-        MDI, in which typed values count, bring the mode of the control.
+        the tool may still be in the part, and a value that halves on its own misleads. It remains on the way
+        out of the part too. Another program, and MDI, in which typed values count, bring the mode of the
+        control.
         """
         name = status.job.source.name if status.job is not None else ""
         if name != self._shown_for:
             self._shown_for, self._diameter = name, None
         if status.starts is Starts.LINE:
             self._diameter = modal.diameter
-        elif block is not None and not isinstance(block.action, ProgramEnd):
+        elif block is not None and not (
+            status.starts is Starts.WAY_OUT or isinstance(block.action, ProgramEnd)
+        ):
             self._diameter = block.modal.diameter
         return modal.diameter if self._diameter is None else self._diameter
 
@@ -150,6 +153,10 @@ class Publisher:
         if dt > 0.0:
             self._velocity = math.dist(sample.actual[:slides], before.actual[:slides]) / dt
         return self._velocity
+
+
+def _ends(block: Block) -> bool:
+    return isinstance(block.action, ProgramEnd)
 
 
 def _played(block: Block | None, modal: Modal, sample: AxisSample) -> _Played:

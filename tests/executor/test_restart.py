@@ -327,7 +327,7 @@ def way_out_alone(rig: Rig) -> None:
     job = make_job(Source("WAY OUT", WAY_OUT), setup)
     report = prove(job.reading, job.setup, rig.machine)
     assert not report.errors, report.errors
-    rig.post(Prepare(Starts.LINE, job, proof_of(job, report)))
+    rig.post(Prepare(Starts.WAY_OUT, job, proof_of(job, report)))
     rig.post(CycleStart())
     assert not rig.shot.start_refused, rig.shot.start_refused
 
@@ -339,6 +339,10 @@ def test_only_the_way_out_of_a_groove_goes_along_x_first_and_starts_nothing() ->
     rig.watch.append(seen.append)
     way_out_alone(rig)
     rig.until(State.IDLE)
+    rig.post(Prepare(Starts.RESTART))
+    rig.tick()
+    assert rig.shot.reads_diameter
+    assert all(shot.reads_diameter for shot in seen)
     for shot in seen:
         x, z = (shot.actual[0] + 12.7) / INCH, (shot.actual[1] + 50.8) / INCH
         assert z == pytest.approx(-0.4, abs=2e-3) or x > 0.45 - 2e-3  # X.9 is where it came from
