@@ -12,6 +12,7 @@ from app.cli.who_changes import add_as_option, note_change, who_may
 from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError
 from core.access.access_table import Act
 from core.coded_error import error_code
+from core.input_file import open_input
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
@@ -158,7 +159,7 @@ def _send(args: argparse.Namespace, settings: DncModel) -> int:
 def _check_readable(path: Path) -> None:
     """Before the line is opened, and with the status of a file that cannot be read. Raises CommandError."""
     try:
-        with path.open("rb") as file:
+        with open_input(path) as file:
             file.read(1)
     except OSError as error:
         raise CommandError(f"{path} cannot be read: {error.strerror}", "unreadable") from error

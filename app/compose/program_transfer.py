@@ -10,7 +10,8 @@ from app.compose.serial_ports import open_wire, serial_ports
 from app.desk.program_loading import LoadingSteps
 from app.programs.whole_file import FileError
 from app.transfer.line_transfer import Received
-from core.language.source import Source, SourceError, load_source
+from core.input_file import input_bytes
+from core.language.source import LARGEST_FILE, Source, SourceError, load_source
 from core.machine.serial_table import DncModel
 from core.ports import Clock, DriverError
 from drivers.clocks import RealClock
@@ -77,7 +78,7 @@ class SendingFile(_Carried):
     def run(self) -> int:
         """Read, open, send. Raises FileError, DriverError."""
         try:
-            text = self._path.read_bytes()
+            text = input_bytes(self._path, LARGEST_FILE)
         except OSError as error:
             raise FileError(f"{self._path.name} CANNOT BE READ: {error.strerror}") from error
         data = outgoing(text, self._settings)

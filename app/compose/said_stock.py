@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from app.compose.known_part import with_kept_clamping
 from app.desk.kept_part import NOTHING_KEPT, KeptPart
+from core.input_file import MB, input_text
 from core.part.stock_spec import StockError, profile_stock, stock_spec
 
 if TYPE_CHECKING:
@@ -19,6 +20,8 @@ if TYPE_CHECKING:
     from core.part.stock_spec import StockSpec
     from core.proving.part_setting import PartSetting
     from core.proving.prove_program import Progress
+
+_LARGEST = 16 * MB  # of a profile
 
 
 class ProgramBefore(NamedTuple):
@@ -46,7 +49,7 @@ def said_stock(text: str, around: ProgramBefore) -> Stock | StockSpec:
         return spec
     path = Path(spec.profile)
     try:
-        points = path.read_text(encoding="utf-8")
+        points = input_text(path, _LARGEST)
     except OSError as error:
         raise StockError(
             f"{path} cannot be read ({error.strerror}); check name and rights", "unreadable"

@@ -9,7 +9,6 @@ import os
 import shutil
 import tempfile
 import zipfile
-import zlib
 from contextlib import suppress
 from dataclasses import dataclass
 from datetime import UTC, datetime
@@ -22,6 +21,7 @@ from app.desk.command_errors import CommandError
 from app.desk.data_folder import data_folder
 from core.coded_error import error_code
 from core.file_placing import make_folder, put_in_place, write_in_place
+from core.input_file import MB, TooLargeError, failures_as, open_input
 from core.store import backup
 from core.store.store import Store
 from core.store.store_errors import StoreError
@@ -30,18 +30,11 @@ from core.store.store_file import FILE_NAME
 _KIND = "turndesk setup "
 FORMAT = f"{_KIND}1"
 MANIFEST, STORE, PROGRAMS, MACHINE = "manifest.json", "store.db", "programs", "machine"
-MOST = 512 * 1024 * 1024  # bytes of one member: more is no setup of ours
+MOST = 512 * MB  # of one member: more is no setup of ours
+MOST_OF_ALL = 4 * MOST  # of the file, and of all members
+_MOST_OF_MANIFEST = 64 * MB
+_AT_ONCE = 1 * MB
 _NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
-# What a spoilt ZIP makes Python raise: its parts, how it is packed, what is in it.
-_NOT_WHOLE = (
-    zipfile.BadZipFile,
-    zlib.error,
-    EOFError,
-    KeyError,
-    NotImplementedError,
-    RuntimeError,
-    ValueError,
-)
 _BESIDE = (".hal", ".xml")  # what lies beside a machine file under its name, and belongs to it
 
 
@@ -215,17 +208,12 @@ def _is_machine_file(folder: str, path: PurePath) -> bool:
 
 def _unpacked(source: Path, folder: Path) -> list[str]:
     """Every member checked and written below ``folder``; their names."""
-    try:
-        with zipfile.ZipFile(source) as file:
-            names = _checked(source, file, folder)
-    except OSError as error:
-        if error.errno in _NO_ROOM:
-            raise CommandError(
-                f"{folder.parent} has no room to unpack {source}; make room there", "disk-full"
-            ) from error
-        raise CommandError(f"{source} cannot be read: {error.strerror or error}", "unreadable") from error
-    except _NOT_WHOLE as error:
-        raise CommandError(f"{source} is no setup file that can be read: {error}", "damaged-setup") from error
+    with (
+        failures_as(lambda error: _not_unpacked(source, folder, error)),
+        open_input(source, MOST_OF_ALL) as opened,
+        zipfile.ZipFile(opened) as file,
+    ):
+        names = _checked(source, file, folder)
     try:
         found = backup.problems(folder / STORE)
     except StoreError as error:
@@ -236,6 +224,17 @@ def _unpacked(source: Path, folder: Path) -> list[str]:
         if _is_machine_file(PurePosixPath(name).parent.name, PurePosixPath(name)):
             read_machine(str(folder / name))
     return names
+
+
+def _not_unpacked(source: Path, folder: Path, error: Exception) -> CommandError:
+    if isinstance(error, TooLargeError):
+        return CommandError(f"{source} is no setup file: {error.strerror}; look at its name", "too-large")
+    if isinstance(error, OSError) and error.errno in _NO_ROOM:
+        return CommandError(f"{folder.parent} has no room to unpack {source}; make room there", "disk-full")
+    if isinstance(error, OSError):
+        return CommandError(f"{source} cannot be read: {error.strerror or error}", "unreadable")
+    text = f"{source} is no setup file that can be read: {error}; copy the file again"
+    return CommandError(text, "damaged-setup")
 
 
 def _hashes(source: Path, told: object) -> dict[str, str]:
@@ -254,7 +253,9 @@ def _hashes(source: Path, told: object) -> dict[str, str]:
 
 
 def _checked(source: Path, file: zipfile.ZipFile, folder: Path) -> list[str]:
-    hashes = _hashes(source, json.loads(file.read(MANIFEST)))
+    if sum(each.file_size for each in file.infolist()) > MOST_OF_ALL:
+        raise CommandError(f"{source} unpacks to more than a setup can have", "too-large")
+    hashes = _hashes(source, json.loads(_manifest(source, file)))
     for name, expected in hashes.items():
         at = PurePosixPath(name)
         top = at.parts[0] if len(at.parts) > 1 else ""
@@ -264,11 +265,25 @@ def _checked(source: Path, file: zipfile.ZipFile, folder: Path) -> list[str]:
             raise CommandError(
                 f"{source} holds {name}, which is larger than a setup can be", "member-too-large"
             )
-        data = file.read(name)
-        if hashlib.sha256(data).hexdigest() != expected:
+        if _unpacked_hash(file, name, folder / name) != expected:
             raise CommandError(
                 f"{source}: {name} is not what was saved; copy the file again", "damaged-member"
             )
-        (folder / name).parent.mkdir(parents=True, exist_ok=True)
-        (folder / name).write_bytes(data)
     return list(hashes)
+
+
+def _manifest(source: Path, file: zipfile.ZipFile) -> bytes:
+    if file.getinfo(MANIFEST).file_size > _MOST_OF_MANIFEST:
+        raise CommandError(f"{source}: its {MANIFEST} is larger than one can be", "member-too-large")
+    return file.read(MANIFEST)
+
+
+def _unpacked_hash(file: zipfile.ZipFile, name: str, target: Path) -> str:
+    """Write a member to ``target`` piece by piece, and return the hash of what was written."""
+    target.parent.mkdir(parents=True, exist_ok=True)
+    total = hashlib.sha256()
+    with file.open(name) as member, target.open("wb") as out:
+        while data := member.read(_AT_ONCE):
+            total.update(data)
+            out.write(data)
+    return total.hexdigest()

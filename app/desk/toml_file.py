@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import re
-import tomllib
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from app.desk.command_errors import CommandError
 from app.desk.standard_input import DASH, standard_input
 from core.coded_error import CodedError
+from core.input_file import TooLargeError, input_bytes
 from core.nearest import nearest
+from core.toml_text import toml_tables
 
 _MOST_BYTES = 16 * 1024 * 1024
 # Texts and comments stay as they are; behind =, [ or , a figure may begin with its point.
@@ -24,14 +25,16 @@ def read_toml(path: Path) -> dict[str, object]:
     """
     try:
         text = _bytes_of(path).decode("utf-8").replace("\r\n", "\n")
-        return tomllib.loads(_POINT_FIRST.sub(_with_nought, text))
+        return toml_tables(_POINT_FIRST.sub(_with_nought, text))
+    except TooLargeError as error:
+        raise _too_large(path) from error
     except OSError as error:
         raise CommandError(
             f"{path} cannot be read ({error.strerror}); check name and rights", "unreadable"
         ) from error
     except UnicodeDecodeError as error:
         raise CommandError(f"{path} is not UTF-8 text; save it as such", "not-utf8") from error
-    except tomllib.TOMLDecodeError as error:
+    except ValueError as error:
         raise CommandError(f"{path} is no TOML: {error}", "not-toml") from error
 
 
@@ -44,13 +47,15 @@ def _bytes_of(path: Path) -> bytes:
     if str(path) == DASH:
         data = standard_input("TOML")
     else:
-        with path.open("rb") as file:
-            data = file.read(_MOST_BYTES + 1)
+        return input_bytes(path, _MOST_BYTES)
     if len(data) > _MOST_BYTES:
-        raise CommandError(
-            f"{path} is over 16 MB, so it is no file of this kind; look at its name", "too-large"
-        )
+        raise _too_large(path)
     return data
+
+
+def _too_large(path: Path) -> CommandError:
+    text = f"{path} is over 16 MB, so it is no file of this kind; look at its name"
+    return CommandError(text, "too-large")
 
 
 def unknown(key: str, known: Iterable[str]) -> str:

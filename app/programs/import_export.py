@@ -23,6 +23,7 @@ from app.programs.removable_media import Medium, why_not
 from app.programs.whole_file import FileError, present, settle, write_out, write_whole
 from core.access.access_table import Act
 from core.drawings.drawing_file import is_drawing
+from core.input_file import TooLargeError, input_bytes
 from core.language.source import SourceError, load_source
 from core.store.store_errors import StoreError
 
@@ -128,9 +129,9 @@ def _program(path: Path) -> bytes:
 
 def _bytes(path: Path) -> bytes:
     try:
-        if path.stat().st_size > LARGEST:
-            raise FileError(f"{path.name} IS LARGER THAN ANY PROGRAM ({LARGEST // 1_000_000} MB)")
-        return path.read_bytes()
+        return input_bytes(path, LARGEST)
+    except TooLargeError as error:
+        raise FileError(f"{path.name} IS LARGER THAN ANY PROGRAM ({LARGEST // 1_000_000} MB)") from error
     except OSError as error:
         raise FileError(f"{path.name} CANNOT BE READ: {error.strerror}") from error
 

@@ -10,7 +10,8 @@ from pathlib import Path
 
 from core.coded_error import CodedError, error_code
 from core.file_placing import all_to_disk, folder_to_disk, make_folder, put_in_place
-from core.language.source import SourceError, load_source
+from core.input_file import input_bytes
+from core.language.source import LARGEST_FILE, SourceError, load_source
 from core.unfinished import unfinished_folder
 
 
@@ -91,7 +92,7 @@ def settle(folder: Path) -> None:
 def present(path: Path) -> bytes | None:
     """What the file holds now; None where there is none. Raises FileError when it cannot be read."""
     try:
-        return path.read_bytes()
+        return input_bytes(path, LARGEST_FILE)
     except FileNotFoundError:
         return None
     except OSError as error:

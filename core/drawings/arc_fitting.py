@@ -27,6 +27,10 @@ Curve = Callable[[float], Place]
 
 def arcs_of(curve: Curve, tolerance: float, pieces: int = 1) -> Iterator[Element]:
     """Arcs that leave a curve without corners by no more than ``tolerance``; so many ``pieces`` at least."""
+    ends = curve(0.0).at, curve(0.5).at, curve(1.0).at
+    if not all(math.isfinite(value) for point in ends for value in point):
+        yield from line(ends[0], (math.nan, math.nan))  # no halving makes a number of it
+        return
     for k in range(pieces):
         yield from _fitted(curve, k / pieces, (k + 1) / pieces, tolerance, 0)
 

@@ -6,7 +6,6 @@ import itertools
 import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
-from pathlib import Path
 
 from core.coded_error import CodedError
 from core.geometry.lines_and_arcs import Arc, Element, Line, Point
@@ -21,19 +20,6 @@ _NONE = 1e-9
 
 class DrawingError(CodedError, ValueError):
     """A drawing that no contour can be taken from: one sentence with the cause and what to do."""
-
-
-def damaged(path: Path, kind: str, error: Exception) -> DrawingError:
-    """Return the error for a file that its library could not read; the library's own words stay out of it.
-
-    A DrawingError is returned as it is. Errors of the system are raised again: OSError with a number,
-    MemoryError.
-    """
-    if isinstance(error, MemoryError) or (isinstance(error, OSError) and error.errno is not None):
-        raise error
-    if isinstance(error, DrawingError):
-        return error
-    return DrawingError(f"{path.name} is damaged or no {kind}: save the drawing anew.", "damaged")
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,8 +62,11 @@ def nearest(unit: float) -> float:
 
 
 def line(a: Point, b: Point) -> Iterator[Element]:
-    """A line from (x, y) to (x, y) of the drawing; one of no length is none."""
-    if math.dist(a, b) > _NONE:
+    """A line from (x, y) to (x, y) of the drawing; one of no length is none.
+
+    A point that is not a number gives a line as well, which ``within_limits`` refuses.
+    """
+    if not math.dist(a, b) <= _NONE:
         yield Line((a[1], a[0]), (b[1], b[0]))
 
 

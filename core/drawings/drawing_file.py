@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 
 from core.drawings.drawing import MOST_BYTES, Drawing, DrawingError
+from core.input_file import MB, TooLargeError, failures_as, input_bytes
 
 ENDINGS = (".dxf", ".svg")
 
@@ -15,29 +17,30 @@ def is_drawing(name: str) -> bool:
 
 
 def read_drawing(path: Path) -> Drawing:
-    """The lines and arcs of a drawing. Raises DrawingError with one sentence."""
+    """Return the lines and arcs of a drawing. Raises DrawingError alone, without words of a library."""
     if not is_drawing(path.name):
         raise DrawingError(f"{path.name} is no drawing: DXF and SVG are read.", "not-a-drawing")
-    try:
-        size = path.stat().st_size
-        if not size:
+    with failures_as(partial(_unreadable, path)):
+        data = input_bytes(path, MOST_BYTES)
+        if not data:
             raise DrawingError(f"{path.name} is empty: save the drawing anew.", "empty")
-        if size > MOST_BYTES:
-            raise DrawingError(
-                f"{path.name} has {size / 1e6:.0f} MB, {MOST_BYTES / 1e6:.0f} are read: "
-                "save the contour of the part alone.",
-                "too-large",
-            )
         if path.suffix.lower() == ".svg":
             from core.drawings.svg_reader import read_svg
 
-            return read_svg(path)
+            return read_svg(path.name, data)
         from core.drawings.dxf_reader import read_dxf
 
-        return read_dxf(path)
-    except OSError as error:
-        raise DrawingError(f"{path.name} cannot be read: {error.strerror or error}.", "unreadable") from error
-    except MemoryError as error:
-        raise DrawingError(
-            f"{path.name} needs more memory than is free: close other programs.", "out-of-memory"
-        ) from error
+        return read_dxf(path, data)
+
+
+def _unreadable(path: Path, error: Exception) -> DrawingError:
+    if isinstance(error, TooLargeError):
+        words = f"{path.name} has more than {MOST_BYTES // MB} MB: save the contour of the part alone."
+        return DrawingError(words, "too-large")
+    if isinstance(error, OSError) and error.errno is not None:
+        return DrawingError(f"{path.name} cannot be read: {error.strerror}.", "unreadable")
+    if isinstance(error, MemoryError):
+        words = f"{path.name} needs more memory than is free: close other programs."
+        return DrawingError(words, "out-of-memory")
+    kind = path.suffix[1:].upper()
+    return DrawingError(f"{path.name} is damaged or no {kind}: save the drawing anew.", "damaged")

@@ -18,7 +18,6 @@ from core.drawings.drawing import (
     Drawn,
     arc,
     bulged,
-    damaged,
     line,
     nearest,
     within_limits,
@@ -40,33 +39,25 @@ Reader = Callable[[Any, float], Iterator[Element]]
 """Of an entity, and how near arcs shall come to a curve."""
 
 
-def read_dxf(path: Path) -> Drawing:
-    """The drawing of a DXF file. Raises DrawingError."""
-    document = _document(path)
+def read_dxf(path: Path, data: bytes) -> Drawing:
+    """Return the drawing of a DXF file with this ``data``. Raises DrawingError and errors of ezdxf."""
+    document = _document(path, data)
     unit = _UNITS.get(int(document.header.get("$INSUNITS", 0)), 0.0)
     left_out: Counter[str] = Counter()
-    try:
-        check_expansion(path.name, "", partial(_content, document))
-        drawn = tuple(within_limits(_drawn(document, nearest(unit), left_out, path.name), path.name))
-    except Exception as error:
-        raise damaged(path, "DXF", error) from error
+    check_expansion(path.name, "", partial(_content, document))
+    drawn = tuple(within_limits(_drawn(document, nearest(unit), left_out, path.name), path.name))
     if not drawn:
         raise _nothing(path.name, left_out)
     return Drawing(path.name, drawn, unit, dict(left_out))
 
 
-def _document(path: Path) -> Document:
+def _document(path: Path, data: bytes) -> Document:
     from ezdxf.filemanagement import readfile
 
-    with path.open("rb") as file:
-        begin = file.read(6)
-    if begin.startswith(b"AC10"):
+    if data.startswith(b"AC10"):
         raise DrawingError(f"{path.name} is a DWG drawing: save it as DXF.", "dwg")
     logging.getLogger("ezdxf").setLevel(logging.CRITICAL + 1)  # its words mean nothing to an operator
-    try:
-        return readfile(path)
-    except Exception as error:
-        raise damaged(path, "DXF", error) from error
+    return readfile(path)
 
 
 def _nothing(name: str, left_out: Counter[str]) -> DrawingError:

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
+import io
 import itertools
 import math
 import re
 from collections import Counter
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element as Element_
 
 from core.drawings.arc_fitting import Place, arcs_of
-from core.drawings.drawing import Drawing, DrawingError, Drawn, arc, damaged, line, nearest, within_limits
+from core.drawings.drawing import Drawing, DrawingError, Drawn, arc, line, nearest, within_limits
 from core.drawings.expansion import Content, check_expansion
 from core.geometry.lines_and_arcs import Element, Point
 
@@ -24,45 +24,40 @@ _HREF = "{http://www.w3.org/1999/xlink}href"
 _INKSCAPE = "{http://www.inkscape.org/namespaces/inkscape}label"
 
 
-def read_svg(path: Path) -> Drawing:
-    """The drawing of an SVG file; its unit is known where its width has one. Raises DrawingError."""
+def read_svg(name: str, data: bytes) -> Drawing:
+    """Return the drawing of SVG text; its unit is known where its width has one.
+
+    Raises DrawingError, and whatever svgelements raises.
+    """
     left_out: Counter[str] = Counter()
-    shapes = _shapes(path)
-    unit = 25.4 / _PIXELS if _has_unit(path) else 0.0
-    try:
-        drawn = tuple(within_limits(_drawn(shapes, nearest(unit), left_out, path.name), path.name))
-    except Exception as error:
-        raise damaged(path, "SVG", error) from error
+    shapes = _shapes(name, data)
+    unit = 25.4 / _PIXELS if _has_unit(data) else 0.0
+    drawn = tuple(within_limits(_drawn(shapes, nearest(unit), left_out, name), name))
     if not drawn:
         what = ", ".join(sorted(left_out)) or "nothing"
         raise DrawingError(
-            f"{path.name} has no path nor line, only {what[:80]}: draw the contour as a path.",
+            f"{name} has no path nor line, only {what[:80]}: draw the contour as a path.",
             "nothing-drawn",
         )
-    return Drawing(path.name, drawn, unit, dict(left_out))
+    return Drawing(name, drawn, unit, dict(left_out))
 
 
-def _has_unit(path: Path) -> bool:
-    root = _ROOT.search(path.read_bytes()[:65536])
+def _has_unit(data: bytes) -> bool:
+    root = _ROOT.search(data[:65536])
     return root is not None and _SIZE.search(root[0]) is not None
 
 
-def _shapes(path: Path) -> Any:
+def _shapes(name: str, data: bytes) -> Any:
     from svgelements import SVG
 
-    text = path.read_bytes()
-    if b"<!ENTITY" in text:
+    if b"<!ENTITY" in data:
         raise DrawingError(
-            f"{path.name} has entities of its own, which are not read: save it as plain SVG.", "own-entities"
+            f"{name} has entities of its own, which are not read: save it as plain SVG.", "own-entities"
         )
-    try:
-        _check_uses(path.name, text)
-        with path.open("rb") as file:
-            root = SVG.parse(file, reify=True, ppi=_PIXELS)
-    except Exception as error:
-        raise damaged(path, "SVG", error) from error
+    _check_uses(name, data)
+    root = SVG.parse(io.BytesIO(data), reify=True, ppi=_PIXELS)
     if not isinstance(root, SVG):
-        words = f"{path.name} is no SVG, its first element is of another namespace: save the drawing anew."
+        words = f"{name} is no SVG, its first element is of another namespace: save the drawing anew."
         raise DrawingError(words, "damaged")
     return root
 

@@ -10,6 +10,7 @@ from functools import cached_property
 from pathlib import Path, PurePath
 
 from core.coded_error import CodedError
+from core.input_file import TooLargeError, input_bytes
 from core.language.diagnostics import Diagnostic, refusal
 
 
@@ -40,7 +41,7 @@ def dialect_of(name: str) -> Dialect:
 # Form feeds and Unicode's line separators end no line, or line numbers would differ from an editor's.
 _LINE_END = re.compile(r"\r\n|\r|\n")
 _LONGEST_LINE = 8192
-_LARGEST_FILE = 64 * 1024 * 1024
+LARGEST_FILE = 64 * 1024 * 1024
 _DOS_END_OF_FILE = "\x1a"
 _UTF_16 = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
 
@@ -85,8 +86,9 @@ def load_source(path: Path, said: Dialect | None = None) -> Source:
     Raises SourceError where the file cannot be read or is no text.
     """
     try:
-        with path.open("rb") as file:
-            data = file.read(_LARGEST_FILE + 1)  # a device or a pipe may have no end
+        data = input_bytes(path, LARGEST_FILE)
+    except TooLargeError as problem:
+        raise _too_large(path.name) from problem
     except OSError as problem:
         reason = problem.strerror or "reading failed"
         raise _refused(
@@ -97,8 +99,8 @@ def load_source(path: Path, said: Dialect | None = None) -> Source:
 
 def source_of(name: str, data: bytes, said: Dialect | None = None) -> Source:
     """The program in these bytes, under this name. Raises SourceError where they are no text."""
-    if len(data) > _LARGEST_FILE:
-        raise _refused("file-too-large", f"{name} is over 64 MB.", "Split the program.")
+    if len(data) > LARGEST_FILE:
+        raise _too_large(name)
     return Source(name, _decoded(name, data), said)
 
 
@@ -152,6 +154,10 @@ def _may_hold_long_line(text: str) -> bool:
             return True
         at = end + 1
     return False
+
+
+def _too_large(name: str) -> SourceError:
+    return _refused("file-too-large", f"{name} is over 64 MB.", "Split the program.")
 
 
 def _refused(code: str, message: str, hint: str, line: int = 0) -> SourceError:

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 from core.table_schema import joined, written
+from core.toml_text import toml_tables
 
 ABSENT = "—"
 
@@ -27,7 +27,7 @@ def changes(old: str, new: str) -> tuple[Change, ...]:
 
     Raises ValueError for a text that is no TOML.
     """
-    before, after = dict(_leaves(tomllib.loads(old))), dict(_leaves(tomllib.loads(new)))
+    before, after = dict(_leaves(toml_tables(old))), dict(_leaves(toml_tables(new)))
     places = [*after, *(place for place in before if place not in after)]
     return tuple(
         Change(place, _shown(before, place), _shown(after, place))

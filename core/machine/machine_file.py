@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import errno
 import math
-import tomllib
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from core.input_file import TooLargeError, input_text
 from core.machine import (
     driver_tables,
     machine_defaults,
@@ -32,6 +31,7 @@ from core.machine.machine_reading import Reading
 from core.machine.mill_kinematics import KinematicsReading
 from core.machine.station_rules import wrong_jog, wrong_palms, wrong_wheel
 from core.table_schema import AT_PENDANT, Driver, FileReading, Finding, MachineFileError
+from core.toml_text import toml_tables
 
 _MOST_BYTES = 16 * 1024 * 1024
 _NONE = (-math.inf, math.inf)
@@ -56,10 +56,10 @@ _TIMING_KEYS = {name: f"{name}_ms" for name in ("commit", "lookahead", "low_wate
 def text_of(path: Path) -> str:
     """The text of a machine file. Raises MachineFileError where it cannot be read at all."""
     try:
-        return _bytes_of(path).decode("utf-8").replace("\r\n", "\n")
+        return input_text(path, _MOST_BYTES)
     except OSError as error:
         reason = error.strerror or "cannot be read"
-        code = "too-large" if error.errno == errno.EFBIG else "unreadable"
+        code = "too-large" if isinstance(error, TooLargeError) else "unreadable"
         raise MachineFileError(
             [Finding("file", "", f"{reason}; check name and rights", code)], str(path)
         ) from error
@@ -69,23 +69,14 @@ def text_of(path: Path) -> str:
         ) from error
 
 
-def _bytes_of(path: Path) -> bytes:
-    """What it holds; a device may have no end. Raises OSError."""
-    with path.open("rb") as file:
-        data = file.read(_MOST_BYTES + 1)
-    if len(data) > _MOST_BYTES:
-        raise OSError(errno.EFBIG, "over 16 MB, so it is no machine file")
-    return data
-
-
 def parse_machine(text: str, source: str, drivers: Sequence[Driver]) -> Machine:
     """The machine that the TOML ``text`` describes, with what these drivers add to it; ``source`` names it.
 
     Raises MachineFileError with everything that is wrong.
     """
     try:
-        data = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
+        data = toml_tables(text)
+    except ValueError as error:
         raise MachineFileError([Finding("TOML", "", str(error), "not-toml")], source) from error
     reading = Reading(data, drivers)
     untold = [*machine_defaults.fill(reading)]

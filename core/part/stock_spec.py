@@ -7,11 +7,14 @@ Lengths are inches; with ``mm`` behind them millimetres. The face stands at Z0, 
 from __future__ import annotations
 
 import io
+import math
 import re
+from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import pairwise
 
 from core.coded_error import CodedError
+from core.input_file import failures_as
 from core.part.stock import Point, Stock
 from core.part.stock_forms import FORMS
 
@@ -127,9 +130,14 @@ def _rows(text: str) -> list[list[float]]:
     """The numbers; a head and lines that begin with # are left out."""
     import csv
 
+    with failures_as(lambda _error: StockError("the profile is damaged; it is CSV text of z, r", "damaged")):
+        return _numbered_rows(csv.reader(io.StringIO(text)))
+
+
+def _numbered_rows(rows: Iterable[list[str]]) -> list[list[float]]:
     return [
         _numbers(row, number)
-        for number, row in enumerate(csv.reader(io.StringIO(text)), start=1)
+        for number, row in enumerate(rows, start=1)
         if row and not row[0].lstrip().startswith("#") and (number > 1 or _LENGTH.search(row[0]))
     ]
 
@@ -137,10 +145,13 @@ def _rows(text: str) -> list[list[float]]:
 def _numbers(row: list[str], number: int) -> list[float]:
     try:
         values = [float(each) for each in row]
-    except ValueError as error:
-        raise StockError(
-            f"row {number} of the profile is no numbers: {','.join(row)}", "not-numbers"
-        ) from error
+    except ValueError:
+        values = [math.nan]
+    if not all(map(math.isfinite, values)):
+        shown = " ".join(",".join(row).split())[:80]
+        raise StockError(f"row {number} of the profile is no numbers: {shown}", "not-numbers")
+    if max(map(abs, values)) > 10.0 * _LARGEST:
+        raise StockError(f"row {number} of the profile lies too far out: check its unit", "too-far-out")
     if not 2 <= len(values) <= 3:
         raise StockError(
             f"row {number} of the profile has {len(values)} numbers; it has z, r (, bore)", "number-count"

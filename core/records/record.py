@@ -7,13 +7,18 @@ axes), ``spindle command`` ``spindle speed`` (rpm), ``feed override`` and so on;
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 FloatArray = npt.NDArray[np.float64]
+_LATEST = 250_000_000_000.0  # s since 1970, in the year 9892: calendars end soon after
+
+
+class UnsoundError(ValueError):
+    """What a file says does not fit together; the text is the cause."""
 
 
 class Channel(NamedTuple):
@@ -79,3 +84,27 @@ class Record:
         started = self.started + (float(self.times[first]) - float(self.times[0]) if first < last else 0.0)
         columns = {name: column[cut] for name, column in self.columns.items()}
         return Record(self.channels, self.times[cut], columns, started, self.rate, self.about)
+
+
+def _is_unicode(text: str) -> bool:
+    """Return whether a text can be shown and exported: JSON may hold half a character."""
+    return not any("\ud800" <= sign <= "\udfff" for sign in text)
+
+
+def checked_record(record: Record) -> Record:
+    """Return a record from a file, with infinite values as unknown. Raises UnsoundError."""
+    if not 0.0 <= record.started <= _LATEST:
+        raise UnsoundError(f"it began {record.started:g} s after 1970")
+    if not 0.0 <= record.rate < np.inf:
+        raise UnsoundError(f"it has {record.rate:g} samples a second")
+    if not all(text.isprintable() for channel in record.channels for text in channel[:2]):
+        raise UnsoundError("the name of a channel is no text")
+    if not all(_is_unicode(text) for each in record.about.items() for text in each):
+        raise UnsoundError("what it says of itself is no text")
+    if not np.isfinite(record.times).all() or (np.diff(record.times) < 0.0).any():
+        raise UnsoundError("its times do not rise")
+    known = {
+        name: np.where(np.isinf(column), np.nan, column) if np.isinf(column).any() else column
+        for name, column in record.columns.items()
+    }
+    return replace(record, columns=known)

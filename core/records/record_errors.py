@@ -6,6 +6,8 @@ import errno
 from pathlib import Path
 
 from core.coded_error import CodedError
+from core.input_file import MB, TooLargeError
+from core.records.record import UnsoundError
 
 
 class RecordError(CodedError):
@@ -19,8 +21,22 @@ class AnalysisError(CodedError):
 _FULL = frozenset({errno.ENOSPC, getattr(errno, "EDQUOT", errno.ENOSPC), errno.EFBIG})
 
 
+MOST_BYTES = 512 * MB
+"""The most that a record may have, packed or unpacked; five minutes at 1 kHz have 50 MB."""
+
+
+def damage(path: Path, error: Exception) -> RecordError:
+    """Return the error for a file whose content is not as it was written."""
+    words = f" ({error})" if isinstance(error, UnsoundError) else ""
+    return RecordError(f"{path} is damaged and cannot be read{words}; open another record", "damaged")
+
+
 def why(path: Path, error: OSError) -> RecordError:
     """The same as a sentence."""
+    if isinstance(error, TooLargeError):
+        return RecordError(
+            f"{path}: {error.strerror}, so it is no record of the scope; look at its name", "too-large"
+        )
     if error.errno in _FULL:
         return RecordError(f"{path}: the disk is full; make room on it", "disk-full")
     if isinstance(error, FileNotFoundError):

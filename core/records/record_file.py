@@ -8,39 +8,25 @@ from __future__ import annotations
 import io
 import json
 import math
-import struct
+import warnings
 import zipfile
-import zlib
 from collections.abc import Callable
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 
 from core.file_placing import put_in_place
-from core.records.record import Channel, FloatArray, Record
-from core.records.record_errors import RecordError, why
+from core.input_file import MB, failures_as, input_bytes
+from core.records.record import Channel, FloatArray, Record, UnsoundError, checked_record
+from core.records.record_errors import MOST_BYTES, RecordError, damage, why
 from core.records.ring_file import is_ring, read_ring
 
 ENDING = ".scope"
 _VERSION = 1
 _ABOUT = "about"
 _UNKNOWN = 255  # of a logic channel in a byte, beside 0 and 1
-# What numpy and zipfile raise for a file that is not as they wrote it.
-_DAMAGE = (
-    ValueError,
-    LookupError,
-    TypeError,
-    AttributeError,
-    ArithmeticError,
-    RuntimeError,
-    MemoryError,
-    EOFError,
-    OSError,
-    struct.error,
-    zipfile.BadZipFile,
-    zlib.error,
-)
 _ROWS = 2000  # of a CSV at a time
 
 
@@ -79,10 +65,11 @@ def open_record(path: Path) -> Record:
     if is_ring(path):
         return read_ring(path)
     try:
-        with path.open("rb") as file:
-            return _read(path, io.BytesIO(file.read()))
+        data = input_bytes(path, MOST_BYTES)
     except OSError as error:
         raise why(path, error) from error
+    with failures_as(partial(damage, path)):
+        return checked_record(_read(path, io.BytesIO(data)))
 
 
 def _read(path: Path, data: io.BytesIO) -> Record:
@@ -94,41 +81,48 @@ def _read(path: Path, data: io.BytesIO) -> Record:
             else f"{path} is no record of the scope; name one of the folder records, {ENDING} or .ring",
             "cut-off" if part else "not-a-record",
         )
+    _check_size(data)
     data.seek(0)
-    try:
-        with np.load(data, allow_pickle=False) as archive:
-            if _ABOUT not in archive.files:
-                raise RecordError(
-                    f"{path} is no record of the scope; name a file that ends in {ENDING}", "not-a-record"
-                )
-            told = json.loads(archive[_ABOUT].tobytes())
-            version = told["version"]
-            if version > _VERSION:
-                raise RecordError(
-                    f"{path} was written by a newer TurnDesk (version {version}); open it with that one",
-                    "newer-version",
-                )
-            return _record(told, lambda name: archive[name])
-    except _DAMAGE as error:
-        raise RecordError(f"{path} is damaged and cannot be read ({error})", "damaged") from error
+    with warnings.catch_warnings(), np.load(data, allow_pickle=False) as archive:
+        warnings.simplefilter("error")  # numpy warns of arrays that it did not write itself
+        if _ABOUT not in archive.files:
+            raise RecordError(
+                f"{path} is no record of the scope; name a file that ends in {ENDING}", "not-a-record"
+            )
+        told = json.loads(archive[_ABOUT].tobytes())
+        version = told["version"]
+        if version > _VERSION:
+            raise RecordError(
+                f"{path} was written by a newer TurnDesk (version {version}); open it with that one",
+                "newer-version",
+            )
+        return _record(told, lambda name: archive[name])
+
+
+def _check_size(data: io.BytesIO) -> None:
+    """Refuse an archive that would come to far more than a record, before anything of it is unpacked."""
+    with zipfile.ZipFile(data) as archive:
+        size = sum(each.file_size for each in archive.infolist())
+    if size > MOST_BYTES:
+        raise UnsoundError(f"unpacked, it has more than {MOST_BYTES // MB} MB")
 
 
 def _record(told: dict[str, object], column: Callable[[str], object]) -> Record:
-    """Raises ValueError, KeyError, TypeError for what does not fit together."""
+    """Raises UnsoundError for what does not fit together, and ValueError, KeyError, TypeError."""
     channels, about = told["channels"], told["about"]
     if not isinstance(channels, list) or not isinstance(about, dict):
-        raise TypeError("its description is of another kind")
+        raise UnsoundError("its description is of another kind")
     made = tuple(Channel(str(name), str(unit), bool(logic)) for name, unit, logic in channels)
     times = np.asarray(column("times"), dtype=np.float64)
     columns: dict[str, FloatArray] = {}
     for i, channel in enumerate(made):
         found = np.asarray(column(f"column{i}"), dtype=np.float64)
         if found.shape != times.shape or times.ndim != 1:
-            raise ValueError(f"{channel.name} has {found.size} samples of {times.size}")
+            raise UnsoundError(f"{channel.name} has {found.size} samples of {times.size}")
         columns[channel.name] = np.where(found == _UNKNOWN, np.nan, found) if channel.logic else found
     started, rate = told["started"], told["rate"]
     if not isinstance(started, int | float) or not isinstance(rate, int | float):
-        raise TypeError("it does not say when it began")
+        raise UnsoundError("it does not say when it began")
     words = {str(name): str(text) for name, text in about.items()}
     return Record(made, times, columns, float(started), float(rate), words)
 

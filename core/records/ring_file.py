@@ -13,13 +13,15 @@ import struct
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 
 from core.file_lock import lock
-from core.records.record import FloatArray, Record
-from core.records.record_errors import RecordError, why
+from core.input_file import failures_as, open_input
+from core.records.record import FloatArray, Record, UnsoundError, checked_record
+from core.records.record_errors import MOST_BYTES, RecordError, damage, why
 from core.records.record_ring import Recorded, Ring, Rows, record_of, sound
 
 _MAGIC = b"TurnDesk ring\n"
@@ -155,7 +157,7 @@ def _free(path: Path) -> bool:
 def is_ring(path: Path) -> bool:
     """Whether a file begins as a ring does."""
     try:
-        with path.open("rb") as file:
+        with open_input(path) as file:
             return file.read(len(_MAGIC)) == _MAGIC
     except OSError:
         return False
@@ -172,8 +174,13 @@ class _Found:
 
 def read_ring(path: Path, begin: float = -np.inf, end: float = np.inf) -> Record:
     """The record of a ring's file, also of one that is being written. Raises RecordError."""
+    with failures_as(partial(damage, path)):
+        return checked_record(_read_ring(path, begin, end))
+
+
+def _read_ring(path: Path, begin: float, end: float) -> Record:
     try:
-        with path.open("rb") as file:
+        with open_input(path, MOST_BYTES) as file:
             data = file.read(_START.size)
             found = _described(path, data, file.read)
             file.seek(found.head - 2 * _COUNTS.size)
@@ -200,6 +207,8 @@ def _described(path: Path, start: bytes, read: Callable[[int], bytes]) -> _Found
         raise RecordError(
             f"{path} was written by a newer TurnDesk (version {version}); open it with that", "newer-version"
         )
+    if not _START.size + length + 2 * _COUNTS.size <= head <= MOST_BYTES:
+        raise UnsoundError("its head has no such length")
     try:
         told = json.loads(read(length))
         recorded = Recorded(
@@ -213,7 +222,7 @@ def _described(path: Path, start: bytes, read: Callable[[int], bytes]) -> _Found
             float(told["lasts"]),
         )
         samples, ticks = (int(room) for room in told["rooms"])
-    except (ValueError, KeyError, TypeError, AttributeError) as error:
+    except (ValueError, LookupError, TypeError, AttributeError, ArithmeticError, RecursionError) as error:
         raise RecordError(
             f"{path} is damaged at its beginning; there is nothing to read in it", "damaged"
         ) from error
@@ -224,6 +233,8 @@ def _rings(path: Path, found: _Found, read: Callable[[int], bytes]) -> Iterator[
     widths = (found.recorded.sample_width, found.recorded.tick_width)
     for room, width in zip(found.rooms, widths, strict=True):
         size = room * (width + 1) * 8
+        if not 0 < size <= MOST_BYTES:
+            raise UnsoundError(f"it states {room} rows")
         data = read(size)
         if len(data) != size:
             raise RecordError(

@@ -13,6 +13,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
+from core.input_file import input_bytes, open_input
 from core.sharing.shared_place import Found, Published, folder_at
 from core.sharing.sharing_errors import Cause, of_system
 from core.sharing.version_record import (
@@ -32,6 +33,7 @@ from core.store.shared_versions import SharedVersion
 MARK = "turndesk-share.json"  # without it the folder is none of ours: an empty mount point has none
 VERSIONS, DESKS = "versions", "desks"
 _ENDING, _STATE, _WRITING = ".version", ".json", ".writing-"
+_LARGEST = LONGEST_RECORD + MOST_BYTES
 
 
 class SharedFolder:
@@ -93,7 +95,7 @@ class SharedFolder:
         path = self._folder / VERSIONS / f"{version.id}{_ENDING}"
         with self._system():
             self._demand()
-            _, _, text = path.read_bytes().partition(b"\n")
+            _, _, text = input_bytes(path, _LARGEST).partition(b"\n")
             try:
                 return checked_text(version, text)
             except RecordError as error:
@@ -111,7 +113,7 @@ class SharedFolder:
         path = self._folder / VERSIONS / f"{version.id}{_ENDING}"
         whole = written(version) + b"\n" + text
         if path.exists():
-            if path.read_bytes() == whole:
+            if input_bytes(path, _LARGEST) == whole:
                 return
             path.replace(path.with_name(f"{path.name}.damaged"))  # kept: whoever spoilt it may want to see it
         self._write(path, whole, home)
@@ -135,7 +137,7 @@ class SharedFolder:
         for path in _files(self._folder / DESKS):
             home = path.name.removesuffix(_STATE)
             try:
-                found.append(read_state(home, path.read_bytes()))
+                found.append(read_state(home, input_bytes(path, _LARGEST)))
             except (RecordError, OSError):
                 strays.append(path.name)
         return tuple(found), strays
@@ -144,7 +146,7 @@ class SharedFolder:
         """Raises SharingError where the folder is not one of shared programs, or of a newer format."""
         os.stat(self._folder)
         try:
-            data = self.mark.read_bytes()
+            data = input_bytes(self.mark, _LARGEST)
         except FileNotFoundError:
             raise Cause.NOT_BEGUN.error(self.name) from None
         check_mark(self.name, data)
@@ -177,7 +179,7 @@ def _files(folder: Path) -> list[Path]:
 def _version_in(path: Path) -> SharedVersion | None:
     """None: the file is no whole version, by what its first line says of the rest."""
     try:
-        with path.open("rb") as file:
+        with open_input(path) as file:
             record = file.readline(LONGEST_RECORD)
             version = read_version(path.name.removesuffix(_ENDING), record.rstrip(b"\n"))
             text = file.read(MOST_BYTES + 1)

@@ -14,6 +14,7 @@ from pathlib import Path
 
 from core.file_lock import is_locked, lock, mark_locked
 from core.file_placing import put_in_place, write_in_place
+from core.input_file import open_input
 from core.store import row_sums
 from core.store.log_damage import lost_changes
 from core.store.store_errors import Cause, StoreError, cause_of, why
@@ -48,7 +49,7 @@ def check_header(path: Path) -> None:
     if path.name == FILE_NAME and path.parent.resolve() in _WRITTEN_HERE:
         return
     try:
-        with path.open("rb") as file:
+        with open_input(path) as file:
             header = file.read(100)
     except OSError as error:
         raise why(path, error) from error

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import csv
+import io
 import json
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from core.file_placing import folder_in_place
+from core.input_file import MB, input_bytes
 from core.store.offset_fields import Field, Sort
 from core.store.store import Store
 from core.store.store_errors import Cause, StoreError, cause_of, said, why
@@ -29,6 +31,7 @@ TABLES = {  # of measured parts and of mills: whole tables, mm and seconds as th
 }
 TABLE_OF = {Kind.MILL_TOOL: "mill_tools.csv", Kind.PRESET: "presets.csv"}
 _ALL = 2**62
+_LARGEST = 64 * MB  # of a table, or of a program
 
 
 def export(store: Store, folder: Path) -> int:
@@ -141,8 +144,8 @@ def _rows(path: Path, kind: Kind) -> dict[int, dict[str, Value]]:
     if not path.exists():
         return {}
     try:
-        with path.open(encoding="utf-8", newline="") as file:
-            table = list(csv.DictReader(file))
+        text = input_bytes(path, _LARGEST).decode("utf-8")
+        table = list(csv.DictReader(io.StringIO(text, newline="")))
     except (OSError, UnicodeDecodeError, csv.Error) as error:
         raise StoreError(f"{path} cannot be read ({error}); export it again", "unreadable-export") from error
     return dict(_numbered(path, line, row, kind) for line, row in enumerate(table, start=2))
@@ -172,7 +175,7 @@ def _number(field: Field, text: str) -> Value:
 def program_files(folder: Path) -> dict[str, bytes]:
     """The programs of an exported folder by name. Raises StoreError when it is no such folder."""
     try:
-        return {path.name: path.read_bytes() for path in sorted((folder / PROGRAMS).iterdir())}
+        return {path.name: input_bytes(path, _LARGEST) for path in sorted((folder / PROGRAMS).iterdir())}
     except OSError as error:
         raise StoreError(
             f"{folder} is no exported folder ({said(error)}); name one that 'store export' wrote",

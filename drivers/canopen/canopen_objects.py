@@ -14,6 +14,7 @@ from canopen import ObjectDictionary, import_od
 from canopen.objectdictionary import ODArray, ODRecord, ODVariable
 from canopen.objectdictionary import datatypes as kind
 
+from core.input_file import MB, input_text
 from core.ports import DriverError
 from drivers.canopen.canopen_nodes import CanNode
 from drivers.canopen.drive_profiles import CIA402, DriveProfile, profile_of
@@ -39,6 +40,7 @@ ENCODER_RESOLUTION, ENCODER_TURNS, SECOND_POSITION = 0x6501, 0x6502, 0x60E4
 ANALOG_IN, ANALOG_EVENTS, ANALOG_DELTA = 0x6401, 0x6423, 0x6426
 
 _log = logging.getLogger(__name__)
+_LARGEST = 16 * MB  # of an EDS file
 _FLAWS = 50  # objects that an EDS file may leave without a type
 _VARIABLES_301 = ((DEVICE_TYPE, U32), (ERROR_REGISTER, U8), (SYNC_PERIOD, U32), (HEARTBEAT, U16))
 _ARRAYS_301 = ((WATCHED, U32, 2), (ON_ERROR, U8, 1))
@@ -132,7 +134,7 @@ def dictionary(name: str, eds: str, standard: Callable[[], ObjectDictionary]) ->
 
 def _read(path: Path) -> ObjectDictionary:
     """An EDS or DCF file; an object that it leaves without a type is as good as not there."""
-    text = path.read_text(encoding="latin-1")
+    text = input_text(path, _LARGEST, "latin-1")
     for _ in range(_FLAWS):
         stream = io.StringIO(text)
         stream.name = str(path)  # the library looks for its ending

@@ -45,7 +45,10 @@ def test_empty_file_sets_nothing(tmp_path: Path) -> None:
         ("tool = 3", "not-tables", "[tool.1]"),
         ("[tool]\n1 = 2", "not-a-table", "[tool.1]"),
         ("[tool.1\n", "not-toml", "file.toml"),
+        ("[tool.1]\nx = " + "[" * 50_000, "not-toml", "file.toml"),
+        ("[tool.1]\nx = " + "9" * 5000, "not-toml", "file.toml"),
     ],
+    ids=lambda value: str(value)[:20],
 )
 def test_bad_offsets_are_refused(tmp_path: Path, text: str, code: str, value: str) -> None:
     with raises_code(CommandError, code, value):

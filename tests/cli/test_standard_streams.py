@@ -63,10 +63,10 @@ def test_stock_is_kept_with_a_name(turndesk: Turndesk, monkeypatch: pytest.Monke
 @pytest.mark.parametrize(
     ("words", "code"),
     [
-        (["prove", "/dev/zero"], "file-too-large"),
-        (["expand", "/dev/zero"], "file-too-large"),
-        (["prove", "PART", "--offsets", "/dev/zero"], "too-large"),
-        (["prove", "PART", "--machine", "/dev/zero"], "too-large"),
+        (["prove", "/dev/zero"], "file-unreadable"),
+        (["expand", "/dev/zero"], "file-unreadable"),
+        (["prove", "PART", "--offsets", "/dev/zero"], "unreadable"),
+        (["prove", "PART", "--machine", "/dev/zero"], "unreadable"),
     ],
 )
 def test_what_has_no_end_is_refused(words: list[str], code: str, part: Path, turndesk: Turndesk) -> None:

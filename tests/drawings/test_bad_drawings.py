@@ -111,8 +111,7 @@ def test_empty_huge_missing_and_foreign_files(tmp_path: Path) -> None:
     assert refused(empty).code == "empty"
     error = refused(huge)
     assert error.code == "too-large"
-    assert "100 MB" in str(error)
-    assert f"{MOST_BYTES / 1e6:.0f}" in str(error)
+    assert f"{MOST_BYTES >> 20} MB" in str(error)
     assert refused(tmp_path / "none.dxf").code == "unreadable"
     other, dwg = tmp_path / "part.step", tmp_path / "part.dxf"
     other.write_text("ISO-10303-21;")

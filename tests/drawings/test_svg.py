@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
+from unittest.mock import Mock
 
 import pytest
 
+from core.drawings import svg_reader
+from core.drawings.arc_fitting import Place
 from core.drawings.drawing import DrawingError
 from core.drawings.drawing_file import read_drawing
 from core.drawings.drawing_view import Side, View, axis_named, contours, profile
@@ -115,3 +118,23 @@ def test_a_contour_that_bulges_before_all_its_ends_is_refused(tmp_path: Path) ->
         profile(drawing, view, net, Side.OUTSIDE)
     with raises_code(DrawingError, "no-bore"):
         profile(drawing, view, net, Side.INSIDE)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        '<circle cx="1e999" cy="4" r="2"/>',
+        '<ellipse cx="4" cy="4" rx="1e999" ry="2"/>',
+        '<g transform="translate(1e999)"><path d="M0 0C1 1 2 2 3 0A3 4 0 0 1 5 5"/></g>',
+        '<polyline points="0,0 1e999,1"/>',
+    ],
+)
+def test_what_is_infinite_is_refused(tmp_path: Path, text: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Before curves are halved again and again for it."""
+    asked = Mock(wraps=Place)
+    monkeypatch.setattr(svg_reader, "Place", asked)
+    with pytest.raises(DrawingError) as raised:
+        read_drawing(svg(tmp_path / "x.svg", f'<line x2="5"/>{text}'))
+    assert raised.value.code in {"not-a-number", "damaged", "too-far-from-zero"}
+    assert "x.svg" in str(raised.value)
+    assert asked.call_count < 1000

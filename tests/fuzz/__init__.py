@@ -1,1 +1,1 @@
-"""Fuzzing by coverage: outside of the tests, by hand and for as long as one likes."""
+"""Damaged and hostile input: by seeded damage in the tests, by coverage (``tests.fuzz.fuzz``) by hand."""

@@ -22,8 +22,10 @@ from tests.benchmarks.footprint import RESULTS, keep_result
 from tests.fuzz.fuzz_target import faults_in
 
 NAMES = (
-    "omniturn", "klartext", "sinumerik", "machine file", "serial transfer", "controller's lines",
-    "SHDR lines", "grblHAL's wire", "CAN frames", "store file", "drawing.dxf", "drawing.svg",
+    "omniturn", "klartext", "sinumerik", "machine file", "offsets file", "tools file", "inputs file",
+    "profile of a blank", "record", "ring", "setup archive", "EDS file", "serial transfer",
+    "controller's lines", "SHDR lines", "grblHAL's wire", "CAN frames", "store file", "drawing.dxf",
+    "drawing.svg",
 )  # fmt: skip
 _EDGES = re.compile(r"cov: (\d+)")
 _ENDS = 25.0  # times its time, by the clock, after which a target hangs

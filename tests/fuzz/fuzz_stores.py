@@ -48,6 +48,13 @@ def _good() -> Path:
     return home
 
 
+def good_store() -> bytes:
+    """Return a backup of it."""
+    copy = _good().with_name("copy.db")
+    backup.backup(_good(), copy)
+    return copy.read_bytes()
+
+
 def _spoilt(data: bytes) -> Path:
     """A copy with the changes that the bytes tell: of a cell, or of a byte of the file."""
     home = _good().with_name("spoilt")

@@ -219,6 +219,13 @@ def test_broken_toml_tells_the_line() -> None:
     assert "line 2" in only("[machine]\nname = \n").expected
 
 
+@pytest.mark.parametrize("value", ["[" * 50_000, "{a=" * 5000, "9" * 5000])
+def test_what_no_parser_can_hold_is_one_finding(value: str) -> None:
+    found = only(f"[machine]\nname = {value}")
+    assert found.code == "not-toml"
+    assert len(found.expected) < 100
+
+
 def test_missing_file_and_wrong_encoding(tmp_path: Path) -> None:
     with raises_code(MachineFileError, "unreadable", "none.toml"):
         load_machine(tmp_path / "none.toml")

@@ -7,13 +7,14 @@ import io
 import json
 import os
 import zipfile
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from core.records.record import Channel, Record
-from core.records.record_errors import RecordError
+from core.records.record_errors import MOST_BYTES, RecordError
 from core.records.record_file import ENDING, open_record, save_csv, save_record, write_csv
 from tests.coded import raises_code
 
@@ -127,12 +128,54 @@ def test_a_newer_one_is_refused(tmp_path: Path) -> None:
         {"about": None},
         {"started": "noon"},
         {"channels": [["X", "mm", False]] * 9},
+        {"started": 1e300},
+        {"started": -1e9},
+        {"started": NAN},
+        {"rate": float("inf")},
+        {"rate": 10**400},
+        {"channels": [["a\ud800", "mm", False], *CHANNELS[1:]]},
+        {"channels": [["a\nb", "mm", False], *CHANNELS[1:]]},
+        {"about": {"program": "\udfff"}},
     ],
 )
 def test_a_description_that_does_not_fit_is_refused(tmp_path: Path, changes: dict[str, object]) -> None:
     changed(tmp_path / "odd.scope", **changes)
     with raises_code(RecordError, "damaged", "odd.scope"):
         open_record(tmp_path / "odd.scope")
+
+
+@pytest.mark.parametrize("times", [[0.0, NAN, 1.0], [0.0, np.inf, np.inf], [2.0, 1.0, 3.0]])
+def test_times_that_do_not_rise_are_refused(tmp_path: Path, times: list[float]) -> None:
+    save_record(replace(record(), times=np.array(times)), tmp_path / "odd.scope")
+    with raises_code(RecordError, "damaged", "odd.scope"):
+        open_record(tmp_path / "odd.scope")
+
+
+def test_an_infinite_figure_is_not_known(tmp_path: Path) -> None:
+    columns = {**record().columns, "spindle load": np.array([1.0, np.inf, -np.inf])}
+    save_record(replace(record(), columns=columns), tmp_path / "one.scope")
+    found = open_record(tmp_path / "one.scope").columns["spindle load"]
+    np.testing.assert_array_equal(found, [1.0, NAN, NAN])
+
+
+def test_an_archive_that_unpacks_to_gigabytes_is_refused_packed(tmp_path: Path) -> None:
+    path = tmp_path / "bomb.scope"
+    save_record(record(), path)
+    data = bytearray(path.read_bytes())
+    entry = data.index(b"PK\x01\x02")  # of the directory: it says what a member unpacks to
+    data[entry + 24 : entry + 28] = (2**32 - 2).to_bytes(4, "little")
+    path.write_bytes(data)
+    with raises_code(RecordError, "damaged", "bomb.scope", MOST_BYTES >> 20):
+        open_record(path)
+
+
+def test_words_of_a_library_stay_out_of_it(tmp_path: Path) -> None:
+    path = tmp_path / "odd.scope"
+    with path.open("wb") as file:
+        np.savez(file, about=np.frombuffer(b'{"version": "' + b"x" * 5000, dtype=np.uint8))
+    with raises_code(RecordError, "damaged") as raised:
+        open_record(path)
+    assert "Unterminated" not in str(raised.value)
 
 
 def test_a_file_that_is_not_there_is_told(tmp_path: Path) -> None:

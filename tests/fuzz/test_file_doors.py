@@ -1,0 +1,155 @@
+"""A name may be that of a pipe, a device, a folder or 3 GB; every reader has its own error for each."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+from typing import NamedTuple
+
+import canopen
+import pytest
+
+from app.cli.inputs_file import read_inputs
+from app.compose.setup_file import check_setup
+from app.desk.command_errors import CommandError
+from app.offsets.offsets_file import read_rows, read_tool_shapes
+from app.programs.whole_file import FileError, present
+from core.coded_error import CodedError
+from core.drawings.drawing import DrawingError
+from core.drawings.drawing_file import read_drawing
+from core.input_file import NotAFileError, TooLargeError, failures_as, input_bytes, open_input
+from core.language.source import SourceError, load_source
+from core.machine.machine_file import text_of
+from core.ports import DriverError
+from core.records.record_errors import RecordError
+from core.records.record_file import open_record
+from core.store import backup
+from core.store.store_errors import StoreError
+from core.table_schema import MachineFileError
+from drivers.canopen.canopen_objects import dictionary
+from tests.coded import raises_code
+
+_HUGE = 3_000_000_000
+
+
+class Door(NamedTuple):
+    """A reader, and the codes of its errors for what is no file and for what is too large."""
+
+    name: str
+    read: Callable[[Path], object]
+    error: type[Exception]
+    no_file: str
+    too_large: str
+
+
+def _dictionary(path: Path) -> object:
+    return dictionary("X", str(path), canopen.ObjectDictionary)
+
+
+DOORS = (
+    Door("part.nc", load_source, SourceError, "file-unreadable", "file-too-large"),
+    Door("part.h", load_source, SourceError, "file-unreadable", "file-too-large"),
+    Door("part.mpf", load_source, SourceError, "file-unreadable", "file-too-large"),
+    Door("old.nc", present, FileError, "unreadable", "unreadable"),
+    Door("lathe.toml", text_of, MachineFileError, "unreadable", "too-large"),
+    Door("offsets.toml", read_rows, CommandError, "unreadable", "too-large"),
+    Door("tools.toml", read_tool_shapes, CommandError, "unreadable", "too-large"),
+    Door("inputs.toml", read_inputs, CommandError, "unreadable", "too-large"),
+    Door("part.dxf", read_drawing, DrawingError, "unreadable", "too-large"),
+    Door("part.svg", read_drawing, DrawingError, "unreadable", "too-large"),
+    Door("alarm.scope", open_record, RecordError, "unusable", "too-large"),
+    Door("now.ring", open_record, RecordError, "unusable", "too-large"),
+    Door("lathe.setup", check_setup, CommandError, "unreadable", "too-large"),
+    Door("backup.db", backup.problems, StoreError, "unusable", "not-a-database"),  # it is read by pages
+    Door(
+        "x.eds",
+        lambda path: dictionary("X", str(path), canopen.ObjectDictionary),
+        DriverError,
+        "driver",
+        "driver",
+    ),
+)
+each_door = pytest.mark.parametrize("door", DOORS, ids=lambda door: door.name)
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no pipes with names here")
+@each_door
+def test_a_pipe_that_nobody_writes_does_not_hang(door: Door, tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / door.name)
+    with raises_code(door.error, door.no_file, door.name):
+        door.read(tmp_path / door.name)
+
+
+@pytest.mark.skipif(not Path("/dev/zero").exists(), reason="no device here that never ends")
+@each_door
+def test_a_device_is_no_file(door: Door, tmp_path: Path) -> None:
+    (tmp_path / door.name).symlink_to("/dev/zero")
+    with raises_code(door.error, door.no_file, door.name):
+        door.read(tmp_path / door.name)
+
+
+@each_door
+def test_a_folder_is_no_file(door: Door, tmp_path: Path) -> None:
+    (tmp_path / door.name).mkdir()
+    with pytest.raises(door.error) as raised:
+        door.read(tmp_path / door.name)
+    assert door.name in str(raised.value)
+
+
+@each_door
+def test_three_gigabytes_are_not_read(door: Door, tmp_path: Path) -> None:
+    path = tmp_path / door.name
+    with path.open("wb") as file:
+        file.write(b"TurnDesk ring\n" if door.name.endswith(".ring") else b"PK")
+        file.truncate(_HUGE)
+    with raises_code(door.error, door.too_large, door.name):
+        door.read(path)
+
+
+@each_door
+def test_a_name_that_no_file_can_have_is_refused(door: Door, tmp_path: Path) -> None:
+    with pytest.raises(door.error):
+        door.read(tmp_path / f"a\0{door.name}")
+
+
+# --- the door itself
+
+
+def test_a_file_has_as_many_bytes_as_its_limit(tmp_path: Path) -> None:
+    path = tmp_path / "a"
+    path.write_bytes(bytes(100))
+    assert input_bytes(path, 100) == bytes(100)
+    with pytest.raises(TooLargeError):
+        input_bytes(path, 99)
+
+
+@pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="no files here whose size is not known")
+def test_a_file_that_hides_its_size_has_its_limit_all_the_same() -> None:
+    with pytest.raises(TooLargeError):
+        input_bytes(Path("/proc/self/status"), 10)
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no pipes with names here")
+def test_what_is_no_file_is_closed_again(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe")
+    with pytest.raises(NotAFileError):
+        open_input(tmp_path / "pipe")
+    with pytest.raises(OSError, match="No such device"):  # nobody has it open for reading
+        os.open(tmp_path / "pipe", os.O_WRONLY | os.O_NONBLOCK)
+
+
+@pytest.mark.parametrize(
+    "error", [ValueError(), KeyError("x"), MemoryError(), RecursionError(), OSError(5, "x")]
+)
+def test_whatever_a_parser_raises_is_the_readers_error(error: Exception) -> None:
+    with pytest.raises(CodedError) as raised, failures_as(lambda _: CodedError("damaged", "damaged")):
+        raise error
+    assert raised.value.__cause__ is error
+
+
+def test_what_has_a_code_stays_as_it_is() -> None:
+    own = partial(CodedError, "own", "own")
+    with raises_code(CodedError, "own"), failures_as(lambda _: CodedError("other", "other")):
+        raise own()
