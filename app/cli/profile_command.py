@@ -95,8 +95,9 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _run(args: argparse.Namespace) -> int:
+    from app.cli.progress_bar import Progress
     from app.compose.machine_setup import read_machine
-    from core.drawings.drawing_file import read_drawing
+    from core.drawings.drawing_process import read_in_process
 
     machine = read_machine(args.machine)
     if args.out is not None and not args.list:
@@ -111,7 +112,8 @@ def _run(args: argparse.Namespace) -> int:
         raise CommandError("a bore begins with a hole: say its diameter with --hole", "no-hole")
     args.metric = args.metric or not machine.inch
     args.dialect = _language(args, machine)
-    drawing = read_drawing(Path(args.file))
+    with Progress(f"reading {args.file}, seconds") as progress:
+        drawing = read_in_process(Path(args.file), progress.reach)
     if args.layer and args.layer not in drawing.layers:
         raise CommandError(
             f"{drawing.name} has no layer {args.layer}: say {', '.join(drawing.layers)}", "no-layer"

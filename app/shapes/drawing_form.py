@@ -22,7 +22,7 @@ from core.shapes.shape_setting import Setting
 from core.shapes.sketch import Dim, Sketch, cut, part, sketch
 
 NO_DRAWINGS = "There is no drawing beside the programs: copy a DXF or SVG there by F6, F8."
-WAITS = "THE DRAWING IS BEING READ"
+CANCELED = "Reading was canceled: press F6 to read the drawing again."
 _WORDS = {"DUNIT": (*UNITS, OWN), "LAYER": (ALL,)}  # choices of a drawing that are words of ours
 
 
@@ -108,11 +108,12 @@ class DrawingForm(ShapeForm):
     plan: Plan | None = None
     pending: Asked | None = None
     comparison: Comparison | None = None
+    canceled: bool = False
 
     def work(self) -> None:
         """Ask for a plan of what is typed; what was planned before stays until it comes."""
         self.worked += 1
-        self.troubles = {}
+        self.troubles, self.canceled = {}, False
         values: dict[str, Value] = {}
         for word in self.typed:
             value = self._value(word)
@@ -138,6 +139,13 @@ class DrawingForm(ShapeForm):
             proposed |= self.plan.proposals
         known = {each.word: each.start for each in self.shape.fields if isinstance(each.start, str | float)}
         self.one = FromDrawing(self.shape, {**known, **proposed, **values})
+
+    def cancel(self) -> None:
+        """Reading is given up: nothing is planned until it is asked for again."""
+        self.pending, self.canceled = None, True
+        self.worked += 1
+        self.lines = []
+        self.troubles["FILE"] = CANCELED
 
     def take(self, plan: Plan) -> None:
         """The plan has come."""

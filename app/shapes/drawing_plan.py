@@ -9,6 +9,7 @@ from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from app.desk.latest import Watch
 from core.drawings.contour_walk import Net
 from core.drawings.drawing import Drawing, DrawingError
 from core.drawings.drawing_view import (
@@ -75,21 +76,22 @@ class Plan:
 
 
 class Planner:
-    """Keeps the drawing that was read last; it is asked on one worker."""
+    """Keeps the drawing that was read last; it is asked on one worker. ``reading``: a file is being read."""
 
-    def __init__(self, read: Callable[[Path], Drawing]) -> None:
+    def __init__(self, read: Callable[[Path, Watch], Drawing]) -> None:
         self._read = read
         self._known: tuple[Path, float, Drawing] | None = None
+        self.reading = False
 
-    def plan(self, asked: Asked) -> Plan:
-        """The plan; what is wrong stands beside its field."""
+    def plan(self, asked: Asked, watch: Watch) -> Plan:
+        """The plan; what is wrong stands beside its field. ``watch`` may end the reading."""
         try:
-            drawing = self._drawing(asked.path)
+            drawing = self._drawing(asked.path, watch)
         except DrawingError as error:
             return Plan(asked, troubles={"FILE": str(error)})
         return _Making(drawing, asked).plan()
 
-    def _drawing(self, path: Path) -> Drawing:
+    def _drawing(self, path: Path, watch: Watch) -> Drawing:
         try:
             changed = path.stat().st_mtime
         except OSError as error:
@@ -97,7 +99,11 @@ class Planner:
                 f"{path.name} cannot be read: {error.strerror or error}.", "unreadable"
             ) from error
         if self._known is None or self._known[:2] != (path, changed):
-            self._known = (path, changed, self._read(path))
+            self.reading = True
+            try:
+                self._known = (path, changed, self._read(path, watch))
+            finally:
+                self.reading = False
         return self._known[2]
 
 

@@ -9,10 +9,10 @@ from pathlib import Path
 from app.desk.latest import Latest, Watch
 from app.desk.sheet import STEPS, Key
 from app.desk.translation import tr
-from app.shapes.drawing_form import PROFILE, WAITS, DrawingForm
+from app.shapes.drawing_form import PROFILE, DrawingForm
 from app.shapes.drawing_plan import Plan, Planner
 from app.shapes.shape_form import ShapeForm
-from core.drawings.drawing_file import read_drawing
+from core.drawings.drawing_process import read_in_process
 from core.drawings.part_against_drawing import Comparison
 from core.language.source import Dialect, dialect_of
 from core.shapes.pieces import (
@@ -63,7 +63,7 @@ class Shapes:
     worker: Latest = field(default_factory=lambda: Latest("editing-shapes"))
     drawings: Callable[[], Mapping[str, Path]] = dict
     attempt: Attempt = nothing_tried
-    planner: Planner = field(default_factory=lambda: Planner(read_drawing))
+    planner: Planner = field(default_factory=lambda: Planner(read_in_process))
     planning: Latest = field(default_factory=lambda: Latest("planning-drawing"))
     trying: Latest = field(default_factory=lambda: Latest("trying-drawing"))
     table: Mapping[str, Shape] = field(default_factory=lambda: FORMS)  # of the list: shapes, or calculators
@@ -252,6 +252,10 @@ class Shapes:
         found = {2: Key("WRITE", self.write), 8: Key("LIST", self.to_list), 9: pad}
         if self.asked is not None:
             found[6] = Key("YES", self.answer)
+        elif self.form.waits:
+            found[6] = Key("CANCEL", self.cancel_reading)
+        elif isinstance(self.form, DrawingForm) and self.form.canceled:
+            found[6] = Key("READ", self.read_again)
         if self.form.instead is not None:
             found[5] = Key("DELETE", self.delete)
         if self.form.shape.contour:
@@ -332,6 +336,8 @@ class Shapes:
             self.asked, self.notice = None, ""
         elif self.notice:
             self.notice = ""
+        elif self.form is not None and self.form.waits:
+            self.cancel_reading()
         elif self.form is not None:
             self.to_list()
         else:
@@ -349,8 +355,8 @@ class Shapes:
         if form is None:
             return
         if form.waits:
-            self.notice = tr(WAITS)
-        elif form.troubles:
+            return  # the prompt says so
+        if form.troubles:
             self.notice = ""
             self._to_trouble(form)
         elif form.instead is not None and form.instead.foreign >= 0 and self.asked is None:
@@ -434,6 +440,18 @@ class Shapes:
 
     # --- a drawing
 
+    def cancel_reading(self) -> None:
+        """F6 and Esc while a drawing is read: its process ends."""
+        if isinstance(self.form, DrawingForm):
+            self.planning.give_up()
+            self.form.cancel()
+
+    def read_again(self) -> None:
+        """F6 after that."""
+        if isinstance(self.form, DrawingForm):
+            self.form.work()
+            self._preview()
+
     def _plan(self, form: ShapeForm) -> None:
         """What was typed is worked out beside the screen; then the program is tried."""
         if not isinstance(form, DrawingForm) or form.pending is None:
@@ -447,7 +465,7 @@ class Shapes:
                 self._try(form, plan)
 
         self.trying.give_up()
-        self.planning.ask(lambda _request: self.planner.plan(asked), planned, self._no_plan)
+        self.planning.ask(lambda watch: self.planner.plan(asked, watch), planned, self._no_plan)
 
     def _no_plan(self, why: str) -> None:
         self.notice = tr("THE DRAWING CANNOT BE WORKED OUT: {why}").format(why=why)
@@ -476,7 +494,13 @@ class Shapes:
             return tr("A LETTER OPENS A CALCULATOR OR A TEMPLATE; F10: TO THE TEXT")
         if self.form is None:
             return tr("A LETTER OPENS A SHAPE, RIGHT LEADS TO THOSE OF THIS PROGRAM; F10: TO THE TEXT")
-        return tr(WAITS if self.form.waits else self.form.trouble or _keys_of(self.form))
+        return self._waiting() if self.form.waits else tr(self.form.trouble or _keys_of(self.form))
+
+    def _waiting(self) -> str:
+        if not self.planner.reading:
+            return tr("WORKING OUT THE CONTOUR. PRESS F6 TO CANCEL")
+        words = tr("READING THE DRAWING: {seconds} s. PRESS F6 TO CANCEL")
+        return words.format(seconds=self.planning.reached)
 
 
 def _keys_of(form: ShapeForm) -> str:

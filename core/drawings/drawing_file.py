@@ -40,7 +40,7 @@ def _unreadable(path: Path, error: Exception) -> DrawingError:
     if isinstance(error, OSError) and error.errno is not None:
         return DrawingError(f"{path.name} cannot be read: {error.strerror}.", "unreadable")
     if isinstance(error, MemoryError):
-        words = f"{path.name} needs more memory than is free: close other programs."
+        words = f"{path.name} needs more memory than a drawing may have: save the contour of the part alone."
         return DrawingError(words, "out-of-memory")
     kind = path.suffix[1:].upper()
     return DrawingError(f"{path.name} is damaged or no {kind}: save the drawing anew.", "damaged")

@@ -27,8 +27,9 @@ MOST_BYTES = 512 * MB
 
 def damage(path: Path, error: Exception) -> RecordError:
     """Return the error for a file whose content is not as it was written."""
-    words = f" ({error})" if isinstance(error, UnsoundError) else ""
-    return RecordError(f"{path} is damaged and cannot be read{words}; open another record", "damaged")
+    if isinstance(error, UnsoundError):
+        return RecordError(f"{path} is damaged ({error}); open another record", "damaged")
+    return RecordError(f"{path} is damaged; open another record", "damaged")
 
 
 def why(path: Path, error: OSError) -> RecordError:

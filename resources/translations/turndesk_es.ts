@@ -13770,6 +13770,11 @@
     </message>
     <message>
       <location filename="app/shapes/drawing_form.py" />
+      <source>Reading was canceled: press F6 to read the drawing again.</source>
+      <translation>Lectura cancelada: pulse F6 para leer el dibujo de nuevo.</translation>
+    </message>
+    <message>
+      <location filename="app/shapes/drawing_form.py" />
       <source>SHIFT</source>
       <translation>SHIFT</translation>
     </message>
@@ -13782,11 +13787,6 @@
       <location filename="app/shapes/drawing_form.py" />
       <source>STOCK BEFORE THE FACE</source>
       <translation>MATERIAL ANTE LA CARA</translation>
-    </message>
-    <message>
-      <location filename="app/shapes/drawing_form.py" />
-      <source>THE DRAWING IS BEING READ</source>
-      <translation>SE ESTÁ LEYENDO EL DIBUJO</translation>
     </message>
     <message>
       <location filename="app/shapes/drawing_form.py" />
@@ -13900,6 +13900,11 @@
     </message>
     <message>
       <location filename="app/shapes/shapes_model.py" />
+      <source>CANCEL</source>
+      <translation>CANCELAR</translation>
+    </message>
+    <message>
+      <location filename="app/shapes/shapes_model.py" />
       <source>CHANGED BY HAND IN THE TEXT, AND TAKEN OVER: {fields}</source>
       <translation>CAMBIADO A MANO EN EL TEXTO Y TOMADO DE ALLÍ: {fields}</translation>
     </message>
@@ -13935,6 +13940,11 @@
     </message>
     <message>
       <location filename="app/shapes/shapes_model.py" />
+      <source>READING THE DRAWING: {seconds} s. PRESS F6 TO CANCEL</source>
+      <translation>LEYENDO EL DIBUJO: {seconds} s. PULSE F6 PARA CANCELAR</translation>
+    </message>
+    <message>
+      <location filename="app/shapes/shapes_model.py" />
       <source>SHAPES ARE WRITTEN IN OMNITURN OR SINUMERIK: THIS PROGRAM SPEAKS ANOTHER LANGUAGE</source>
       <translation>LAS FORMAS SE ESCRIBEN EN OMNITURN O SINUMERIK: ESTE PROGRAMA HABLA OTRO LENGUAJE</translation>
     </message>
@@ -13952,6 +13962,11 @@
       <location filename="app/shapes/shapes_model.py" />
       <source>TYPE A FIGURE OR A SUM, RETURN: NEXT FIELD; F2 WRITES IT INTO THE PROGRAM</source>
       <translation>ESCRIBA UNA CIFRA O UNA SUMA, RETURN: CAMPO SIGUIENTE; F2 LO ESCRIBE EN EL PROGRAMA</translation>
+    </message>
+    <message>
+      <location filename="app/shapes/shapes_model.py" />
+      <source>WORKING OUT THE CONTOUR. PRESS F6 TO CANCEL</source>
+      <translation>CALCULANDO EL CONTORNO. PULSE F6 PARA CANCELAR</translation>
     </message>
     <message>
       <location filename="app/shapes/shapes_model.py" />
@@ -15622,11 +15637,6 @@
       <location filename="app/transfer/serial_transfer.py" />
       <source>CALLS ITSELF</source>
       <translation>SE LLAMA</translation>
-    </message>
-    <message>
-      <location filename="app/transfer/serial_transfer.py" />
-      <source>CANCEL</source>
-      <translation>CANCELAR</translation>
     </message>
     <message>
       <location filename="app/transfer/serial_transfer.py" />
@@ -17549,14 +17559,14 @@
       <translation>%1 tiene más de %2 líneas: deje en él solo la capa del contorno.</translation>
     </message>
     <message>
-      <location filename="core/drawings/drawing.py" />
-      <source>%1 is damaged or no %2: save the drawing anew.</source>
-      <translation>%1 está dañado o no es %2: guarde el dibujo de nuevo.</translation>
+      <location filename="core/drawings/drawing_file.py" />
+      <source>%1 has more than %2 MB: save the contour of the part alone.</source>
+      <translation>%1 tiene más de %2 MB: guarde solo el contorno de la pieza.</translation>
     </message>
     <message>
       <location filename="core/drawings/drawing_file.py" />
-      <source>%1 has %2 MB, %3 are read: save the contour of the part alone.</source>
-      <translation>%1 tiene %2 MB, se leen %3: guarde solo el contorno de la pieza.</translation>
+      <source>%1 is damaged or no %2: save the drawing anew.</source>
+      <translation>%1 está dañado o no es %2: guarde el dibujo de nuevo.</translation>
     </message>
     <message>
       <location filename="core/drawings/drawing_file.py" />
@@ -17570,8 +17580,23 @@
     </message>
     <message>
       <location filename="core/drawings/drawing_file.py" />
-      <source>%1 needs more memory than is free: close other programs.</source>
-      <translation>%1 necesita más memoria de la que hay libre: cierre otros programas.</translation>
+      <source>%1 needs more memory than a drawing may have: save the contour of the part alone.</source>
+      <translation>%1 necesita más memoria de la que puede tener un dibujo: guarde solo el contorno de la pieza.</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/drawing_process.py" />
+      <source>%1 cannot be read: no process can be started.</source>
+      <translation>%1 no se puede leer: no se puede iniciar ningún proceso.</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/drawing_process.py" />
+      <source>%1 could not be read with %2 MB of memory: save the contour of the part alone.</source>
+      <translation>%1 no se pudo leer con %2 MB de memoria: guarde solo el contorno de la pieza.</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/drawing_process.py" />
+      <source>%1 takes more than %2 s to read: save the contour of the part alone.</source>
+      <translation>%1 tarda más de %2 s en leerse: guarde solo el contorno de la pieza.</translation>
     </message>
     <message>
       <location filename="core/drawings/drawing_view.py" />
@@ -18582,6 +18607,11 @@
       <location filename="core/executor/snapshot.py" />
       <source>state %1 cannot become %2</source>
       <translation>el estado %1 no puede pasar a %2</translation>
+    </message>
+    <message>
+      <location filename="core/executor/snapshot.py" />
+      <source>way out</source>
+      <translation type="unfinished" />
     </message>
     <message>
       <location filename="core/executor/spindle_control.py" />
@@ -29790,8 +29820,18 @@
     </message>
     <message>
       <location filename="core/part/stock_spec.py" />
+      <source>row %1 of the profile lies too far out: check its unit</source>
+      <translation>la fila %1 del perfil está demasiado lejos: compruebe su unidad</translation>
+    </message>
+    <message>
+      <location filename="core/part/stock_spec.py" />
       <source>the points of a profile go one way along Z</source>
       <translation>los puntos de un perfil van en un solo sentido a lo largo de Z</translation>
+    </message>
+    <message>
+      <location filename="core/part/stock_spec.py" />
+      <source>the profile is damaged; it is CSV text of z, r</source>
+      <translation>el perfil está dañado; es un texto CSV de z, r</translation>
     </message>
     <message>
       <location filename="core/proving/air_checks.py" />
@@ -31439,6 +31479,46 @@
       <translation>el driver no dice dónde están los carros; no hay trayectoria que comparar</translation>
     </message>
     <message>
+      <location filename="core/records/record.py" />
+      <source>it began %1 s after 1970</source>
+      <translation>comenzó %1 s después de 1970</translation>
+    </message>
+    <message>
+      <location filename="core/records/record.py" />
+      <source>it has %1 samples a second</source>
+      <translation>tiene %1 muestras por segundo</translation>
+    </message>
+    <message>
+      <location filename="core/records/record.py" />
+      <source>its times do not rise</source>
+      <translation>sus tiempos no aumentan</translation>
+    </message>
+    <message>
+      <location filename="core/records/record.py" />
+      <source>the name of a channel is no text</source>
+      <translation>el nombre de un canal no es texto</translation>
+    </message>
+    <message>
+      <location filename="core/records/record.py" />
+      <source>what it says of itself is no text</source>
+      <translation>su descripción no es texto</translation>
+    </message>
+    <message>
+      <location filename="core/records/record_errors.py" />
+      <source>%1 is damaged (%2); open another record</source>
+      <translation>%1 está dañado (%2); abra otro registro</translation>
+    </message>
+    <message>
+      <location filename="core/records/record_errors.py" />
+      <source>%1 is damaged; open another record</source>
+      <translation>%1 está dañado; abra otro registro</translation>
+    </message>
+    <message>
+      <location filename="core/records/record_errors.py" />
+      <source>%1: %2, so it is no record of the scope; look at its name</source>
+      <translation>%1: %2; por eso no es un registro del osciloscopio; mire su nombre</translation>
+    </message>
+    <message>
       <location filename="core/records/record_errors.py" />
       <source>%1: the disk is full; make room on it</source>
       <translation>%1: el disco está lleno; haga sitio en él</translation>
@@ -31450,13 +31530,13 @@
     </message>
     <message>
       <location filename="core/records/record_file.py" />
-      <source>%1 is cut off; it cannot be read</source>
-      <translation>%1 está cortado; no se puede leer</translation>
+      <source>%1 has %2 samples of %3</source>
+      <translation>%1 tiene %2 muestras de %3</translation>
     </message>
     <message>
       <location filename="core/records/record_file.py" />
-      <source>%1 is damaged and cannot be read (%2)</source>
-      <translation>%1 está dañado y no se puede leer (%2)</translation>
+      <source>%1 is cut off; it cannot be read</source>
+      <translation>%1 está cortado; no se puede leer</translation>
     </message>
     <message>
       <location filename="core/records/record_file.py" />
@@ -31472,6 +31552,21 @@
       <location filename="core/records/record_file.py" />
       <source>%1 was written by a newer TurnDesk (version %2); open it with that one</source>
       <translation>%1 fue escrito por un TurnDesk más nuevo (versión %2); ábralo con ese</translation>
+    </message>
+    <message>
+      <location filename="core/records/record_file.py" />
+      <source>it does not say when it began</source>
+      <translation>no dice cuándo comenzó</translation>
+    </message>
+    <message>
+      <location filename="core/records/record_file.py" />
+      <source>its description is of another kind</source>
+      <translation>su descripción es de otro tipo</translation>
+    </message>
+    <message>
+      <location filename="core/records/record_file.py" />
+      <source>unpacked, it has more than %1 MB</source>
+      <translation>desempaquetado, tiene más de %1 MB</translation>
     </message>
     <message>
       <location filename="core/records/ring_file.py" />
@@ -31497,6 +31592,16 @@
       <location filename="core/records/ring_file.py" />
       <source>%1 was written by a newer TurnDesk (version %2); open it with that</source>
       <translation>%1 fue escrito por un TurnDesk más nuevo (versión %2); ábralo con ese</translation>
+    </message>
+    <message>
+      <location filename="core/records/ring_file.py" />
+      <source>it states %1 rows</source>
+      <translation>indica %1 filas</translation>
+    </message>
+    <message>
+      <location filename="core/records/ring_file.py" />
+      <source>its head has no such length</source>
+      <translation>su cabecera no tiene esa longitud</translation>
     </message>
     <message>
       <location filename="core/records/step_response.py" />

@@ -9,6 +9,7 @@ from typing import Any
 import ezdxf
 import numpy as np
 
+from app.shapes.drawing_plan import Asked, Plan, Planner
 from core.drawings.drawing_file import read_drawing
 from core.drawings.drawing_view import Profile, Side, View, axis_named, contours, profile
 from core.drawings.profile_job import proposed_fields
@@ -83,3 +84,8 @@ def radii(
     points = np.array(part.last.bore if inside else part.last.outside)[::-1]
     found: np.ndarray = np.interp(np.array(list(at)), points[:, 0], points[:, 1])
     return found
+
+
+def planned(asked: Asked) -> Plan:
+    """Return the plan of a form, of a drawing that is read here."""
+    return Planner(lambda path, _watch: read_drawing(path)).plan(asked, lambda _seconds: None)

@@ -6,10 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from app.shapes.drawing_plan import Asked, Planner
-from core.drawings.drawing_file import read_drawing
+from app.shapes.drawing_plan import Asked
 from core.shapes.shape_setting import Setting, Shop
-from tests.drawings.hand import chain, dxf
+from tests.drawings.hand import chain, dxf, planned
 
 INCH, FOOT, MM, METRE = 1, 2, 4, 6  # $INSUNITS
 TRAVEL = (150.0, 200.0)  # mm, X as a radius and Z
@@ -23,7 +22,7 @@ def shaft(path: Path, unit: int, long: float, radius: float) -> Path:
 def trouble(path: Path, travel: tuple[float, float] = TRAVEL, **typed: str) -> str:
     """What the form of the screen reports at the field of the unit; other faults are not expected."""
     setting = Setting(metric=True, shop=Shop(travel=travel))
-    plan = Planner(read_drawing).plan(Asked(path, typed, (), setting))
+    plan = planned(Asked(path, typed, (), setting))
     assert set(plan.troubles) <= {"DUNIT"}
     return plan.troubles.get("DUNIT", "")
 

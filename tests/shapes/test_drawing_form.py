@@ -4,14 +4,19 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
+from threading import Event
 from typing import Any
 
 import pytest
 
 from app.compose.shapes_desk import attempt
+from app.desk.latest import AbandonedError, Watch
 from app.screen.language import speak_in
 from app.shapes.drawing_form import DrawingForm
+from app.shapes.drawing_plan import Planner
 from app.shapes.shapes_model import Shapes
+from core.drawings.drawing import Drawing
+from core.drawings.drawing_file import read_drawing
 from core.shapes.shape_setting import Setting, Shop
 from tests.drawings.hand import TOOLS, chain, dxf
 from tests.shapes.hand import machine
@@ -157,10 +162,76 @@ def test_without_a_drawing_it_says_where_one_goes(desk: Desk) -> None:
     assert text("shapes.no-drawing") in desk.open().trouble
 
 
-def test_nothing_is_written_before_the_drawing_is_read(desk: Desk, tmp_path: Path) -> None:
+class Reading:
+    """Reading that goes on until it is canceled, or let go."""
+
+    def __init__(self) -> None:
+        self.begun, self.free, self.canceled = Event(), Event(), Event()
+
+    def __call__(self, path: Path, watch: Watch) -> Drawing:
+        self.begun.set()
+        try:
+            while not self.free.wait(0.01):
+                watch(7.4)
+        except AbandonedError:
+            self.canceled.set()
+            raise
+        return read_drawing(path)
+
+
+@pytest.fixture
+def reading(desk: Desk, tmp_path: Path) -> Reading:
+    """The form of a drawing is open, and its file is being read."""
     dxf(tmp_path / "a.dxf", chain(*STEP))
+    found = Reading()
+    desk.shapes.planner = Planner(found)
     desk.shapes.open("x.nc", "", 1)
     desk.shapes.typed("x")
+    assert found.begun.wait(60.0)
+    return found
+
+
+def test_nothing_is_written_before_the_drawing_is_read(desk: Desk, reading: Reading) -> None:
+    while desk.shapes.planning.reached < 7:
+        pass
+    assert desk.shapes.prompt() == text("shapes.being-read", seconds=7)
     desk.shapes.write()
-    assert desk.shapes.prompt() == text("shapes.being-read")
     assert desk.shapes.text == ""
+    reading.free.set()
+    desk.settle()
+    assert desk.shapes.form is not None
+    assert desk.shapes.form.lines
+
+
+@pytest.mark.parametrize("how", ["F6", "Esc"])
+def test_reading_is_canceled_and_begun_again(desk: Desk, reading: Reading, how: str) -> None:
+    shapes = desk.shapes
+    if how == "Esc":
+        assert shapes.escape()
+    else:
+        shapes.keys()[6].action()
+    assert reading.canceled.wait(60.0)
+    desk.settle()
+    assert isinstance(shapes.form, DrawingForm)
+    assert shapes.prompt() == text("shapes.reading-canceled")
+    assert not shapes.form.waits
+    shapes.write()
+    assert shapes.text == ""  # there is nothing to write
+    reading.free.set()
+    shapes.keys()[6].action()
+    desk.settle()
+    assert not shapes.form.troubles
+    assert shapes.form.lines
+    assert shapes.keys().get(6) is None
+
+
+def test_a_page_that_closes_ends_the_reading(desk: Desk, reading: Reading) -> None:
+    desk.shapes.close()
+    assert reading.canceled.wait(60.0)
+
+
+def test_a_second_escape_leaves_the_form(desk: Desk, reading: Reading) -> None:
+    assert desk.shapes.escape()
+    assert desk.shapes.form is not None
+    assert desk.shapes.escape()
+    assert desk.shapes.form is None

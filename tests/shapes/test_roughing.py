@@ -6,8 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from app.shapes.drawing_plan import Asked, Planner
-from core.drawings.drawing_file import read_drawing
+from app.shapes.drawing_plan import Asked
 from core.language.source import Dialect
 from core.part.tool_shape import ToolKind, ToolShape
 from core.shapes.contour import Row
@@ -17,7 +16,7 @@ from core.shapes.shape import Filled, filled
 from core.shapes.shape_fields import Value
 from core.shapes.shape_setting import Setting, Shop
 from core.shapes.shape_table import HELPERS_OF, SHAPES_OF
-from tests.drawings.hand import chain, dxf
+from tests.drawings.hand import chain, dxf, planned
 from tests.shapes.hand import Programmer, bad, proved
 
 
@@ -226,11 +225,11 @@ def test_the_form_of_a_drawing_shows_the_depth_that_its_program_has(tmp_path: Pa
     points = (0.0, 0.0), (0.0, 6.0), (-10.0, 6.0), (-14.0, 9.0), (-20.0, 9.0), (-20.0, 0.0)
     path = dxf(tmp_path / "x.dxf", chain(*points))
     now = setting(tools={1: CNMG}, metric=True)
-    plan = Planner(read_drawing).plan(Asked(path, {}, (), now))
+    plan = planned(Asked(path, {}, (), now))
     assert plan.proposals["ROUGH"] == pytest.approx(1.0)
     assert plan.made is not None
     assert any(line.startswith("G75I1U") for line in plan.made.lines)
-    plan = Planner(read_drawing).plan(Asked(path, {"ROUGH": 7.0}, (), now))
+    plan = planned(Asked(path, {"ROUGH": 7.0}, (), now))
     assert "ROUGH" in plan.troubles  # CNMG 12 takes 6.448 mm
 
 
