@@ -87,9 +87,11 @@ def _add_tool_options(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Write the program, and say what stays of the drawing; 1 when the program would have errors."""
     from core.drawings.drawing import DrawingError
+    from core.drawings.work_limit import limited_work
 
     try:
-        return _run(args)
+        with limited_work(lambda _seconds: None):
+            return _run(args)
     except DrawingError as error:
         raise CommandError(str(error), error_code(error)) from error
 

@@ -27,6 +27,7 @@ from core.drawings.drawing_view import (
 from core.drawings.profile_job import proposed_fields
 from core.drawings.profile_program import ProfileProgram, profile_program
 from core.drawings.unit_check import UNITS, wrong_unit
+from core.drawings.work_limit import limited_work
 from core.geometry.lines_and_arcs import Arc, Element, Line
 from core.shapes.shape_fields import Value, Values
 from core.shapes.shape_setting import Setting
@@ -84,12 +85,13 @@ class Planner:
         self.reading = False
 
     def plan(self, asked: Asked, watch: Watch) -> Plan:
-        """The plan; what is wrong stands beside its field. ``watch`` may end the reading."""
+        """The plan; what is wrong stands beside its field. ``watch`` may end it."""
         try:
             drawing = self._drawing(asked.path, watch)
         except DrawingError as error:
             return Plan(asked, troubles={"FILE": str(error)})
-        return _Making(drawing, asked).plan()
+        with limited_work(watch):
+            return _Making(drawing, asked).plan()
 
     def _drawing(self, path: Path, watch: Watch) -> Drawing:
         try:

@@ -6,18 +6,20 @@ All points are (r, z) from the axis and the zero of Z, mm, as a lathe has them.
 from __future__ import annotations
 
 import math
+from bisect import bisect_right
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
 from core.drawings.drawing import DrawingError
+from core.drawings.work_limit import check_work
 from core.geometry.intersections import intersections
 from core.geometry.lines_and_arcs import Arc, Element, Line, Point, arc_between
 
 GAP = 0.02
 """mm: ends nearer than this are joined."""
 _AXIS = 1e-6  # mm
-_CELLS = 64  # along Z, in which ends and elements are looked for
+_CELLS, _IN_A_CELL = 64, 8  # along Z, in which ends and elements are looked for; elements in one
 _SQUARE = 0.02  # cosine
 _AHEAD = 0.05  # mm along an element, where its direction is taken: of tangent ones the sharper arc is told
 
@@ -154,13 +156,14 @@ def _at_touching_ends(elements: list[Element], gap: float) -> list[Element]:
         return []
     boxes = [each.box for each in elements]
     low, high = min(b[2] for b in boxes), max(b[3] for b in boxes)
-    size = max((high - low) / _CELLS, gap)
+    size = max((high - low) / max(_CELLS, len(elements) // _IN_A_CELL), gap)
     cells: dict[int, list[Point]] = {}
     for each in elements:
         for end in (each.start, each.end):
             cells.setdefault(math.floor((end[1] - low) / size), []).append(end)
     found: list[Element] = []
     for each, box in zip(elements, boxes, strict=True):
+        check_work()
         first = math.floor((box[2] - gap - low) / size)
         last = math.floor((box[3] + gap - low) / size)
         near = (p for k in range(first, last + 1) for p in cells.get(k, ()))
@@ -213,7 +216,8 @@ def _foremost(net: Net, gap: float) -> int:
 
 
 def _at_front(net: Net, gap: float) -> set[int]:
-    return {n for pair in net.ends for n in pair if net.nodes[n][1] >= net.reach[1] - gap}
+    front = net.reach[1] - gap
+    return {n for pair in net.ends for n in pair if net.nodes[n][1] >= front}
 
 
 def _goes_in(net: Net, node: int, gap: float) -> bool:
@@ -246,6 +250,7 @@ def _walk(
     best: list[tuple[int, int]] = []
     node, seen = start, {start}
     while True:
+        check_work()
         step = _next(net, at_node[node], node, shut, way, back, hand)
         if step is not None:
             shut.add(step)
@@ -311,22 +316,37 @@ def _checked(net: Net, walked: list[Element], gap: float) -> list[Element]:
 
 
 def _no_crossing(walked: Sequence[Element]) -> None:
+    found = ((pair, point) for pair in _overlapping(walked) for point in _crossing(walked, *pair))
+    first = min(found, key=lambda crossing: crossing[0], default=None)
+    if first is not None:
+        _, point = first
+        behind = walked[0].start[1] - point[1]
+        raise DrawingError(
+            f"has a contour that crosses itself {behind:.3f} mm behind its face "
+            f"at a diameter of {2 * point[0]:.3f} mm: mend it there.",
+            "crosses-itself",
+        )
+
+
+def _overlapping(walked: Sequence[Element]) -> Iterator[tuple[int, int]]:
+    """Yield the numbers of two elements whose boxes overlap, the lesser first; swept along Z."""
     boxes = [each.box for each in walked]
-    for i, (a, box) in enumerate(zip(walked, boxes, strict=True)):
-        for k in range(i + 1, len(walked)):
-            other = boxes[k]
-            apart = box[0] > other[1] or other[0] > box[1] or box[2] > other[3] or other[2] > box[3]
-            if apart:
-                continue
-            shared = (walked[i].start, walked[i].end, walked[k].start, walked[k].end)
-            for point in intersections(a, walked[k]):
-                if min(math.dist(point, end) for end in shared) > 1e-3:
-                    behind = walked[0].start[1] - point[1]
-                    raise DrawingError(
-                        f"has a contour that crosses itself {behind:.3f} mm behind its face "
-                        f"at a diameter of {2 * point[0]:.3f} mm: mend it there.",
-                        "crosses-itself",
-                    )
+    order = sorted(range(len(walked)), key=lambda n: boxes[n][2])
+    lows = [boxes[n][2] for n in order]
+    for at, i in enumerate(order):
+        check_work()
+        inner, outer, _, high = boxes[i]
+        for k in order[at + 1 : bisect_right(lows, high)]:
+            if inner <= boxes[k][1] and boxes[k][0] <= outer:
+                yield min(i, k), max(i, k)
+
+
+def _crossing(walked: Sequence[Element], i: int, k: int) -> Iterator[Point]:
+    """Yield where two elements cross, but for their ends."""
+    shared = (walked[i].start, walked[i].end, walked[k].start, walked[k].end)
+    for point in intersections(walked[i], walked[k]):
+        if min(math.dist(point, end) for end in shared) > 1e-3:
+            yield point
 
 
 def turned_about(elements: Iterable[Element]) -> Iterator[Element]:

@@ -179,10 +179,16 @@ def on_lathe(elements: Iterable[Element], view: View) -> Iterator[Element]:
 
 
 def contours(drawing: Drawing, view: View, layer: str = "") -> list[Net]:
-    """What hangs together on the side of the axis where the part is drawn; Z as ``on_lathe`` has it."""
+    """What hangs together on the side of the axis where the part is drawn; Z as ``on_lathe`` has it.
+
+    Raises DrawingError for more lines than the limit of work allows.
+    """
     there = [each for each in drawing.on(layer) if not each.centre] or list(drawing.on(layer))
     placed = list(on_lathe((each.element for each in there), view))
-    above, below = nets(placed, view.gap), nets(turned_about(placed), view.gap)
+    try:
+        above, below = nets(placed, view.gap), nets(turned_about(placed), view.gap)
+    except DrawingError as error:
+        raise DrawingError(f"{drawing.name} {error}", error.code) from None
     on_axis = [bool(found) and _touches(found[0], view.gap) for found in (above, below)]
     return below if below and (not above or (on_axis[1] and not on_axis[0])) else above
 

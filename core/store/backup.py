@@ -47,7 +47,7 @@ def _of_histories(connection: sqlite3.Connection) -> tuple[str, ...]:
 
 def _found(connection: sqlite3.Connection) -> tuple[str, ...]:
     pages = [str(row[0]) for row in connection.execute("PRAGMA integrity_check")]
-    found = [f"the file is damaged: {text}" for text in pages if text != "ok"]
+    found = [f"the file is damaged: {' '.join(text.split())}" for text in pages if text != "ok"]
     found += [
         f"a row of {table} points to a row of {parent} that is not there"
         for table, _, parent, _ in connection.execute("PRAGMA foreign_key_check")

@@ -17809,6 +17809,11 @@
       <translation>vuelve por debajo de sí mismo</translation>
     </message>
     <message>
+      <location filename="core/drawings/work_limit.py" />
+      <source>has too many lines beside each other: save the contour of the part alone.</source>
+      <translation>tiene demasiadas líneas una junto a otra: guarde solo el contorno de la pieza.</translation>
+    </message>
+    <message>
       <location filename="core/executor/changed_offsets.py" />
       <source>another program is under way: new offsets are taken by the same program only</source>
       <translation>hay otro programa en marcha: los correctores nuevos sólo los toma el mismo programa</translation>
