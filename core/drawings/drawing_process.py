@@ -62,6 +62,7 @@ def read_in_process(path: Path, go_on: GoOn = lambda _seconds: None, limits: Lim
                     raise _too_long(path, limits.clock)
         finally:
             process.kill()
+            process.wait()
     if process.returncode:
         raise _ended(path, process.returncode, limits)
     with failures_as(lambda _error: _ended(path, 1, limits)):
