@@ -21619,6 +21619,16 @@
       <translation>velocidad superficial constante</translation>
     </message>
     <message>
+      <location filename="core/interpreter/omniturn/follow_ups.py" />
+      <source>The arc's center is on the next line.</source>
+      <translation>El centro del arco está en la línea siguiente.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/follow_ups.py" />
+      <source>Write %1 on the line of the arc.</source>
+      <translation>Escriba %1 en la línea del arco.</translation>
+    </message>
+    <message>
       <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
       <source>%1 has no LF.</source>
       <translation>%1 no tiene LF.</translation>
