@@ -11,8 +11,8 @@ import os
 import stat
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from io import BufferedReader
 from pathlib import Path
-from typing import BinaryIO
 
 from core.coded_error import CodedError
 
@@ -29,7 +29,7 @@ class TooLargeError(OSError):
     """The file has more bytes than any of its kind."""
 
 
-def open_input(path: Path, most: int | None = None) -> BinaryIO:
+def open_input(path: Path, most: int | None = None) -> BufferedReader:
     """Open a regular file of at most ``most`` bytes without waiting for it. Raises OSError alone.
 
     Without ``most`` the file may have any size: the caller reads a part of it.

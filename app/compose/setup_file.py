@@ -107,7 +107,7 @@ def _machine_members(named: str | None) -> dict[str, Path]:
 def _write(made: Path, members: dict[str, Path]) -> None:
     """Raises CommandError, also for a program that may not be read."""
     try:
-        hashes = {name: hashlib.sha256(path.read_bytes()).hexdigest() for name, path in members.items()}
+        hashes = {name: _hash_of(path) for name, path in members.items()}
         told = {"format": FORMAT, "made": datetime.now(UTC).isoformat(timespec="seconds"), "sha256": hashes}
         # A computer without a clock of its own dates its files before 1980, which ZIP cannot say.
         with zipfile.ZipFile(made, "w", zipfile.ZIP_DEFLATED, strict_timestamps=False) as file:
@@ -115,11 +115,17 @@ def _write(made: Path, members: dict[str, Path]) -> None:
             for name, path in members.items():
                 file.write(path, name)
     except OSError as error:
-        if error.errno in _NO_ROOM:
+        if error.errno in _NO_ROOM and not isinstance(error, TooLargeError):
             raise CommandError(
                 f"{made.parent.parent} has no room for a setup; make room there", "disk-full"
             ) from error
         raise CommandError(f"{error.filename} cannot be read: {error.strerror}", "unreadable") from error
+
+
+def _hash_of(path: Path) -> str:
+    """Return the hash of a file that has the size of a member at most. Raises OSError."""
+    with open_input(path, MOST) as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
 
 
 def _told(names: list[str], placed: Path | None = None) -> SetupTold:

@@ -119,6 +119,15 @@ def _spoil(saved: Path, bad: Path, *, half: bool) -> None:
     bad.write_bytes(data)
 
 
+def test_a_program_of_three_gigabytes_makes_no_setup(saved: Path, turndesk: Turndesk, home: Path) -> None:
+    with (home / "programs" / "huge.nc").open("wb") as file:
+        file.truncate(3_000_000_000)
+    told = turndesk("setup", "save", saved.with_name("b.setup"))
+    assert (told.status, told.code) == (2, "unreadable")
+    assert "huge.nc" in told.err
+    assert not saved.with_name("b.setup").exists()
+
+
 def test_a_bad_machine_file_makes_no_setup(turndesk: Turndesk, tmp_path: Path) -> None:
     turndesk("offsets", "set", "T3", "x=1", "z=2")
     bad = tmp_path / "bad.toml"

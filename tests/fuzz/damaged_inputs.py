@@ -1,4 +1,4 @@
-"""Damaged inputs for one target, by number: the same number is the same input on every computer."""
+"""Damaged inputs for one target, by number: the same number is the same damage on every computer."""
 
 from __future__ import annotations
 

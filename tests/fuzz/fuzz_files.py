@@ -217,6 +217,8 @@ def _drawings(ending: str) -> Iterator[bytes]:
     yield _PLAIN_DXF
     from tests.drawings.hand import chain, dxf  # noqa: PLC0415  it needs the library of drawings
 
+    import_module("ezdxf").options.write_fixed_meta_data_for_testing = True  # the same bytes at every run
+
     for points in (
         ((0, 0), (0, 5), (-10, 5, 0.4), (-10, 8), (-30, 8), (-30, 0)),
         ((0, 0, 0), (0, 5, 0), (-10, 5, 0), (-12, 4, -0.2), (-20, 9, 0)),
