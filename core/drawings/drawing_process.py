@@ -25,7 +25,7 @@ GoOn = Callable[[float], None]
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """What reading one drawing may take. A drawing of 6 MB takes 2 s and 140 MB; the largest has 16 MB.
+    """What reading one drawing may take. The largest, a DXF of 16 MB, takes 4 s and 240 MB.
 
     ``memory``: bytes of address space; ``processor``, ``clock``: seconds. Only Linux limits memory and
     processor.
