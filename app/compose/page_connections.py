@@ -61,9 +61,8 @@ class Connection(HTTPChannel):
             self.will_close = True
 
     def _make_room(self) -> None:
-        others = [
-            each for each in self.server.active_channels.values() if each is not self and not each.will_close
-        ]
+        channels = cast("dict[int, Connection]", self.server.active_channels)
+        others = [each for each in channels.values() if each is not self and not each.will_close]
         near = [each for each in others if each.addr[0] == self.addr[0]]
         for crowd, most in ((near, MOST_OF_ONE), (others, MOST)):
             if len(crowd) >= most:
