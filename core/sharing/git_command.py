@@ -105,6 +105,8 @@ class GitCommand:
 
 
 def _bare(line: str) -> str:
+    """Without who logs in: git repeats addresses."""
+    line = re.sub(r"://[^/\s'\"]*@", "://", line)
     return re.sub(r"^(remote|fatal|error|ssh): *", "", line.strip(), flags=re.IGNORECASE)
 
 

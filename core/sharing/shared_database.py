@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import importlib.util
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
-from typing import TYPE_CHECKING
+from contextlib import contextmanager, suppress
+from typing import TYPE_CHECKING, Any
 
+from core.sharing.connection_string import parsed, shown, with_tls
 from core.sharing.shared_place import Found, Published, database_at
 from core.sharing.sharing_errors import Cause, SharingError
 from core.sharing.version_record import (
@@ -33,13 +33,22 @@ CREATE TABLE IF NOT EXISTS turndesk.desks (home text PRIMARY KEY, state bytea NO
 """
 _ADD = "INSERT INTO turndesk.versions VALUES (%s, %s, %s) ON CONFLICT DO NOTHING"
 _TELL = "INSERT INTO turndesk.desks VALUES (%s, %s) ON CONFLICT (home) DO UPDATE SET state = excluded.state"
+_LIMITS = {
+    "connect_timeout": 5,
+    "application_name": "turndesk",
+    "options": "-c statement_timeout=30s -c lock_timeout=10s -c synchronous_commit=on",
+    "keepalives_idle": 10,
+    "tcp_user_timeout": 15_000,  # ms: a network that has gone is noticed
+}
 _AT_ONCE = 500  # records a question
-# What a server says that is asked but refuses to begin: libpq hands on its sentence and no code.
+# What a server says that is asked but refuses to begin: libpq hands on its sentence and no code. It may try
+# twice, with TLS and without: the cause that stands first here is the one to remove.
 _AT_THE_DOOR: tuple[tuple[Cause, tuple[str, ...]], ...] = (
-    (
-        Cause.NO_RIGHT,
-        ("authentication failed", "no pg_hba.conf entry", "permission denied", "no password supplied"),
-    ),
+    (Cause.WRONG_PASSWORD, ("authentication failed", "no password supplied")),
+    (Cause.NOT_TRUSTED, ("certificate", "ssl error")),
+    (Cause.NO_TLS, ("does not support ssl",)),
+    (Cause.TLS_ONLY, ("no encryption",)),
+    (Cause.NO_RIGHT, ("no pg_hba.conf entry", "permission denied")),
     (Cause.NOT_THERE, ("does not exist",)),
     (Cause.FULL, ("no space left",)),
 )
@@ -61,8 +70,9 @@ class SharedDatabase:
     """
 
     def __init__(self, conninfo: str) -> None:
-        self.name = database_at(_named(conninfo))
-        self._conninfo = conninfo
+        self.name, self._conninfo = database_at("of [sharing] postgresql"), conninfo
+        with suppress(SharingError):  # told by whoever asks the database
+            self.name = database_at(shown(with_tls(parsed(conninfo))))
 
     def begin(self) -> None:
         """Schema and tables, in one transaction."""
@@ -131,19 +141,11 @@ class SharedDatabase:
     @contextmanager
     def _asked(self, *, demand: bool = True) -> Iterator[psycopg.Connection]:
         """One transaction on a connection of its own; what the server refuses comes as SharingError."""
-        if importlib.util.find_spec("psycopg") is None:
-            raise Cause.NO_PSYCOPG.error(self.name)
+        values: dict[str, Any] = with_tls(parsed(self._conninfo))
         import psycopg  # noqa: PLC0415  optional, and only for those who share so
 
         try:
-            with psycopg.connect(
-                self._conninfo,
-                connect_timeout=5,
-                application_name="turndesk",
-                options="-c statement_timeout=30s -c lock_timeout=10s -c synchronous_commit=on",
-                keepalives_idle=10,
-                tcp_user_timeout=15_000,  # ms: a network that has gone is noticed
-            ) as connection:
+            with psycopg.connect(**{**values, **_LIMITS}) as connection:
                 if demand:
                     self._demand(connection)
                 yield connection
@@ -151,22 +153,17 @@ class SharedDatabase:
             raise self._refusal(error.sqlstate or "", str(error)) from error
 
     def _refusal(self, code: str, told: str) -> SharingError:
-        first = next((line for line in told.splitlines() if line.strip()), "it failed")
-        first = first.rpartition(" failed: ")[2]  # of a connection that was not made: the cause alone
-        said = told.lower()
+        lines = [line for line in told.splitlines() if line.strip()] or ["it failed"]
         for cause, begins in _CODES if code else ():
             if code.startswith(begins):
-                return cause.error(self.name, first)
+                return cause.error(self.name, _bare(lines[0]))
         for cause, signs in _AT_THE_DOOR if not code else ():
-            if any(sign in said for sign in signs):
-                return cause.error(self.name, told.rpartition("FATAL:")[2] or first)
-        return Cause.AWAY.error(self.name, first)
+            said = next((line for line in lines if any(sign in line.lower() for sign in signs)), "")
+            if said:
+                return cause.error(self.name, _bare(said))
+        return Cause.AWAY.error(self.name, _bare(lines[0]))
 
 
-def _named(conninfo: str) -> str:
-    """Without a password: it stands in sentences and logs."""
-    if "://" in conninfo:
-        scheme, _, rest = conninfo.partition("://")
-        who, at, where = rest.rpartition("@")
-        return f"{scheme}://{who.partition(':')[0]}{at}{where.partition('?')[0]}"
-    return " ".join(word for word in conninfo.split() if not word.startswith(("password", "sslpassword")))
+def _bare(line: str) -> str:
+    """The cause alone, of a connection that was not made."""
+    return line.rpartition(" failed: ")[2].removeprefix("FATAL:")

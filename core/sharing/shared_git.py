@@ -205,9 +205,11 @@ class SharedGit:
 
 
 def _named(remote: str) -> str:
-    """Without a password: it stands in sentences and logs."""
+    """Without a password: it stands in sentences and logs. On the web the user's name may be a token too."""
     scheme, between, rest = remote.partition("://")
     who, at, where = rest.rpartition("@")
+    if scheme in {"http", "https"}:
+        return f"{scheme}{between}{where.partition('?')[0]}"
     return f"{scheme}{between}{who.partition(':')[0]}{at}{where}"
 
 

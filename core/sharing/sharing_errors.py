@@ -41,6 +41,20 @@ class Cause(Enum):
         "the computer of {place} answers, but not as git does ({why}); is git installed there, and may this "
         "user start it by ssh?"
     )
+    UNREADABLE = (
+        "[sharing] postgresql cannot be read as a connection string; write a value with blanks in quotation "
+        "marks, and / and @ of a password in an address as %2F and %40"
+    )
+    WRONG_PASSWORD = "{place} refuses the user or the password ({why}); correct them in [sharing] postgresql"
+    NOT_TRUSTED = (
+        "the certificate of {place} cannot be verified ({why}); name the certificate of whoever issued it "
+        "as sslrootcert=FILE in [sharing] postgresql"
+    )
+    NO_TLS = (
+        "{place} offers no TLS ({why}); turn it on there, or, where everybody in the network is trusted, "
+        "write sslmode=disable in [sharing] postgresql"
+    )
+    TLS_ONLY = "{place} accepts TLS only ({why}); remove sslmode from [sharing] postgresql"
     NO_PSYCOPG = "[sharing] postgresql wants psycopg, which is not installed; install turndesk[postgresql]"
     NAME_TAKEN = (
         "{place}: another desk is called {why} too; give this one its own name (desk in [sharing]), "

@@ -18584,6 +18584,11 @@
       <translation>el estado %1 no puede pasar a %2</translation>
     </message>
     <message>
+      <location filename="core/executor/snapshot.py" />
+      <source>way out</source>
+      <translation type="unfinished" />
+    </message>
+    <message>
       <location filename="core/executor/spindle_control.py" />
       <source>SPINDLE HAS STOPPED</source>
       <translation>EL HUSILLO SE DETUVO</translation>
@@ -32704,6 +32709,11 @@
       <translation>S%1 es más que las %2 rpm de este husillo: escriba %3 o menos.</translation>
     </message>
     <message>
+      <location filename="core/sharing/connection_string.py" />
+      <source>%1 (TLS not verified)</source>
+      <translation>%1 (TLS sin verificar)</translation>
+    </message>
+    <message>
       <location filename="core/sharing/shared_folder.py" />
       <source>%1 is damaged</source>
       <translation>%1 está dañado</translation>
@@ -32725,8 +32735,18 @@
     </message>
     <message>
       <location filename="core/sharing/sharing_errors.py" />
+      <source>[sharing] postgresql cannot be read as a connection string; write a value with blanks in quotation marks, and / and @ of a password in an address as %2F and %40</source>
+      <translation>[sharing] postgresql no se puede leer como cadena de conexión; escriba entre comillas un valor con espacios, y / y @ de la contraseña de una dirección como %2F y %40</translation>
+    </message>
+    <message>
+      <location filename="core/sharing/sharing_errors.py" />
       <source>[sharing] postgresql wants psycopg, which is not installed; install turndesk[postgresql]</source>
       <translation>[sharing] postgresql necesita psycopg, que no está instalado; instale turndesk[postgresql]</translation>
+    </message>
+    <message>
+      <location filename="core/sharing/sharing_errors.py" />
+      <source>the certificate of {place} cannot be verified ({why}); name the certificate of whoever issued it as sslrootcert=FILE in [sharing] postgresql</source>
+      <translation>el certificado de {place} no se puede verificar ({why}); indique el certificado de su emisor como sslrootcert=ARCHIVO en [sharing] postgresql</translation>
     </message>
     <message>
       <location filename="core/sharing/sharing_errors.py" />
@@ -32752,6 +32772,11 @@
       <location filename="core/sharing/sharing_errors.py" />
       <source>the disk of {place} is full; make room there</source>
       <translation>el disco de {place} está lleno; libere espacio allí</translation>
+    </message>
+    <message>
+      <location filename="core/sharing/sharing_errors.py" />
+      <source>{place} accepts TLS only ({why}); remove sslmode from [sharing] postgresql</source>
+      <translation>{place} solo acepta TLS ({why}); quite sslmode de [sharing] postgresql</translation>
     </message>
     <message>
       <location filename="core/sharing/sharing_errors.py" />
@@ -32785,8 +32810,18 @@
     </message>
     <message>
       <location filename="core/sharing/sharing_errors.py" />
+      <source>{place} offers no TLS ({why}); turn it on there, or, where everybody in the network is trusted, write sslmode=disable in [sharing] postgresql</source>
+      <translation>{place} no ofrece TLS ({why}); actívelo allí o, si se confía en toda la red, escriba sslmode=disable en [sharing] postgresql</translation>
+    </message>
+    <message>
+      <location filename="core/sharing/sharing_errors.py" />
       <source>{place} refuses it: {why}</source>
       <translation>{place} lo rechaza: {why}</translation>
+    </message>
+    <message>
+      <location filename="core/sharing/sharing_errors.py" />
+      <source>{place} refuses the user or the password ({why}); correct them in [sharing] postgresql</source>
+      <translation>{place} rechaza el usuario o la contraseña ({why}); corríjalos en [sharing] postgresql</translation>
     </message>
     <message>
       <location filename="core/sharing/sharing_errors.py" />
