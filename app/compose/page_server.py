@@ -71,7 +71,6 @@ class PageServer:
         """No browser is answered any more."""
         self._closing.set()
         self._thread.join(ENDS)
-        self._workers.shutdown()
 
     def _serve(self) -> None:
         looked = -math.inf
@@ -82,6 +81,7 @@ class PageServer:
             if self._clock() - looked >= _TURN:
                 looked = self._clock()
                 self._between()
+        self._workers.shutdown(timeout=1)  # first: an answer that is ready still needs the sockets
         self._close_all(self._channels)
 
 

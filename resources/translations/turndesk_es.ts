@@ -4665,6 +4665,16 @@
     </message>
     <message>
       <location filename="" />
+      <source>it accepts TLS only: its address begins with https://</source>
+      <translation>solo acepta TLS: su dirección empieza por https://</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>it ended the connection without an answer</source>
+      <translation>cerró la conexión sin responder</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>it is written by a mask of the newer controls, whose digits differ from edition to edition; name the contour in CYCLE95</source>
       <translation>lo escribe una máscara de los controles nuevos, cuyas cifras cambian de una edición a otra; nombre el contorno en CYCLE95</translation>
     </message>
@@ -4677,6 +4687,21 @@
       <location filename="" />
       <source>it is written by a mask of the newer controls, whose digits differ from edition to edition; write the groove with CYCLE93</source>
       <translation>lo escribe una máscara de los controles nuevos, cuyas cifras cambian de una edición a otra; escriba la ranura con CYCLE93</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>it speaks no TLS: its address begins with http://</source>
+      <translation>no usa TLS: su dirección empieza por http://</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>its address has signs that no address may have</source>
+      <translation>su dirección tiene signos no permitidos en una dirección</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>its certificate cannot be verified: %1</source>
+      <translation>su certificado no se puede verificar: %1</translation>
     </message>
     <message>
       <location filename="" />
@@ -5222,6 +5247,11 @@
       <location filename="" />
       <source>warning</source>
       <translation>aviso</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>what it answers is not HTTP</source>
+      <translation>lo que responde no es HTTP</translation>
     </message>
     <message>
       <location filename="" />
