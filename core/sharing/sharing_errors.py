@@ -89,4 +89,6 @@ def of_system(place: str, error: OSError) -> SharingError:
         return Cause.NO_RIGHT.error(place, why)
     if error.errno in _NOT_THERE:
         return Cause.NOT_THERE.error(place, why)
+    if error.errno == errno.EINVAL:  # a file that is none of ours: core/regular_file.py
+        return Cause.DAMAGED.error(place, why)
     return Cause.AWAY.error(place, why)
