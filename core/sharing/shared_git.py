@@ -145,7 +145,7 @@ class SharedGit:
             self._folder.parent.mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise of_system(str(self._folder), error) from error
-        self._git.run(["init", "--quiet", "--bare", f"--initial-branch={BRANCH}", str(self._folder)])
+        self._git.run(["init", "--quiet", "--bare", f"--initial-branch={BRANCH}", "--", str(self._folder)])
 
     def _branch(self) -> str:
         """What the repository has by its name, fetched; empty: nothing."""
@@ -160,7 +160,9 @@ class SharedGit:
     def _fetch_once(self) -> None:
         refs = f"+{_HERE}:{_THERE}"
         try:
-            self._git.run(["fetch", "--quiet", "--no-tags", "--no-write-fetch-head", self._remote, refs])
+            self._git.run(
+                ["fetch", "--quiet", "--no-tags", "--no-write-fetch-head", "--", self._remote, refs]
+            )
         except SharingError as error:
             if "find remote ref" in error.told:
                 raise Cause.NOT_BEGUN.error(self.name) from error
@@ -196,7 +198,7 @@ class SharedGit:
     def _push(self) -> bool:
         """False: another desk was first."""
         try:
-            self._git.run(["push", "--quiet", self._remote, f"{_HERE}:{_HERE}"])
+            self._git.run(["push", "--quiet", "--", self._remote, f"{_HERE}:{_HERE}"])
         except SharingError as error:
             if any(sign in error.told for sign in _SECOND):
                 return False

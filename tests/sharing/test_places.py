@@ -259,6 +259,20 @@ def test_a_token_that_git_repeats_is_not_told(tmp_path: Path, monkeypatch: pytes
     assert (cause, "https://shop/x/" in words) == (Cause.AWAY, True)
 
 
+def test_no_address_of_a_repository_can_be_an_option_of_git(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "git").write_text(f'#!/bin/sh\nprintf "%s\\n" "$@" >>{tmp_path}/said\n')
+    (tmp_path / "git").chmod(0o755)
+    monkeypatch.setenv("PATH", str(tmp_path), prepend=os.pathsep)
+    place = SharedGit("--upload-pack=x", tmp_path / "copy.git")
+    cause_of(place.look, {})
+    place._push()
+    words = (tmp_path / "said").read_text().splitlines()
+    for own in ("--upload-pack=x", str(tmp_path / "copy.git")):
+        assert {words[at - 1] for at, word in enumerate(words) if word == own} == {"--"}
+
+
 def test_ctrl_c_ends_git_with_all_that_it_started(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "git").write_text("#!/bin/sh\nread nothing < /dev/zero\n")
     (tmp_path / "git").chmod(0o755)
