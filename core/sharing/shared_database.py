@@ -11,6 +11,9 @@ from core.sharing.shared_place import Found, Published, database_at
 from core.sharing.sharing_errors import Cause, SharingError
 from core.sharing.version_record import (
     FORMAT,
+    LONGEST_RECORD,
+    LONGEST_STATE,
+    MOST_BYTES,
     DeskState,
     RecordError,
     checked_text,
@@ -33,6 +36,8 @@ CREATE TABLE IF NOT EXISTS turndesk.desks (home text PRIMARY KEY, state bytea NO
 """
 _ADD = "INSERT INTO turndesk.versions VALUES (%s, %s, %s) ON CONFLICT DO NOTHING"
 _TELL = "INSERT INTO turndesk.desks VALUES (%s, %s) ON CONFLICT (home) DO UPDATE SET state = excluded.state"
+# Longer values than ours come cut off, so that they are strays.
+_DESKS = "SELECT home, substr(state, 1, %s) FROM turndesk.desks"
 _LIMITS = {
     "connect_timeout": 5,
     "application_name": "turndesk",
@@ -90,8 +95,9 @@ class SharedDatabase:
             there = {str(row[0]) for row in connection.execute("SELECT id FROM turndesk.versions")}
             wanted, fresh, strays = sorted(there - known.keys()), list[SharedVersion](), list[str]()
             for first in range(0, len(wanted), _AT_ONCE):
-                query = "SELECT id, record FROM turndesk.versions WHERE id = ANY(%s)"
-                for name, record in connection.execute(query, (wanted[first : first + _AT_ONCE],)):
+                query = "SELECT id, substr(record, 1, %s) FROM turndesk.versions WHERE id = ANY(%s)"
+                some = wanted[first : first + _AT_ONCE]
+                for name, record in connection.execute(query, (LONGEST_RECORD, some)):
                     try:
                         fresh.append(read_version(name, bytes(record)))
                     except RecordError:
@@ -109,9 +115,9 @@ class SharedDatabase:
 
     def text(self, version: SharedVersion) -> bytes:
         """One row."""
-        query = "SELECT program_text FROM turndesk.versions WHERE id = %s"
+        query = "SELECT substr(program_text, 1, %s) FROM turndesk.versions WHERE id = %s"
         with self._asked() as connection:
-            row = connection.execute(query, (version.id,)).fetchone()
+            row = connection.execute(query, (MOST_BYTES + 1, version.id)).fetchone()
         try:
             return checked_text(version, bytes(row[0]) if row is not None else b"")
         except RecordError as error:
@@ -123,7 +129,7 @@ class SharedDatabase:
     @staticmethod
     def _desks(connection: psycopg.Connection, strays: list[str]) -> tuple[DeskState, ...]:
         found = []
-        for home, state in connection.execute("SELECT home, state FROM turndesk.desks"):
+        for home, state in connection.execute(_DESKS, (LONGEST_STATE,)):
             try:
                 found.append(read_state(home, bytes(state)))
             except RecordError:

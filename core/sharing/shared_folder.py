@@ -34,7 +34,7 @@ from core.store.shared_versions import SharedVersion
 
 MARK = "turndesk-share.json"  # without it the folder is none of ours: an empty mount point has none
 VERSIONS, DESKS = "versions", "desks"
-_LONGEST = LONGEST_RECORD + 1 + MOST_BYTES  # bytes of a version's file
+LONGEST = LONGEST_RECORD + 1 + MOST_BYTES  # bytes of a version's file
 _ENDING, _STATE, _WRITING = ".version", ".json", ".writing-"
 
 
@@ -97,7 +97,7 @@ class SharedFolder:
         path = self._folder / VERSIONS / f"{version.id}{_ENDING}"
         with self._system():
             self._demand()
-            _, _, text = read_regular(path, _LONGEST).partition(b"\n")
+            _, _, text = read_regular(path, LONGEST).partition(b"\n")
             try:
                 return checked_text(version, text)
             except RecordError as error:
@@ -186,7 +186,7 @@ def _files(folder: Path) -> list[Path]:
 def _version_in(path: Path) -> SharedVersion | None:
     """None: the file is no whole version, by what its first line says of the rest."""
     try:
-        record, _, text = read_regular(path, _LONGEST).partition(b"\n")
+        record, _, text = read_regular(path, LONGEST).partition(b"\n")
         version = read_version(path.name.removesuffix(_ENDING), record)
         checked_text(version, text)
     except (RecordError, OSError):

@@ -50,6 +50,10 @@ class Cause(Enum):
         "the certificate of {place} cannot be verified ({why}); name the certificate of whoever issued it "
         "as sslrootcert=FILE in [sharing] postgresql"
     )
+    GIT_NOT_TRUSTED = (
+        "the certificate of {place} cannot be verified ({why}); name the certificate of whoever issued it: "
+        "git config --global http.sslCAInfo FILE"
+    )
     NO_TLS = (
         "{place} offers no TLS ({why}); turn it on there, or, where everybody in the network is trusted, "
         "write sslmode=disable in [sharing] postgresql"

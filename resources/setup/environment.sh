@@ -26,7 +26,7 @@ patiently() {
     (
         trap 'kill "$!"; exit' TERM
         seconds=0
-        while sleep 8 & wait "$!"; do
+        while sleep 8 & wait "$!" && kill -0 "$$" 2>/dev/null; do  # Ctrl+C ends the shell, not this
             seconds=$((seconds + 8))
             say "$what: $seconds s"
         done

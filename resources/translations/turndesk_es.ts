@@ -32785,6 +32785,11 @@
     </message>
     <message>
       <location filename="core/sharing/sharing_errors.py" />
+      <source>the certificate of {place} cannot be verified ({why}); name the certificate of whoever issued it: git config --global http.sslCAInfo FILE</source>
+      <translation>el certificado de {place} no se puede verificar ({why}); indique el certificado de su emisor: git config --global http.sslCAInfo ARCHIVO</translation>
+    </message>
+    <message>
+      <location filename="core/sharing/sharing_errors.py" />
       <source>the command git is not on this computer; install git</source>
       <translation>esta computadora no tiene el comando git; instale git</translation>
     </message>

@@ -264,6 +264,17 @@ def test_whoever_waits_is_told_at_least_every_ten_seconds(tmp_path: Path) -> Non
     assert all(int(seconds) <= 10 for seconds in (tmp_path / "slept").read_text().split())
 
 
+def test_nothing_is_shown_any_more_when_the_set_up_was_ended(tmp_path: Path) -> None:
+    """The end of its output comes when nobody has it open any more."""
+    executable(tmp_path / "sleep", "#!/bin/sh\nexit 0\n")
+    script = f'. "{HERE / "environment.sh"}"; patiently "It works" kill -9 "$$"'
+    around = {"PATH": f"{tmp_path}:{os.environ['PATH']}", "ROOT": str(HERE.parents[1])}
+    with subprocess.Popen(["/bin/sh", "-euc", script], env=around, stderr=subprocess.PIPE) as told:
+        assert told.wait(60) == -9
+        assert told.stderr is not None
+        told.stderr.read()
+
+
 @pytest.mark.parametrize("status", [0, 3])
 def test_what_a_command_says_and_how_it_ends_is_kept(status: int) -> None:
     told = tell(

@@ -13,6 +13,7 @@ from pathlib import Path
 import psycopg
 import pytest
 
+from core.sharing import shared_git
 from core.sharing.connection_string import parsed, with_tls
 from core.sharing.git_command import GitCommand
 from core.sharing.shared_database import SharedDatabase
@@ -227,6 +228,11 @@ def test_a_remote_that_refuses_is_told_in_its_own_words(tmp_path: Path) -> None:
         ("root@shop: Permission denied (publickey,password).", Cause.NO_RIGHT),
         ("fatal: detected dubious ownership in repository at '/srv/shop.git'", Cause.NO_RIGHT),
         ("error: remote unpack failed: unable to create temporary object directory", Cause.NO_RIGHT),
+        (
+            "fatal: unable to access 'https://shop/x/': server certificate verification failed. CAfile: none",
+            Cause.GIT_NOT_TRUSTED,
+        ),
+        ("fatal: Authentication failed for 'https://shop/x/'", Cause.NO_RIGHT),
         ("ssh -oBatchMode=yes: 1: ssh: not found", Cause.NO_SSH),
         ("error: cannot run ssh: No such file or directory", Cause.NO_SSH),
         ("sh: 1: git-upload-pack: not found", Cause.NO_GIT_THERE),
@@ -257,6 +263,17 @@ def test_a_token_that_git_repeats_is_not_told(tmp_path: Path, monkeypatch: pytes
     monkeypatch.setenv("PATH", str(tmp_path), prepend=os.pathsep)
     cause, words = cause_of(GitCommand(tmp_path / "copy.git", "the repository").run, ["fetch"])
     assert (cause, "https://shop/x/" in words) == (Cause.AWAY, True)
+
+
+def test_a_file_longer_than_any_of_ours_is_a_stray_in_git(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest
+) -> None:
+    with rig_of("git", tmp_path, request) as rig:
+        place, one = rig.place(1), published(1)
+        place.begin()
+        place.put([one], state(one))
+        monkeypatch.setattr(shared_git, "LONGEST", 100)
+        assert rig.place(2).look({}).fresh == ()
 
 
 def test_no_address_of_a_repository_can_be_an_option_of_git(
