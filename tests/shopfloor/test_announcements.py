@@ -16,6 +16,7 @@ from collections.abc import Callable, Iterator
 from contextlib import suppress
 from http.client import HTTPException, InvalidURL
 from http.server import BaseHTTPRequestHandler, HTTPServer
+from itertools import count
 from pathlib import Path
 from queue import SimpleQueue
 from urllib.error import URLError
@@ -316,16 +317,23 @@ class Far:
 
 
 def test_an_answer_that_comes_byte_by_byte_has_a_deadline_as_a_whole() -> None:
-    """Each byte comes in time; together they take a minute."""
-    now = [0.0]
+    """Two seconds pass before each byte; a byte comes when the one before was read."""
+    times, reads = count(0.0, 2.0), threading.Semaphore(0)
+
+    def clock() -> float:
+        reads.release()
+        return next(times)
 
     def drip(connection: socket.socket) -> None:
+        assert reads.acquire(timeout=60)  # of the connection itself
         for byte in b"HTTP/1.1 204 No Content\r\n\r\n":
+            assert reads.acquire(timeout=60)
             connection.sendall(bytes([byte]))
-            now[0] += 2.0
 
-    with Far(drip) as far, pytest.raises(TimeoutError):
-        posted(f"http://127.0.0.1:{far.port}/", b"{}", lambda: now[0])
+    with Far(drip) as far:
+        with pytest.raises(TimeoutError):
+            posted(f"http://127.0.0.1:{far.port}/", b"{}", clock)
+        reads.release(100)
 
 
 def test_an_answer_in_time_is_taken() -> None:
