@@ -22,7 +22,7 @@ _FLAGS = getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_NOCTTY", 0)
 
 
 class NotAFileError(OSError):
-    """The name is that of a device, a pipe or a socket."""
+    """The name is that of a folder, a device, a pipe or a socket."""
 
 
 class TooLargeError(OSError):
@@ -36,6 +36,8 @@ def open_input(path: Path, most: int | None = None) -> BufferedReader:
     """
     try:
         file = open(path, "rb", opener=lambda name, flags: os.open(name, flags | _FLAGS))  # noqa: SIM115
+    except IsADirectoryError as error:
+        raise NotAFileError(errno.EINVAL, "it is a folder, not a file", str(path)) from error
     except ValueError as error:  # a zero byte in the name
         raise OSError(errno.EINVAL, "a file cannot have this name", str(path)) from error
     try:
@@ -68,7 +70,7 @@ def input_text(path: Path, most: int, encoding: str = "utf-8") -> str:
 
 
 def _too_large(path: Path, most: int) -> TooLargeError:
-    return TooLargeError(errno.EFBIG, f"it is larger than {most // MB} MB", str(path))
+    return TooLargeError(errno.EINVAL, f"it is larger than {most // MB} MB", str(path))
 
 
 @contextmanager

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import errno
 import hashlib
 import json
 import os
@@ -10,41 +9,46 @@ import shutil
 import tempfile
 import zipfile
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime
-from pathlib import Path, PurePath, PurePosixPath
+from pathlib import Path, PurePosixPath
 from typing import Self
 
 from app.compose.journal import UNDER_WAY
 from app.compose.machine_setup import read_machine
+from app.compose.setup_archive import (
+    BESIDE,
+    FORMAT,
+    MACHINE,
+    MANIFEST,
+    NO_ROOM,
+    PROGRAMS,
+    STORE,
+    is_machine_file,
+    problem,
+    unpack,
+)
 from app.desk.command_errors import CommandError
 from app.desk.data_folder import data_folder
 from core.coded_error import error_code
 from core.file_placing import make_folder, put_in_place, write_in_place
-from core.input_file import MB, TooLargeError, failures_as, open_input
 from core.store import backup
 from core.store.store import Store
 from core.store.store_errors import StoreError
 from core.store.store_file import FILE_NAME
 
-_KIND = "turndesk setup "
-FORMAT = f"{_KIND}1"
-MANIFEST, STORE, PROGRAMS, MACHINE = "manifest.json", "store.db", "programs", "machine"
-MOST = 512 * MB  # of one member: more is no setup of ours
-MOST_OF_ALL = 4 * MOST  # of the file, and of all members
-_MOST_OF_MANIFEST = 64 * MB
-_AT_ONCE = 1 * MB
-_NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
-_BESIDE = (".hal", ".xml")  # what lies beside a machine file under its name, and belongs to it
-
 
 @dataclass(frozen=True, slots=True)
 class SetupTold:
-    """What a setup file holds; ``placed`` is where its machine file was put."""
+    """Contents of a setup file; ``placed`` is where its machine file was put.
+
+    ``left_out`` are files of the program folder that are neither programs nor drawings.
+    """
 
     programs: int
     machine: str
     placed: Path | None = None
+    left_out: tuple[str, ...] = ()
 
 
 def save_setup(target: Path, machine_file: str | None) -> SetupTold:
@@ -59,7 +63,8 @@ def save_setup(target: Path, machine_file: str | None) -> SetupTold:
         members = {STORE: _copy_of_store(folder, Path(name))}
         members |= {f"{PROGRAMS}/{path}": folder / PROGRAMS / path for path in _programs(folder)}
         members |= machine
-        _write(made, members)
+        left_out = _write(made, members)
+        _check_loadable(made, target)
         try:
             shutil.copyfile(made, part)
             put_in_place(part, target)
@@ -67,7 +72,7 @@ def save_setup(target: Path, machine_file: str | None) -> SetupTold:
             with suppress(OSError):
                 part.unlink(missing_ok=True)
             raise CommandError(f"{target} cannot be written: {error.strerror}", "cannot-write") from error
-    return _told(list(members))
+    return replace(_told([each for each in members if each not in left_out]), left_out=left_out)
 
 
 def _copy_of_store(folder: Path, beside: Path) -> Path:
@@ -100,14 +105,18 @@ def _machine_members(named: str | None) -> dict[str, Path]:
         raise CommandError(
             f"{named} is shipped with every TurnDesk; leave --machine out, or name a file", "shipped-machine"
         )
-    beside = [path.with_suffix(ending) for ending in _BESIDE]
+    beside = [path.with_suffix(ending) for ending in BESIDE]
     return {f"{MACHINE}/{each.name}": each for each in (path, *beside) if each.is_file()}
 
 
-def _write(made: Path, members: dict[str, Path]) -> None:
-    """Raises CommandError, also for a program that may not be read."""
+def _write(made: Path, members: dict[str, Path]) -> tuple[str, ...]:
+    """Write the archive; return the programs left out. Raises CommandError if a file cannot be read."""
     try:
-        hashes = {name: _hash_of(path) for name, path in members.items()}
+        left_out = [
+            each for each in members if each.startswith(f"{PROGRAMS}/") and problem(each, members[each])
+        ]
+        members = {name: path for name, path in members.items() if name not in left_out}
+        hashes = {name: hashlib.sha256(path.read_bytes()).hexdigest() for name, path in members.items()}
         told = {"format": FORMAT, "made": datetime.now(UTC).isoformat(timespec="seconds"), "sha256": hashes}
         # A computer without a clock of its own dates its files before 1980, which ZIP cannot say.
         with zipfile.ZipFile(made, "w", zipfile.ZIP_DEFLATED, strict_timestamps=False) as file:
@@ -115,17 +124,21 @@ def _write(made: Path, members: dict[str, Path]) -> None:
             for name, path in members.items():
                 file.write(path, name)
     except OSError as error:
-        if error.errno in _NO_ROOM and not isinstance(error, TooLargeError):
+        if error.errno in NO_ROOM:
             raise CommandError(
                 f"{made.parent.parent} has no room for a setup; make room there", "disk-full"
             ) from error
         raise CommandError(f"{error.filename} cannot be read: {error.strerror}", "unreadable") from error
+    return tuple(left_out)
 
 
-def _hash_of(path: Path) -> str:
-    """Return the hash of a file that has the size of a member at most. Raises OSError."""
-    with open_input(path, MOST) as file:
-        return hashlib.file_digest(file, "sha256").hexdigest()
+def _check_loadable(made: Path, target: Path) -> None:
+    """Raise CommandError if the archive is beyond what ``load_setup`` accepts."""
+    try:
+        with tempfile.TemporaryDirectory(prefix="turndesk-") as name:
+            unpack(made, Path(name))
+    except CommandError as error:
+        raise CommandError(str(error).replace(str(made), str(target)), error_code(error)) from error
 
 
 def _told(names: list[str], placed: Path | None = None) -> SetupTold:
@@ -140,7 +153,7 @@ def _told(names: list[str], placed: Path | None = None) -> SetupTold:
 def check_setup(source: Path) -> SetupTold:
     """Look through a setup file; changes nothing. Raises CommandError naming what is wrong with it."""
     with tempfile.TemporaryDirectory(prefix="turndesk-") as name:
-        return _told(_unpacked(source, Path(name)))
+        return _told(unpack(source, Path(name)))
 
 
 def load_setup(source: Path) -> tuple[SetupTold, Path | None]:
@@ -151,7 +164,7 @@ def load_setup(source: Path) -> tuple[SetupTold, Path | None]:
     """
     folder, stamp = data_folder(), datetime.now(UTC).strftime("%Y%m%dT%H%M%SZ")
     with tempfile.TemporaryDirectory(prefix="turndesk-") as name, _Beside(stamp) as beside:
-        names = _unpacked(source, Path(name))
+        names = unpack(source, Path(name))
         try:
             for each in names:
                 if each != STORE:
@@ -185,7 +198,9 @@ class _Beside:
     @property
     def machine(self) -> Path | None:
         """Where the machine file is put."""
-        return next((at for at in self._places.values() if _is_machine_file(at.parent.name, at)), None)
+        return next(
+            (at for at in self._places.values() if at.parent.name == "machines" and is_machine_file(at)), None
+        )
 
     def put(self, source: Path, target: Path) -> None:
         """Beside its place; another text that stands there is kept under a name of its own."""
@@ -205,91 +220,3 @@ class _Beside:
         """All of them, one after the other."""
         for draft, target in self._places.items():
             put_in_place(draft, target)
-
-
-def _is_machine_file(folder: str, path: PurePath) -> bool:
-    """Not what lies beside it under its name."""
-    return folder in {MACHINE, "machines"} and path.suffix not in _BESIDE
-
-
-def _unpacked(source: Path, folder: Path) -> list[str]:
-    """Every member checked and written below ``folder``; their names."""
-    with (
-        failures_as(lambda error: _not_unpacked(source, folder, error)),
-        open_input(source, MOST_OF_ALL) as opened,
-        zipfile.ZipFile(opened) as file,
-    ):
-        names = _checked(source, file, folder)
-    try:
-        found = backup.problems(folder / STORE)
-    except StoreError as error:
-        raise CommandError(f"{source}: {error}", error_code(error)) from error
-    if found:
-        raise CommandError(f"{source}: {found[0]}; make it anew with 'turndesk setup save'", "damaged-store")
-    for name in names:
-        if _is_machine_file(PurePosixPath(name).parent.name, PurePosixPath(name)):
-            read_machine(str(folder / name))
-    return names
-
-
-def _not_unpacked(source: Path, folder: Path, error: Exception) -> CommandError:
-    if isinstance(error, TooLargeError):
-        return CommandError(f"{source} is no setup file: {error.strerror}; look at its name", "too-large")
-    if isinstance(error, OSError) and error.errno in _NO_ROOM:
-        return CommandError(f"{folder.parent} has no room to unpack {source}; make room there", "disk-full")
-    if isinstance(error, OSError):
-        return CommandError(f"{source} cannot be read: {error.strerror or error}", "unreadable")
-    text = f"{source} is no setup file that can be read: {error}; copy the file again"
-    return CommandError(text, "damaged-setup")
-
-
-def _hashes(source: Path, told: object) -> dict[str, str]:
-    """Of every member, by the manifest. Raises CommandError where it is none of this kind."""
-    form = told.get("format") if isinstance(told, dict) else None
-    if isinstance(form, str) and form.startswith(_KIND) and form != FORMAT:
-        raise CommandError(
-            f"{source} was saved by another TurnDesk ({form}, here {FORMAT}); use that one", "other-version"
-        )
-    hashes = told.get("sha256") if isinstance(told, dict) else None
-    if form != FORMAT or not isinstance(hashes, dict) or STORE not in hashes:
-        raise CommandError(
-            f"{source} is no setup of this kind ({FORMAT}); make it anew with 'setup save'", "not-a-setup"
-        )
-    return {str(name): str(value) for name, value in hashes.items()}
-
-
-def _checked(source: Path, file: zipfile.ZipFile, folder: Path) -> list[str]:
-    if sum(each.file_size for each in file.infolist()) > MOST_OF_ALL:
-        raise CommandError(f"{source} unpacks to more than a setup can have", "too-large")
-    hashes = _hashes(source, json.loads(_manifest(source, file)))
-    for name, expected in hashes.items():
-        at = PurePosixPath(name)
-        top = at.parts[0] if len(at.parts) > 1 else ""
-        if name != STORE and (top not in {PROGRAMS, MACHINE} or ".." in at.parts or "\\" in name):
-            raise CommandError(f"{source} holds {name}, which has no place in a setup", "foreign-member")
-        if file.getinfo(name).file_size > MOST:
-            raise CommandError(
-                f"{source} holds {name}, which is larger than a setup can be", "member-too-large"
-            )
-        if _unpacked_hash(file, name, folder / name) != expected:
-            raise CommandError(
-                f"{source}: {name} is not what was saved; copy the file again", "damaged-member"
-            )
-    return list(hashes)
-
-
-def _manifest(source: Path, file: zipfile.ZipFile) -> bytes:
-    if file.getinfo(MANIFEST).file_size > _MOST_OF_MANIFEST:
-        raise CommandError(f"{source}: its {MANIFEST} is larger than one can be", "member-too-large")
-    return file.read(MANIFEST)
-
-
-def _unpacked_hash(file: zipfile.ZipFile, name: str, target: Path) -> str:
-    """Write a member to ``target`` piece by piece, and return the hash of what was written."""
-    target.parent.mkdir(parents=True, exist_ok=True)
-    total = hashlib.sha256()
-    with file.open(name) as member, target.open("wb") as out:
-        while data := member.read(_AT_ONCE):
-            total.update(data)
-            out.write(data)
-    return total.hexdigest()

@@ -13,12 +13,13 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from core.input_file import input_bytes, open_input
+from core.input_file import NotAFileError, TooLargeError, input_bytes
 from core.sharing.shared_place import Found, Published, folder_at
 from core.sharing.sharing_errors import Cause, of_system
 from core.sharing.version_record import (
     FORMAT,
     LONGEST_RECORD,
+    LONGEST_STATE,
     MOST_BYTES,
     DeskState,
     RecordError,
@@ -32,8 +33,8 @@ from core.store.shared_versions import SharedVersion
 
 MARK = "turndesk-share.json"  # without it the folder is none of ours: an empty mount point has none
 VERSIONS, DESKS = "versions", "desks"
+LONGEST = LONGEST_RECORD + 1 + MOST_BYTES  # bytes of a version's file
 _ENDING, _STATE, _WRITING = ".version", ".json", ".writing-"
-_LARGEST = LONGEST_RECORD + MOST_BYTES
 
 
 class SharedFolder:
@@ -95,7 +96,7 @@ class SharedFolder:
         path = self._folder / VERSIONS / f"{version.id}{_ENDING}"
         with self._system():
             self._demand()
-            _, _, text = input_bytes(path, _LARGEST).partition(b"\n")
+            _, _, text = input_bytes(path, LONGEST).partition(b"\n")
             try:
                 return checked_text(version, text)
             except RecordError as error:
@@ -113,8 +114,9 @@ class SharedFolder:
         path = self._folder / VERSIONS / f"{version.id}{_ENDING}"
         whole = written(version) + b"\n" + text
         if path.exists():
-            if input_bytes(path, _LARGEST) == whole:
-                return
+            with suppress(OSError):
+                if input_bytes(path, len(whole)) == whole:
+                    return
             path.replace(path.with_name(f"{path.name}.damaged"))  # kept: whoever spoilt it may want to see it
         self._write(path, whole, home)
 
@@ -137,7 +139,7 @@ class SharedFolder:
         for path in _files(self._folder / DESKS):
             home = path.name.removesuffix(_STATE)
             try:
-                found.append(read_state(home, input_bytes(path, _LARGEST)))
+                found.append(read_state(home, input_bytes(path, LONGEST_STATE)))
             except (RecordError, OSError):
                 strays.append(path.name)
         return tuple(found), strays
@@ -146,9 +148,11 @@ class SharedFolder:
         """Raises SharingError where the folder is not one of shared programs, or of a newer format."""
         os.stat(self._folder)
         try:
-            data = input_bytes(self.mark, _LARGEST)
+            data = input_bytes(self.mark, LONGEST_RECORD)
         except FileNotFoundError:
             raise Cause.NOT_BEGUN.error(self.name) from None
+        except (NotAFileError, TooLargeError) as error:
+            raise Cause.OTHER.error(self.name, f"{MARK}: {error.strerror}") from error
         check_mark(self.name, data)
 
     @contextmanager
@@ -179,10 +183,8 @@ def _files(folder: Path) -> list[Path]:
 def _version_in(path: Path) -> SharedVersion | None:
     """None: the file is no whole version, by what its first line says of the rest."""
     try:
-        with open_input(path) as file:
-            record = file.readline(LONGEST_RECORD)
-            version = read_version(path.name.removesuffix(_ENDING), record.rstrip(b"\n"))
-            text = file.read(MOST_BYTES + 1)
+        record, _, text = input_bytes(path, LONGEST).partition(b"\n")
+        version = read_version(path.name.removesuffix(_ENDING), record)
         checked_text(version, text)
     except (RecordError, OSError):
         return None

@@ -26,7 +26,8 @@ from app.cli.inputs_file import read_inputs
 from app.compose.machine_drivers import read_machine_file
 from app.compose.machine_files import shipped_machine
 from app.compose.machine_setup import setup_for
-from app.compose.setup_file import FORMAT, MANIFEST, check_setup
+from app.compose.setup_archive import FORMAT, MANIFEST
+from app.compose.setup_file import check_setup
 from app.desk.command_errors import CommandError
 from app.offsets.offsets_file import read_rows, read_tool_shapes
 from core.drawings.drawing import DrawingError
