@@ -5595,6 +5595,11 @@
     </message>
     <message>
       <location filename="app/desk/access.py" />
+      <source>{name} HAS NO PIN: SERVICE LEVEL ENTERS ONE</source>
+      <translation>{name} NO TIENE PIN: LO INTRODUCE EL NIVEL SERVICIO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/access.py" />
       <source>{name} HAS SIGNED IN: {level}</source>
       <translation>{name} HA ENTRADO: {level}</translation>
     </message>
@@ -14420,11 +14425,6 @@
     </message>
     <message>
       <location filename="app/special/backup_and_restore.py" />
-      <source>NOBODY IS ENTERED IN IT: LEVELS ARE OFF</source>
-      <translation>NO HAY NADIE DADO DE ALTA EN ÉL: LOS NIVELES ESTÁN DESACTIVADOS</translation>
-    </message>
-    <message>
-      <location filename="app/special/backup_and_restore.py" />
       <source>NOTHING: IT IS DAMAGED</source>
       <translation>NADA: ESTÁ DAÑADA</translation>
     </message>
@@ -14472,11 +14472,6 @@
       <location filename="app/special/backup_and_restore.py" />
       <source>What a restore replaces is kept beside it.</source>
       <translation>Lo que una restauración reemplaza se guarda al lado.</translation>
-    </message>
-    <message>
-      <location filename="app/special/backup_and_restore.py" />
-      <source>levels are off: nobody is entered in what was restored</source>
-      <translation>los niveles están desactivados: no hay nadie dado de alta en lo restaurado</translation>
     </message>
     <message>
       <location filename="app/special/backup_and_restore.py" />
@@ -18582,6 +18577,11 @@
       <location filename="core/executor/snapshot.py" />
       <source>state %1 cannot become %2</source>
       <translation>el estado %1 no puede pasar a %2</translation>
+    </message>
+    <message>
+      <location filename="core/executor/snapshot.py" />
+      <source>way out</source>
+      <translation>salida</translation>
     </message>
     <message>
       <location filename="core/executor/spindle_control.py" />
