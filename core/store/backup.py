@@ -7,6 +7,7 @@ import sqlite3
 from collections.abc import Callable
 from contextlib import closing, suppress
 from datetime import UTC, datetime
+from functools import partial
 from pathlib import Path
 
 from core.file_placing import put_in_place
@@ -14,7 +15,7 @@ from core.store import damaged_rows, database, people, program_records, row_sums
 from core.store.database import WriterLock, make_folder
 from core.store.people import PersonRow
 from core.store.store_errors import Cause, StoreError, cause_of, said, why
-from core.store.store_file import FILE_NAME, has_store
+from core.store.store_file import FILE_NAME, has_store, real_path
 from core.unfinished import unfinished_file
 
 
@@ -68,6 +69,7 @@ def backup(folder: Path, target: Path) -> None:
     if not has_store(folder):
         raise StoreError(f"there is no store in {folder} yet, so there is nothing to back up", "no-store")
     if _is_there(target):
+        database.check_kind(target)
         if target.samefile(path):
             raise StoreError(
                 f"{target} is the store itself; name another file for the backup", "store-itself"
@@ -97,14 +99,16 @@ def restore(folder: Path, source: Path) -> Path | None:
     make_folder(folder)
     path = folder / FILE_NAME
     with closing(WriterLock(folder)):
-        if path.exists() and path.samefile(source):
+        there = has_store(folder)
+        if there:
+            database.check_kind(path)
+        if there and path.samefile(source):
             raise StoreError(f"{source} is the store itself; name a backup", "store-itself")
-        there = path.exists()
         here = _people_of(path) if there else None
         kept = _keep(path) if there else None
         for leftover in database.companions(path):
             leftover.unlink(missing_ok=True)
-        _copy(source, path, (lambda copy: _put_people(copy, here)) if here is not None else _as_it_is)
+        _copy(source, real_path(path), partial(_put_people, here))
         return kept
 
 
@@ -118,19 +122,16 @@ def _people_of(path: Path) -> tuple[PersonRow, ...]:
         return ()
 
 
-def _put_people(copy: sqlite3.Connection, rows: tuple[PersonRow, ...]) -> None:
-    if rows or row_sums.columns(copy, "people"):
+def _put_people(rows: tuple[PersonRow, ...] | None, copy: sqlite3.Connection) -> None:
+    """None: there was no store, and the copy has the people of the backup."""
+    if rows or (rows is not None and row_sums.columns(copy, "people")):
         database.migrate(copy, database.migrations())
         people.replace_all(copy, rows)
 
 
-def _as_it_is(_copy: sqlite3.Connection) -> None:
-    """The backup of a machine that has no store yet."""
-
-
 def _is_there(target: Path) -> bool:
     try:
-        return target.exists()
+        return target.exists() or target.is_symlink()
     except OSError as error:  # in a folder that this user may not look into
         raise _unwritable(target, error) from error
 

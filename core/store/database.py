@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import re
 import sqlite3
+import stat
 import time
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack, closing, suppress
@@ -19,7 +20,7 @@ from core.private_files import NEW_FILE, restrict, restrict_folder
 from core.store import row_sums
 from core.store.log_damage import lost_changes
 from core.store.store_errors import Cause, StoreError, cause_of, why
-from core.store.store_file import FILE_NAME, has_store
+from core.store.store_file import FILE_NAME, has_store, real_path
 from core.unfinished import forget_killed, unfinished_file
 
 APPLICATION_ID = 0x5475724E  # "TurN": tells a store of ours from any other SQLite file
@@ -50,6 +51,7 @@ def check_header(path: Path) -> None:
     """
     if path.name == FILE_NAME and path.parent.resolve() in _WRITTEN_HERE:
         return
+    check_kind(path)
     try:
         with path.open("rb") as file:
             header = file.read(100)
@@ -65,6 +67,22 @@ def check_header(path: Path) -> None:
             f"{path} is a database of another program; it is left as it is. Name another file",
             "foreign-database",
         )
+
+
+def check_kind(path: Path) -> None:
+    """Raises StoreError unless ``path`` is a file or a link to one; a pipe is not opened, for that waits."""
+    try:
+        mode = path.stat().st_mode
+    except OSError as error:
+        if not (isinstance(error, FileNotFoundError) and path.is_symlink()):
+            raise why(path, error) from error
+        raise StoreError(
+            f"{path} is a link to {path.readlink()}, which is not there; mount its disk, then try again",
+            "link-without-target",
+        ) from error
+    if not stat.S_ISREG(mode):
+        what = "a folder" if stat.S_ISDIR(mode) else "a pipe" if stat.S_ISFIFO(mode) else "a device"
+        raise StoreError(f"{path} is {what}, not a file; it is left as it is. Move it away", "not-a-file")
 
 
 def connect(path: Path, *, read_only: bool) -> sqlite3.Connection:
@@ -245,7 +263,8 @@ def empty() -> sqlite3.Connection:
 
 
 def companions(path: Path) -> tuple[Path, Path]:
-    """SQLite's write-ahead log and its index beside a database."""
+    """SQLite's write-ahead log and its index beside a database, or beside the one that a link leads to."""
+    path = real_path(path)
     return path.with_name(path.name + "-wal"), path.with_name(path.name + "-shm")
 
 

@@ -415,6 +415,13 @@ _OTHERS = {
     "part_features": "the measured feature",
     "part_readings": "the reading",
     "insert_changes": "the change of an insert",
+    "events": "the event",
+    "programs": "the program entry",
+    "program_versions": "the version entry",
+    "part_cycles": "the part cycle",
+    "production_stops": "the production stop",
+    "shared_versions": "the shared version",
+    "shared_here": "the shared program",
 }
 
 

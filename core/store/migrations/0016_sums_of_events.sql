@@ -1,0 +1,2 @@
+-- Events, programs, versions, part cycles, production stops and shared versions get a sum too. The sums are made when
+-- this version is brought in; no table changes.
