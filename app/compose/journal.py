@@ -136,6 +136,7 @@ class Journal(Persistence):
         rows = self._rows_of_other() if store is None else None
         if rows is not None:
             book.show(rows)
+        book.unread = store is None and rows is None and has_store(self._folder)
         self._know(book, store)
         return book
 

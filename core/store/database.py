@@ -81,8 +81,10 @@ def check_kind(path: Path) -> None:
             "link-without-target",
         ) from error
     if not stat.S_ISREG(mode):
-        what = "a folder" if stat.S_ISDIR(mode) else "a pipe" if stat.S_ISFIFO(mode) else "a device"
-        raise StoreError(f"{path} is {what}, not a file; it is left as it is. Move it away", "not-a-file")
+        raise StoreError(
+            f"{path} is a folder, a pipe or a device, not a file; it is left as it is. Move it away",
+            "not-a-file",
+        )
 
 
 def connect(path: Path, *, read_only: bool) -> sqlite3.Connection:

@@ -5770,8 +5770,8 @@
     </message>
     <message>
       <location filename="app/desk/desk.py" />
-      <source>NOT KEPT, AND LOST BY CLOSING: {what}; MAKE ROOM, OR PRESS Y TO CLOSE, N TO STAY</source>
-      <translation>SIN GUARDAR, Y SE PIERDE AL CERRAR: {what}; HAGA ESPACIO, U PULSE Y PARA CERRAR, N PARA SEGUIR</translation>
+      <source>NOT KEPT, AND LOST BY CLOSING: {what}; PRESS Y TO CLOSE, N TO STAY</source>
+      <translation>NO GUARDADO, Y SE PIERDE AL CERRAR: {what}; PULSE Y PARA CERRAR, N PARA QUEDARSE</translation>
     </message>
     <message>
       <location filename="app/desk/desk.py" />
@@ -9512,6 +9512,11 @@
       <location filename="app/offsets/offset_values.py" />
       <source>Z</source>
       <translation>Z</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_values.py" />
+      <source>cannot be read</source>
+      <translation>no se puede leer</translation>
     </message>
     <message>
       <location filename="app/offsets/offset_values.py" />
@@ -13305,11 +13310,6 @@
     </message>
     <message>
       <location filename="app/screen/window_frame.py" />
-      <source>IN MEMORY UNTIL THE STORE CAN BE WRITTEN: {what}</source>
-      <translation>EN MEMORIA HASTA QUE SE PUEDA ESCRIBIR EN EL ALMACÉN: {what}</translation>
-    </message>
-    <message>
-      <location filename="app/screen/window_frame.py" />
       <source>LAST</source>
       <translation>ÚLTIMO</translation>
     </message>
@@ -13322,6 +13322,11 @@
       <location filename="app/screen/window_frame.py" />
       <source>NOTHING WAS RECORDED BEFORE THIS ONE: ALARMS AND E-STOPS HAVE A RECORD</source>
       <translation>ANTES DE ÉSTE NO SE REGISTRÓ NADA: LAS ALARMAS Y LOS PAROS DE EMERGENCIA TIENEN REGISTRO</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window_frame.py" />
+      <source>ONLY IN MEMORY, AND LOST IF TURNDESK ENDS NOW: {what}</source>
+      <translation>SOLO EN MEMORIA, Y SE PIERDE SI TURNDESK TERMINA AHORA: {what}</translation>
     </message>
     <message>
       <location filename="app/screen/window_frame.py" />
@@ -32880,8 +32885,8 @@
     </message>
     <message>
       <location filename="core/store/damaged_rows.py" />
-      <source>%1 is not as it was saved, and is not used</source>
-      <translation>%1 no está como se guardó y no se usa</translation>
+      <source>%1 is not as it was saved</source>
+      <translation>%1 no está como se guardó</translation>
     </message>
     <message>
       <location filename="core/store/damaged_rows.py" />
@@ -32947,6 +32952,16 @@
       <location filename="core/store/database.py" />
       <source>%1 is a database of another program; it is left as it is. Name another file</source>
       <translation>%1 es una base de datos de otro programa; se deja como está. Indique otro archivo</translation>
+    </message>
+    <message>
+      <location filename="core/store/database.py" />
+      <source>%1 is a folder, a pipe or a device, not a file; it is left as it is. Move it away</source>
+      <translation>%1 es una carpeta, una tubería o un dispositivo, no un archivo; se deja como está. Muévalo a otro sitio</translation>
+    </message>
+    <message>
+      <location filename="core/store/database.py" />
+      <source>%1 is a link to %2, which is not there; mount its disk, then try again</source>
+      <translation>%1 es un enlace a %2, que no está; monte su disco e inténtelo de nuevo</translation>
     </message>
     <message>
       <location filename="core/store/database.py" />
@@ -33155,6 +33170,11 @@
     </message>
     <message>
       <location filename="core/store/offset_tables.py" />
+      <source>the event</source>
+      <translation>el evento</translation>
+    </message>
+    <message>
+      <location filename="core/store/offset_tables.py" />
       <source>the job</source>
       <translation>el trabajo</translation>
     </message>
@@ -33175,6 +33195,21 @@
     </message>
     <message>
       <location filename="core/store/offset_tables.py" />
+      <source>the part cycle</source>
+      <translation>el ciclo de pieza</translation>
+    </message>
+    <message>
+      <location filename="core/store/offset_tables.py" />
+      <source>the production stop</source>
+      <translation>la parada de producción</translation>
+    </message>
+    <message>
+      <location filename="core/store/offset_tables.py" />
+      <source>the program entry</source>
+      <translation>la entrada de programa</translation>
+    </message>
+    <message>
+      <location filename="core/store/offset_tables.py" />
       <source>the reading</source>
       <translation>la lectura</translation>
     </message>
@@ -33187,6 +33222,21 @@
       <location filename="core/store/offset_tables.py" />
       <source>the setting</source>
       <translation>el ajuste</translation>
+    </message>
+    <message>
+      <location filename="core/store/offset_tables.py" />
+      <source>the shared program</source>
+      <translation>el programa compartido</translation>
+    </message>
+    <message>
+      <location filename="core/store/offset_tables.py" />
+      <source>the shared version</source>
+      <translation>la versión compartida</translation>
+    </message>
+    <message>
+      <location filename="core/store/offset_tables.py" />
+      <source>the version entry</source>
+      <translation>la entrada de versión</translation>
     </message>
     <message>
       <location filename="core/store/offset_tables.py" />

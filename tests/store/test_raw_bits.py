@@ -238,8 +238,8 @@ def told_of(kept: Path) -> Path:
         store.save_program("pin.nc", b"M30\n", "written", who="ANNA").result()
         store.write(lambda c: shared_versions.add(c, [version])).result()
         store.write(lambda c: shared_versions.set_here(c, "pin.nc", version.id)).result()
-        for each in (cycle, stop):
-            store.write(lambda c, each=each: c.execute(each)).result()
+        store.write(lambda c: c.execute(cycle)).result()
+        store.write(lambda c: c.execute(stop)).result()
     assert backup.all_problems(kept / FILE_NAME) == ()
     return kept
 
