@@ -94,6 +94,7 @@ class Access:
         elif not row.has_pin:
             self.say(tr("{name} HAS NO PIN: SERVICE LEVEL ENTERS ONE").format(name=data(row.name)))
         elif not self.worker.busy:
+            self.say(tr("CHECKING THE PIN OF {name}").format(name=data(row.name)))
             self.worker.queue(partial(self._try, row, pin), partial(self._tried, row), self.say)
 
     def _try(self, row: PersonRow, pin: str) -> bool:

@@ -27,7 +27,7 @@ class Cost(NamedTuple):
     p: int
 
 
-COST = Cost(16, 8, 4)  # of new hashes
+COST = Cost(16, 8, 8)  # of new hashes
 _FIRST_COST = Cost(14, 8, 1)  # of hashes without these bytes, from older versions
 
 

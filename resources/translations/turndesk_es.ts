@@ -5555,6 +5555,11 @@
     </message>
     <message>
       <location filename="app/desk/access.py" />
+      <source>CHECKING THE PIN OF {name}</source>
+      <translation>COMPROBANDO EL PIN DE {name}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/access.py" />
       <source>NOT KEPT: {why}</source>
       <translation>SIN GUARDAR: {why}</translation>
     </message>

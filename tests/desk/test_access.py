@@ -581,9 +581,9 @@ def test_what_is_kept_of_a_pin_is_scrypt() -> None:
 
 
 def test_a_try_costs_what_half_a_second_holds() -> None:
-    """Older hashes took 0.05 s, measured on a processor of 2.5 GHz: sixteen times the work is 0.8 s."""
+    """Older hashes took 0.03 s of an idle core: 32 times the work is 0.9 s."""
     work = TODAY.r * TODAY.p << TODAY.log2_n
-    assert work >= 16 * (8 * 1 << 14)
+    assert work >= 32 * (8 * 1 << 14)
 
 
 @pytest.mark.parametrize("damage", [b"", b"\x04\x08", bytes(31), bytes(34), bytes(40)])
