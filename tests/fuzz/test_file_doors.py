@@ -62,7 +62,7 @@ DOORS = (
     Door("alarm.scope", open_record, RecordError, "unusable", "too-large"),
     Door("now.ring", open_record, RecordError, "unusable", "too-large"),
     Door("lathe.setup", check_setup, CommandError, "unreadable", "too-large"),
-    Door("backup.db", backup.problems, StoreError, "unusable", "not-a-database"),  # it is read by pages
+    Door("backup.db", backup.problems, StoreError, "not-a-file", "not-a-database"),  # it is read by pages
     Door(
         "x.eds",
         lambda path: dictionary("X", str(path), canopen.ObjectDictionary),
