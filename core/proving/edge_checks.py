@@ -91,19 +91,13 @@ class EdgeChecks:
         if shape.kind in _DRILLS:
             needed = {Hand.RIGHT: 1.0, Hand.LEFT: -1.0}.get(shape.hand, 0.0)
             if move.rpm * needed < 0.0:
-                code = "M04" if move.rpm < 0.0 else "M03"
-                words = (
-                    f"{edge_name(tool)}, which is {shape.hand}-hand, cuts while the spindle turns by {code}."
-                )
-                yield Found("wrong-spindle-direction", words)
+                yield Found("wrong-spindle-direction", _turns_wrongly(move, shape, tool))
             return
         if shape.turns_itself:
             return
         if cutter.held and _turns_backwards(shape, move.rpm) and tool not in self._told:
             self._told.add(tool)
-            code = "M04" if move.rpm < 0.0 else "M03"
-            words = f"{edge_name(tool)}, a {shape.hand}-hand tool in front of the axis, cuts with {code}."
-            yield Found("wrong-spindle-direction", words)
+            yield Found("wrong-spindle-direction", _turns_wrongly(move, shape, tool))
             return
         radii = [r for _, r in move.points]
         if min(radii) < _NEAR and max(radii) > -_NEAR:
@@ -171,6 +165,12 @@ class EdgeChecks:
             yield Found(
                 "drill-too-deep", f"{edge_name(tool)} goes {text(deep)} deep; it cuts {text(shape.length)}."
             )
+
+
+def _turns_wrongly(move: TipMove, shape: ToolShape, tool: int) -> str:
+    if move.rpm < 0.0:
+        return f"{edge_name(tool)}, a {shape.hand}-hand tool, cuts while the spindle turns in reverse."
+    return f"{edge_name(tool)}, a {shape.hand}-hand tool, cuts while the spindle turns forward."
 
 
 def _turns_backwards(shape: ToolShape, rpm: float) -> bool:

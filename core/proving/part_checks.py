@@ -32,7 +32,7 @@ CHECKS: Mapping[str, Check] = {
         _ERROR,
         "A rapid, or a feed of 100 in/min and more, takes off metal.",
         "The edge meets more than .001 in of metal in r and in Z.",
-        "Stop short of the metal and feed in: look for a G00 left on, and for a sign or a decimal point.",
+        "Stop short of the metal and feed in: look for a rapid left on, and for a sign or a decimal point.",
     ),
     "feed-into-holder": Check(
         _ERROR,
@@ -85,14 +85,14 @@ CHECKS: Mapping[str, Check] = {
         _ERROR,
         "The spindle turns faster than chuck or collet may.",
         "A commanded speed over max_rpm under [clamping] of the machine file.",
-        "Lower S, or limit G96 by G77.",
+        "Lower S, or limit the speed under G96.",
         (),
     ),
     "stock-whips": Check(
         _WARNING,
         "The spindle turns so fast that the stock may whirl.",
         "More than half of the first critical speed of what sticks out, as a bar of brass held at one end.",
-        "Lower S, limit G96 by G77, let the part stick out less, or support it.",
+        "Lower S, limit the speed under G96, let the part stick out less, or support it.",
     ),
     "larger-than-stock": Check(
         _ERROR,
@@ -172,7 +172,7 @@ CHECKS: Mapping[str, Check] = {
         "The spindle turns against the cutting edge.",
         "M04 with a right-hand drill, reamer or tap, M03 with a left-hand one; M04 with a turning or boring "
         "tool in front of the axis that is mounted upright; or one edge is made to cut both ways.",
-        "Change M03 and M04, or the hand that the tool's shape says.",
+        "Reverse the spindle, or correct the hand in the shape of the tool.",
     ),
     "wrong-side": Check(
         _WARNING,
@@ -238,7 +238,7 @@ CHECKS: Mapping[str, Check] = {
         "A thread begins before the slide has the speed of its lead, or ends while it brakes.",
         "The metal begins nearer to the start of the pass than v²/2a of the slide; or the pass stops in "
         "metal and v²/2a is more than a lead.",
-        "Start farther away, lower S, end in a groove, or pull out with P.",
+        "Start farther away, lower S, end in a groove, or pull out while the slide moves along Z.",
     ),
     "thread-in-air": Check(
         _WARNING,

@@ -18584,6 +18584,11 @@
       <translation>el estado %1 no puede pasar a %2</translation>
     </message>
     <message>
+      <location filename="core/executor/snapshot.py" />
+      <source>way out</source>
+      <translation>salida</translation>
+    </message>
+    <message>
       <location filename="core/executor/spindle_control.py" />
       <source>SPINDLE HAS STOPPED</source>
       <translation>EL HUSILLO SE DETUVO</translation>
@@ -29530,8 +29535,8 @@
     </message>
     <message>
       <location filename="core/motion/feed_rates.py" />
-      <source>the spindle speed on the axis has no upper limit; give G77 or rpm_max</source>
-      <translation>la velocidad del husillo sobre el eje no tiene tope; dé G77 o rpm_max</translation>
+      <source>the spindle speed on the axis has no upper limit: program one, or give rpm_max</source>
+      <translation>la velocidad del husillo sobre el eje no tiene tope: programe uno o dé rpm_max</translation>
     </message>
     <message>
       <location filename="core/motion/motion_path.py" />
@@ -30105,6 +30110,11 @@
     </message>
     <message>
       <location filename="core/proving/cutting_checks.py" />
+      <source>Write LIMS= with the highest speed for this chuck and bar.</source>
+      <translation>Escriba LIMS= con la velocidad máxima para este plato y esta barra.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/cutting_checks.py" />
       <source>Write M12 at its end or its start.</source>
       <translation>Escriba M12 a su final o a su inicio.</translation>
     </message>
@@ -30175,13 +30185,13 @@
     </message>
     <message>
       <location filename="core/proving/edge_checks.py" />
-      <source>%1, a %2-hand tool in front of the axis, cuts with %3.</source>
-      <translation>%1, una herramienta de mano %2 delante del eje, corta con %3.</translation>
+      <source>%1, a %2-hand tool, cuts while the spindle turns forward.</source>
+      <translation>%1, una herramienta de mano %2, corta mientras el husillo gira hacia delante.</translation>
     </message>
     <message>
       <location filename="core/proving/edge_checks.py" />
-      <source>%1, which is %2-hand, cuts while the spindle turns by %3.</source>
-      <translation>%1, que es de mano %2, corta mientras el husillo gira con %3.</translation>
+      <source>%1, a %2-hand tool, cuts while the spindle turns in reverse.</source>
+      <translation>%1, una herramienta de mano %2, corta mientras el husillo gira en sentido inverso.</translation>
     </message>
     <message>
       <location filename="core/proving/machine_checks.py" />
@@ -30460,11 +30470,6 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>Change M03 and M04, or the hand that the tool's shape says.</source>
-      <translation>Cambie M03 y M04, o la mano que dice la forma de la herramienta.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/part_checks.py" />
       <source>Check K and the insert. Leave the pitch of a partial-profile insert out of its shape.</source>
       <translation>Compruebe K y la plaquita. Deje el paso de una plaquita de perfil parcial fuera de su forma.</translation>
     </message>
@@ -30630,13 +30635,13 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>Lower S, limit G96 by G77, let the part stick out less, or support it.</source>
-      <translation>Baje S, limite G96 con G77, deje que la pieza sobresalga menos o apóyela.</translation>
+      <source>Lower S, limit the speed under G96, let the part stick out less, or support it.</source>
+      <translation>Baje S, limite la velocidad bajo G96, deje que la pieza sobresalga menos o apóyela.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>Lower S, or limit G96 by G77.</source>
-      <translation>Baje S, o limite G96 con G77.</translation>
+      <source>Lower S, or limit the speed under G96.</source>
+      <translation>Baje S, o limite la velocidad bajo G96.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -30705,13 +30710,18 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
+      <source>Reverse the spindle, or correct the hand in the shape of the tool.</source>
+      <translation>Invierta el giro del husillo, o corrija la mano en la forma de la herramienta.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
       <source>S under G96 is over 1000 m/min (3280 ft/min), and asks for twice the spindle's speed.</source>
       <translation>S con G96 supera 1000 m/min (3280 ft/min), y pide el doble de la velocidad del husillo.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>Start farther away, lower S, end in a groove, or pull out with P.</source>
-      <translation>Empiece más lejos, baje S, termine en una ranura o salga con P.</translation>
+      <source>Start farther away, lower S, end in a groove, or pull out while the slide moves along Z.</source>
+      <translation>Empiece más lejos, baje S, termine en una ranura o salga mientras el carro avanza en Z.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -30720,8 +30730,8 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>Stop short of the metal and feed in: look for a G00 left on, and for a sign or a decimal point.</source>
-      <translation>Pare antes del metal y entre en avance: busque un G00 que sigue activo, un signo o un punto decimal.</translation>
+      <source>Stop short of the metal and feed in: look for a rapid left on, and for a sign or a decimal point.</source>
+      <translation>Pare antes del metal y entre en avance: busque un rápido que sigue activo, un signo o un punto decimal.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
