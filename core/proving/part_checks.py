@@ -49,7 +49,8 @@ CHECKS: Mapping[str, Check] = {
     "into-chuck": Check(
         _ERROR,
         "A tool, or its holder, runs into chuck, jaws or collet.",
-        "An outline comes into the contour that the machine file gives under [clamping].",
+        "An outline comes into the contour that the machine file gives under [clamping], or within .001 in "
+        "of it.",
         "Let the part stick out further, or stop earlier.",
         (TOOL,),
     ),
@@ -87,6 +88,22 @@ CHECKS: Mapping[str, Check] = {
         "A commanded speed over max_rpm under [clamping] of the machine file.",
         "Lower S, or limit the speed under G96.",
         (),
+    ),
+    "drill-without-limit": Check(
+        _ERROR,
+        "A drill works on the axis under constant surface speed.",
+        "A drill, centre drill, reamer or tap cuts under G96 with no limit in force: the spindle runs at its "
+        "highest speed.",
+        "Program the speed of a drill in rpm.",
+        (TOOL,),
+    ),
+    "cut-standing": Check(
+        _ERROR,
+        "A tool is fed into the part while neither tool nor spindle turns.",
+        "A drill, reamer, mill, turning tool or parting blade meets more than .001 in of material while no "
+        "live tool is on and the spindle, which has turned before, is stopped or held as C. Not where the "
+        "machine file has no M code for a live tool.",
+        "Start the spindle, or the live tool, before this move.",
     ),
     "stock-whips": Check(
         _WARNING,
@@ -180,6 +197,12 @@ CHECKS: Mapping[str, Check] = {
         "Fed backwards over .02 in and two nose radii deep, or into a wall that is steeper than its back.",
         "Use a tool of the other hand, a slimmer insert, or cut from the other side.",
     ),
+    "arc-loop": Check(
+        _ERROR,
+        "An insert is fed around a loop through the part.",
+        "An arc through more than 200° meets material; not of a round insert.",
+        "Check the direction of the arc, and the signs of its center.",
+    ),
     "over-axis": Check(
         _ERROR,
         "An outside tool cuts beyond the axis.",
@@ -207,11 +230,18 @@ CHECKS: Mapping[str, Check] = {
     ),
     "depth-of-cut": Check(
         _WARNING,
-        "One pass is deeper than usual for its insert or its boring bar.",
+        "One pass is deeper than usual for its insert.",
         "With a stated stock, the mean depth: over .5 of the cutting edge of a C or S insert, .4 of W, .3 of "
         "T and D, .2 of V (Widia's limits for medium geometries, nose radius left off; CNMG432 where no "
-        "insert is stated), or over half the diameter of a boring bar. The material is not known: soft metal "
-        "may allow more.",
+        "insert is stated). The material is not known: soft metal may allow more.",
+        "Take it off in several passes: look for a lost or exchanged digit in X.",
+    ),
+    "depth-breaks-tool": Check(
+        _ERROR,
+        "One pass is deeper than its insert or its boring bar can take.",
+        "With a stated stock and a spindle that turns, the mean depth: over 2/3 of the cutting edge of a "
+        "stated C or S insert, half of W, T and D, a quarter of V, .4 of a round one, or over half the "
+        "diameter of a boring bar.",
         "Take it off in several passes: look for a lost or exchanged digit in X.",
     ),
     "blade-turns": Check(
@@ -230,7 +260,8 @@ CHECKS: Mapping[str, Check] = {
     "feed-breaks-tool": Check(
         _ERROR,
         "The feed per revolution is far over what the edge can cut.",
-        "More than five times the limit of chip-load.",
+        "More than twice the limit of chip-load, and more than .006 in, by an insert; five times that of a "
+        "drill, a reamer or a blade.",
         "Lower F: look for a lost decimal point, or for millimeters in a program in inches.",
     ),
     "thread-run-up": Check(
@@ -245,6 +276,12 @@ CHECKS: Mapping[str, Check] = {
         "The first passes of a thread cut nothing.",
         "With a stated stock, three passes and more stay outside the metal.",
         "Begin at the diameter of the first pass: check X where the thread starts.",
+    ),
+    "thread-cuts-nothing": Check(
+        _ERROR,
+        "A thread is cut beside the part.",
+        "With a stated stock, no pass of one lead between the same two places in Z meets any material.",
+        "Check X and Z of the thread, and whether X is a diameter.",
     ),
     "thread-form": Check(
         _WARNING,

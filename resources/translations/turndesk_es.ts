@@ -29970,6 +29970,11 @@
     </message>
     <message>
       <location filename="core/proving/cut_sizes.py" />
+      <source>%1 cuts %2 deep in one pass; it can take %3.</source>
+      <translation>%1 corta %2 de profundidad en una pasada; admite %3.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/cut_sizes.py" />
       <source>%1 cuts %2 deep; its edge is %3 long.</source>
       <translation>%1 corta con %2 de profundidad; su filo mide %3.</translation>
     </message>
@@ -30160,6 +30165,11 @@
     </message>
     <message>
       <location filename="core/proving/edge_checks.py" />
+      <source>%1 cuts on the axis under G96: the spindle runs at its highest speed.</source>
+      <translation>%1 corta en el eje bajo G96: el husillo gira a su velocidad máxima.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/edge_checks.py" />
       <source>%1 cuts with the spindle turning the other way than where it has cut before.</source>
       <translation>%1 corta con el husillo girando al revés que donde ha cortado antes.</translation>
     </message>
@@ -30177,6 +30187,11 @@
       <location filename="core/proving/edge_checks.py" />
       <source>%1 is fed %2 into solid material.</source>
       <translation>%1 avanza %2 en material macizo.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/edge_checks.py" />
+      <source>%1 is fed around %2 of an arc through the part.</source>
+      <translation>%1 avanza por un arco de %2 a través de la pieza.</translation>
     </message>
     <message>
       <location filename="core/proving/edge_checks.py" />
@@ -30285,8 +30300,23 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
+      <source>A drill works on the axis under constant surface speed.</source>
+      <translation>Una broca trabaja en el eje con velocidad de corte constante.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>A drill, centre drill, reamer or tap cuts under G96 with no limit in force: the spindle runs at its highest speed.</source>
+      <translation>Una broca, una broca de centrar, un escariador o un macho corta bajo G96 sin límite vigente: el husillo gira a su velocidad máxima.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
       <source>A drill, reamer or tap cuts beside the spindle axis.</source>
       <translation>Una broca, un escariador o un macho corta fuera del eje del husillo.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>A drill, reamer, mill, turning tool or parting blade meets more than .001 in of material while no live tool is on and the spindle, which has turned before, is stopped or held as C. Not where the machine file has no M code for a live tool.</source>
+      <translation>Una broca, un escariador, una fresa, una herramienta de torneado o una cuchilla de tronzar encuentra más de .001 in de material mientras no hay herramienta motorizada encendida y el husillo, que antes ha girado, está parado o sujeto como C. No donde el archivo de máquina no tiene un código M para una herramienta motorizada.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -30375,6 +30405,11 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
+      <source>A thread is cut beside the part.</source>
+      <translation>Se rosca fuera de la pieza.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
       <source>A thread is not cut by the pitch of its insert.</source>
       <translation>Una rosca no se corta con el paso de su plaquita.</translation>
     </message>
@@ -30382,6 +30417,11 @@
       <location filename="core/proving/part_checks.py" />
       <source>A tool is fed beyond the far end of the stock.</source>
       <translation>Una herramienta avanza más allá del extremo del material.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>A tool is fed into the part while neither tool nor spindle turns.</source>
+      <translation>Una herramienta avanza en la pieza mientras no giran ni la herramienta ni el husillo.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -30410,6 +30450,11 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
+      <source>An arc through more than 200° meets material; not of a round insert.</source>
+      <translation>Un arco de más de 200° encuentra material; no con una plaquita redonda.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
       <source>An insert cuts an arc more than .008 in on the bar's side of the deepest part-off.</source>
       <translation>Una plaquita corta un arco a más de .008 in del tronzado más profundo, del lado de la barra.</translation>
     </message>
@@ -30420,13 +30465,18 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
+      <source>An insert is fed around a loop through the part.</source>
+      <translation>Una plaquita avanza por un bucle a través de la pieza.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
       <source>An outline comes into the contour of quill and centre that the machine file gives under [clamping].</source>
       <translation>Un contorno entra en el de la caña y el punto que el archivo de máquina da en [clamping].</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>An outline comes into the contour that the machine file gives under [clamping].</source>
-      <translation>Un perfil entra en el contorno que el archivo de máquina da en [clamping].</translation>
+      <source>An outline comes into the contour that the machine file gives under [clamping], or within .001 in of it.</source>
+      <translation>Un contorno entra en el contorno que da el archivo de máquina en [clamping], o se acerca a menos de .001 in de él.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -30480,6 +30530,11 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
+      <source>Check X and Z of the thread, and whether X is a diameter.</source>
+      <translation>Compruebe X y Z de la rosca, y si X es un diámetro.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
       <source>Check Z, the length of the stock and how far it sticks out of the chuck.</source>
       <translation>Compruebe Z, la longitud del material y cuánto sobresale del plato.</translation>
     </message>
@@ -30487,6 +30542,11 @@
       <location filename="core/proving/part_checks.py" />
       <source>Check the Z of the part-off: the part would lack what is behind it.</source>
       <translation>Compruebe la Z del tronzado: a la pieza le faltaría lo que queda detrás.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>Check the direction of the arc, and the signs of its center.</source>
+      <translation>Compruebe el sentido del arco y los signos de su centro.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -30665,13 +30725,13 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>More than five times the limit of chip-load.</source>
-      <translation>Más de cinco veces el límite de chip-load.</translation>
+      <source>More than half of the first critical speed of what sticks out, as a bar of brass held at one end.</source>
+      <translation>Más de la mitad de la primera velocidad crítica de lo que sobresale, como barra de latón sujeta por un extremo.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>More than half of the first critical speed of what sticks out, as a bar of brass held at one end.</source>
-      <translation>Más de la mitad de la primera velocidad crítica de lo que sobresale, como barra de latón sujeta por un extremo.</translation>
+      <source>More than twice the limit of chip-load, and more than .006 in, by an insert; five times that of a drill, a reamer or a blade.</source>
+      <translation>Más del doble del límite de chip-load, y más de .006 in, con una plaquita; cinco veces el de una broca, un escariador o una cuchilla.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -30685,8 +30745,13 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>One pass is deeper than usual for its insert or its boring bar.</source>
-      <translation>Una pasada es más profunda de lo usual para su plaquita o su barra de mandrinar.</translation>
+      <source>One pass is deeper than its insert or its boring bar can take.</source>
+      <translation>Una pasada es más profunda de lo que admite su plaquita o su barra de mandrinar.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>One pass is deeper than usual for its insert.</source>
+      <translation>Una pasada es más profunda de lo habitual para su plaquita.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -30697,6 +30762,11 @@
       <location filename="core/proving/part_checks.py" />
       <source>Over .8 of the nose radius, .12 of the width of a groover, .04 of the diameter of a drill, .1 of a reamer.</source>
       <translation>Más de .8 del radio de punta, .12 del ancho de una ranuradora, .04 del diámetro de una broca, .1 de un escariador.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>Program the speed of a drill in rpm.</source>
+      <translation>Programe la velocidad de una broca en rpm.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -30727,6 +30797,11 @@
       <location filename="core/proving/part_checks.py" />
       <source>Start it with M03 or M04.</source>
       <translation>Arránquelo con M03 o M04.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>Start the spindle, or the live tool, before this move.</source>
+      <translation>Arranque el husillo, o la herramienta motorizada, antes de este movimiento.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -30885,8 +30960,18 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>With a stated stock, the mean depth: over .5 of the cutting edge of a C or S insert, .4 of W, .3 of T and D, .2 of V (Widia's limits for medium geometries, nose radius left off; CNMG432 where no insert is stated), or over half the diameter of a boring bar. The material is not known: soft metal may allow more.</source>
-      <translation>Con un material indicado, la profundidad media: más de .5 del filo de una plaquita C o S, .4 de W, .3 de T y D, .2 de V (límites de Widia para geometrías medias, sin el radio de punta; CNMG432 donde no se indica plaquita), o más de la mitad del diámetro de una barra de mandrinar. La clase de metal no se conoce: un metal blando puede admitir más.</translation>
+      <source>With a stated stock and a spindle that turns, the mean depth: over 2/3 of the cutting edge of a stated C or S insert, half of W, T and D, a quarter of V, .4 of a round one, or over half the diameter of a boring bar.</source>
+      <translation>Con un material de partida indicado y un husillo que gira, la profundidad media: más de 2/3 del filo de una plaquita C o S indicada, la mitad de W, T y D, un cuarto de V, .4 de una redonda, o más de la mitad del diámetro de una barra de mandrinar.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>With a stated stock, no pass of one lead between the same two places in Z meets any material.</source>
+      <translation>Con un material de partida indicado, ninguna pasada del mismo paso entre los mismos dos puntos de Z encuentra material.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>With a stated stock, the mean depth: over .5 of the cutting edge of a C or S insert, .4 of W, .3 of T and D, .2 of V (Widia's limits for medium geometries, nose radius left off; CNMG432 where no insert is stated). The material is not known: soft metal may allow more.</source>
+      <translation>Con un material de partida indicado, la profundidad media: más de .5 del filo de una plaquita C o S, .4 de W, .3 de T y D, .2 de V (límites de Widia para geometrías medias, sin el radio de punta; CNMG432 donde no se indica la plaquita). El material no se conoce: un metal blando puede admitir más.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -30930,6 +31015,11 @@
     </message>
     <message>
       <location filename="core/proving/part_findings.py" />
+      <source>%1 cuts while neither tool nor spindle turns.</source>
+      <translation>%1 corta mientras no giran ni la herramienta ni el husillo.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_findings.py" />
       <source>%1 deep at Z %2 … %3</source>
       <translation>%1 de profundidad en Z %2 … %3</translation>
     </message>
@@ -30962,6 +31052,11 @@
       <location filename="core/proving/part_findings.py" />
       <source>%1 runs into the tailstock, %2.</source>
       <translation>%1 choca con el contrapunto, %2.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_findings.py" />
+      <source>%1 touches the chuck.</source>
+      <translation>%1 toca el plato.</translation>
     </message>
     <message>
       <location filename="core/proving/part_findings.py" />
@@ -31152,6 +31247,11 @@
       <location filename="core/proving/thread_checks.py" />
       <source>%1: more than a holder gives.</source>
       <translation>%1: más de lo que cede un portamachos.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/thread_checks.py" />
+      <source>No pass of this thread of %1 meets the part.</source>
+      <translation>Ninguna pasada de esta rosca de %1 encuentra la pieza.</translation>
     </message>
     <message>
       <location filename="core/proving/thread_checks.py" />

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import pytest
 
@@ -143,9 +144,19 @@ LOOP = "T1\nX[.6]Z[.1]\nX[.3]\nG95F[.004]Z[-.3]\nG03X[.45]Z[-.45]I[.3]K[-.45]\nX
 
 
 def test_an_arc_is_examined_piece_by_piece() -> None:
-    """The arc begins square to the axis, into .3 in of material; the back of a CNMG clears 5°."""
+    """The arc begins square to the axis, into .15 in of material; the back of a CNMG clears 5°."""
+    hollow = "T1\nX.6Z.1\nX.45\nG95F.004Z-.3\n{g}X.45Z-.6R.15\nX.6\nG94F300Z1"
+    found = [codes(f"G90G94F300G73\nM03S1500\n{hollow.format(g=g)}\nM30\n") for g in ("G02", "G03")]
+    assert {"wrong-side"} in found
+
+
+@pytest.mark.parametrize(("insert", "expected"), [("CNMG120408", True), ("RCMT0803M0", False)])
+def test_an_insert_with_a_corner_gets_around_no_loop(insert: str, expected: bool) -> None:
+    """From square to the axis at Z-.3 around to parallel to it: 270°; the same arc the short way is 90°."""
     program = "G90G94F300G73\nM03S1500\n" + LOOP.replace("[", "").replace("]", "") + "\nM30\n"
-    assert codes(program) == {"depth-of-cut", "wrong-side"}
+    shapes = {1: replace(TURNING, insert=insert, nose_radius=4.0 if insert[0] == "R" else 0.8)}
+    assert (("arc-loop", "error") in found(program, ROD, shapes)) is expected
+    assert ("arc-loop", "error") not in found(program.replace("G03", "G02"), ROD, shapes)
 
 
 def test_what_rests_on_something_assumed_is_a_warning() -> None:

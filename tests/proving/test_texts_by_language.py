@@ -68,7 +68,7 @@ SHAPES = {"part": test_part_proof.TOOLS, "edge": test_edge_checks.SHAPES, "threa
 SUITES = {"part": test_part_proof, "edge": test_edge_checks, "thread": test_thread_checks}
 NOT_READ = {  # an arc, a lead, a lathe's plane and a pause that SINUMERIK writes in other words
     "contour-past-part-off", "unmade-cut, a thread", "unmade-cut of a live tool", "tap-reversal, too fast",
-    "thread-in-air",
+    "thread-in-air", "drill-without-limit",
 }  # fmt: skip
 TURNED = {
     f"{suite}: {name}": (in_sinumerik(text(wrong)), stock, SHAPES[suite], name)
@@ -112,6 +112,13 @@ MORE: dict[str, tuple[str, Stock, dict[str, Any]]] = {
     "contour-past-part-off": (ARC + OFF, bar(25.4, 0.0, -80.0), {}),
     "thread-in-air": (THREAD.format(r=".55"), ROD, {}),
     "thread-run-up": (THREAD.format(r=".49").replace("Z.2", "Z.02"), ROD, {"drives": Drives(20.0)}),
+    "drill-without-limit": (
+        HOLE.format(x="0", z="-.3").replace("D1", "D1\nG96 S90 F.004").replace("G95 F.004 ", ""), ROD, {},
+    ),
+    "cut-standing": (
+        PASS.format(t=1, z="-.3").replace("G95 F.004", "M5\nF4"), ROD, {"live_codes": True}
+    ),
+    "arc-loop": (ARC.replace("CR=.025", "I.025 K0"), ROD, {}),
     "tap-no-hole": ("T10 D1\nX0 Z.1\nG95 F.05 Z-.4\nM5\nM4\nZ.1\n", ROD, {}),
 }  # fmt: skip
 TAP = ToolShape(ToolKind.TAP, diameter=6.35, pitch=1.27, length=25.0)
