@@ -260,8 +260,8 @@ CHECKS: Mapping[str, Check] = {
     "feed-breaks-tool": Check(
         _ERROR,
         "The feed per revolution is far over what the edge can cut.",
-        "More than twice the limit of chip-load, and more than .006 in, by an insert; five times that of a "
-        "drill, a reamer or a blade.",
+        "An insert: more than twice its nose radius, and more than .006 in. A drill, a reamer or a blade: "
+        "more than five times the limit of chip-load.",
         "Lower F: look for a lost decimal point, or for millimeters in a program in inches.",
     ),
     "thread-run-up": Check(

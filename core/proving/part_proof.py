@@ -44,8 +44,7 @@ def prove_with_part(
     ``seen`` is given each span, as ``prove`` gives it; ``watch`` may give up while the part is made.
     """
     if machine.kind != "lathe":
-        report = prove(program, setup, machine, progress, ideal=ideal, seen=seen)
-        return _refusing_missing_offsets(report, setup), None
+        return prove(program, setup, machine, progress, ideal=ideal, seen=seen), None
     gathered = PartProof(setting)
 
     def see(span: MotionSpan | RestSpan) -> None:
@@ -54,7 +53,6 @@ def prove_with_part(
             seen(span)
 
     report = prove(program, setup, machine, progress, ideal=ideal, seen=see)
-    report = _refusing_missing_offsets(report, setup)
     part = gathered.report(watch)
     known = {(each.line, each.code) for each in report.diagnostics}  # of reading, which knows no stock
     found = [each for each in part.findings if (each.line, each.code) not in known]
@@ -62,8 +60,11 @@ def prove_with_part(
     return replace(report, diagnostics=in_order((*left, *found))), part
 
 
-def _refusing_missing_offsets(report: Report, setup: Setup) -> Report:
-    """A tool without an offset is an error where those of others are known: the machine would not start."""
+def refusing_missing_offsets(report: Report, setup: Setup) -> Report:
+    """Return the report of ``prove``: where offsets are known, a tool without one is an error.
+
+    The machine would not start. The operator screen and ``run`` refuse such a start themselves.
+    """
     if not setup.tools:
         return report
     found = (

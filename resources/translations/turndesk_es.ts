@@ -30470,6 +30470,11 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
+      <source>An insert: more than twice its nose radius, and more than .006 in. A drill, a reamer or a blade: more than five times the limit of chip-load.</source>
+      <translation>Una plaquita: más del doble de su radio de punta, y más de .006 in. Una broca, un escariador o una cuchilla: más de cinco veces el límite de chip-load.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
       <source>An outline comes into the contour of quill and centre that the machine file gives under [clamping].</source>
       <translation>Un contorno entra en el de la caña y el punto que el archivo de máquina da en [clamping].</translation>
     </message>
@@ -30727,11 +30732,6 @@
       <location filename="core/proving/part_checks.py" />
       <source>More than half of the first critical speed of what sticks out, as a bar of brass held at one end.</source>
       <translation>Más de la mitad de la primera velocidad crítica de lo que sobresale, como barra de latón sujeta por un extremo.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/part_checks.py" />
-      <source>More than twice the limit of chip-load, and more than .006 in, by an insert; five times that of a drill, a reamer or a blade.</source>
-      <translation>Más del doble del límite de chip-load, y más de .006 in, con una plaquita; cinco veces el de una broca, un escariador o una cuchilla.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />

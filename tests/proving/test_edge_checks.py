@@ -98,8 +98,8 @@ CASES = {
     "chip-load by time": (
         "T1\nX[.6]Z[.05]\nX[.4]\nF[20]Z[-.5]\nX[.6]", "T1\nX[.6]Z[.05]\nX[.4]\nF[18]Z[-.5]\nX[.6]", ROD, 6,
     ),
-    # twice .0126 is .0252 in a revolution
-    "feed-breaks-tool": (PASS.format(r=".4", f=".026"), PASS.format(r=".4", f=".012"), ROD, 6),
+    # twice a nose of 0.4 mm is .0315 in a revolution
+    "feed-breaks-tool": (PASS.format(r=".4", f=".032"), PASS.format(r=".4", f=".012"), ROD, 6),
     # DCMT11T304: edge 11.6 mm, less the nose .4; .3 of it is 3.37 mm or .1325 in, .5 is .221 in
     "depth-of-cut": (PASS.format(r=".36", f=".004"), PASS.format(r=".38", f=".004"), ROD, 6),
     # .23 in are 5.84 mm, over half of 11.2 mm

@@ -24,7 +24,7 @@ from app.offsets.offsets_file import read_tool_shapes
 from core.interpreter.job_setup import SecondaryOffset, ToolOffset
 from core.language.source import Source
 from core.machine.machine_model import ClampingModel
-from core.proving.part_proof import prove_with_part
+from core.proving.part_proof import prove_with_part, refusing_missing_offsets
 
 CATALOGUE = Path(__file__).parent / "slip_catalogue"
 JOBS: dict[str, dict[str, Any]] = tomllib.loads((CATALOGUE / "jobs.toml").read_text())
@@ -86,6 +86,7 @@ def findings(job: str, line: int, text: str, folder: Path) -> list[tuple[int, st
     before = ProgramBefore(lambda path: Source(path.name, ""), setup, machine, setting)
     setting = replace(setting, stock=said_stock(told["stock"], before))
     report, _ = prove_with_part(Source(job, "\n".join(lines) + "\n"), setup, machine, setting)
+    report = refusing_missing_offsets(report, setup)
     return [
         (d.line, str(d.severity), d.check or d.code) for d in report.diagnostics if str(d.severity) != "note"
     ]

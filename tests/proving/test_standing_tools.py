@@ -14,7 +14,7 @@ from core.language.source import Source
 from core.machine.machine_model import Machine
 from core.part.stock import bar
 from core.part.tool_shape import ToolKind, ToolShape
-from core.proving.part_proof import prove_with_part
+from core.proving.part_proof import prove_with_part, refusing_missing_offsets
 
 ROD = bar(19.05, 0.0, -60.0)
 TURNING = ToolShape(ToolKind.TURNING, tip=3, nose_radius=0.4, insert="DCMT11T304")
@@ -91,5 +91,6 @@ def test_a_tool_without_an_offset_is_an_error_where_others_have_one(
     setup = setup_for(machine, tools={n: ToolOffset(-12.7, -50.8) for n in known}, secondary={})
     program = Source("P", f"{HEAD}{HOLE.format(t=3, x='0', stop='')}\nM30\n")
     report, _ = prove_with_part(program, setup, machine, known_part(machine, {}, SHAPES))
+    report = refusing_missing_offsets(report, setup)
     (told,) = [each for each in report.diagnostics if each.code == "tool-offset-missing"]
     assert str(told.severity) == severity
