@@ -378,6 +378,13 @@ class Desk:
             return ""
         return self.first_move.refusal if snapshot.starts is Starts.PROGRAM else ""
 
+    def start_refusal(self, snapshot: Snapshot) -> str:
+        """Why the palms start nothing now, as far as the screen knows; empty when they may."""
+        refused = self.barred() or self.first_move_refusal(snapshot)
+        if refused or snapshot.state is not State.IDLE or snapshot.starts is not Starts.PROGRAM:
+            return refused
+        return prompt_line.lacking(snapshot, self.session.now)
+
     def time_left(self, snapshot: Snapshot, loaded: Loaded) -> float:
         """Seconds to the end of the cycle at the present override; infinite while it stands still."""
         picture = loaded.picture

@@ -117,18 +117,18 @@ def cause_of(alarm: Alarm) -> str:
 def _idle(snapshot: Snapshot, loaded: Loaded, start: str) -> str:
     if loaded.busy:
         return _progress(loaded)
+    asked = interrupted_notice.interrupted_prompt(snapshot, loaded, start)
+    return lacking(snapshot, loaded) or asked or f"TO START {start}"
+
+
+def lacking(snapshot: Snapshot, loaded: Loaded) -> str:
+    """Return why the program that was read does not start now; empty when nothing is missing."""
     if loaded.phase in {Phase.UNREADABLE, Phase.REFUSED}:
         return refusal(loaded)
     if not snapshot.program:
         return "PRESS F2 TO CHOOSE A PROGRAM"
     if snapshot.proof_wanted:
         return "THE PROGRAM IS NOT PROVED YET AND WILL NOT START"
-    asked = interrupted_notice.interrupted_prompt(snapshot, loaded, start)
-    return _lacking(snapshot, loaded) or asked or f"TO START {start}"
-
-
-def _lacking(snapshot: Snapshot, loaded: Loaded) -> str:
-    """What a good program lacks to be started; empty when nothing."""
     missing = missing_tools(loaded)
     if missing and "Y" in snapshot.axes:
         return f"WILL NOT START: {', '.join(missing)} NOT IN THE TOOL TABLE (F8)"

@@ -122,17 +122,19 @@ class OffsetQuestions:
 
     def _named(self, kind: Kind, each: Suspicion) -> str:
         """T1 X Ø +0.50000 → −1.20000"""
-        mode = self.history.mode
-        if kind is Kind.TOOL:
-            title = heading(each.name, mode)
-            shown: Callable[[Value], str] = lambda value: shown_value(each.name, value, mode)  # noqa: E731
-        elif kind is Kind.SECONDARY:
-            title, shown = each.name.upper(), lambda value: signed(float(value), mode.metric)
-        else:
-            field = FIELDS[kind][each.name]
-            title, shown = field.word, lambda value: cell_text(field, value)
+        title, shown = self._display(kind, each.name)
         old = not_set() if each.old is None else shown(each.old)
         return f"{_row_name(kind, each.number)} {title} {old} → {shown(each.new)}"
+
+    def _display(self, kind: Kind, name: str) -> tuple[str, Callable[[Value], str]]:
+        """Return the title of a field, and how its values are shown."""
+        mode = self.history.mode
+        if kind is Kind.TOOL:
+            return heading(name, mode), lambda value: shown_value(name, value, mode)
+        if kind is Kind.SECONDARY:
+            return name.upper(), lambda value: signed(float(value), mode.metric)
+        field = FIELDS[kind][name]
+        return field.word, lambda value: cell_text(field, value)
 
     # --- the master ----------------------------------------------------------------------------------
 

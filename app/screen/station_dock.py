@@ -38,8 +38,7 @@ class StationDock(FingerPanel):
     def show_station(self, snapshot: Snapshot) -> None:
         """Where its switches and buttons stand."""
         desk = self._desk
-        refused = desk.barred() or desk.first_move_refusal(snapshot)
-        self._auto, self.barred = snapshot.spindle_auto, bool(refused)
+        self._auto, self.barred = snapshot.spindle_auto, bool(desk.start_refusal(snapshot))
         palms = frozenset(desk.hands.palms.down)
         pots = (desk.hands.spindle_pot.wanted, desk.hands.feed_pot.wanted)
         latched = desk.settings.now.latched and desk.one_hand

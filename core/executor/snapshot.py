@@ -43,7 +43,7 @@ class Starts(StrEnum):
     PROGRAM = "program"
     LINE = "line"
     RESTART = "restart"
-    WAY_OUT = "way out"  # of the part, after a stop; what was interrupted stays so
+    WAY_OUT = "way-out"  # of the part, after a stop; what was interrupted stays so
 
 
 LINES = frozenset({Starts.LINE, Starts.WAY_OUT})

@@ -18584,11 +18584,6 @@
       <translation>el estado %1 no puede pasar a %2</translation>
     </message>
     <message>
-      <location filename="core/executor/snapshot.py" />
-      <source>way out</source>
-      <translation>salida</translation>
-    </message>
-    <message>
       <location filename="core/executor/spindle_control.py" />
       <source>SPINDLE HAS STOPPED</source>
       <translation>EL HUSILLO SE DETUVO</translation>
@@ -21622,6 +21617,16 @@
       <location filename="core/interpreter/omniturn/feeds.py" />
       <source>constant surface speed</source>
       <translation>velocidad superficial constante</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/follow_ups.py" />
+      <source>The arc's center is on the next line.</source>
+      <translation>El centro del arco está en la línea siguiente.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/follow_ups.py" />
+      <source>Write %1 on the line of the arc.</source>
+      <translation>Escriba %1 en la línea del arco.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />

@@ -48,6 +48,9 @@ def findings(text: str) -> list[Diagnostic]:
         ("T33", 1, "tool-number", "T0"),
         ("%", 1, "transfer-line", "Delete"),
         ("X.5(OUT (SIDE) CUT)", 9, "comment-nested", "inner"),
+        ("M2\nX.7", 1, "m-digits", "M02."),
+        ("G02X1.2Z-.1\nI.05K0", 1, "arc-centre-missing", "I.05K0"),
+        ("G90G03X1.2Z-.1(ARC)\nI0K.05(CENTER)", 4, "arc-centre-missing", "I0K.05"),
     ],
 )
 def test_a_line_gets_one_error_with_the_code_that_was_meant(
@@ -56,6 +59,20 @@ def test_a_line_gets_one_error_with_the_code_that_was_meant(
     errors = [each for each in findings(f"{HEAD}{line}\nM30\n") if each.severity == "error"]
     assert [(each.line, each.column, each.code) for each in errors] == [(4, column, code)]
     assert remedy in errors[0].hint
+
+
+@pytest.mark.parametrize(
+    ("lines", "codes"),
+    [
+        ("G02X1.2Z-.1\nX.7I.05", ["arc-centre-missing", "word-unused"]),
+        ("G02X1.2Z-.1I.1\nK.05", ["arc-coordinate-missing", "word-unused"]),
+        ("M30\nX.7", ["after-end"]),
+    ],
+)
+def test_a_second_mistake_is_not_taken_for_a_consequence(lines: str, codes: list[str]) -> None:
+    found = findings(f"{HEAD}{lines}\nM30\n")
+    errors = [each.code for each in found if each.severity == "error"]
+    assert sorted(errors) == codes
 
 
 @pytest.mark.parametrize(

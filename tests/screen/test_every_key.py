@@ -272,7 +272,7 @@ def test_every_key_does_what_the_page_offers(day: Day, typists: list[Typist]) ->
         typist.opens(entry.name)
         faults += faults_of_page(typist, entry.name)
         assert day.frame.dock is not None
-        if typist.opens(entry.name) and day.frame.dock.barred is not bool(day.desk.barred()):
+        if typist.opens(entry.name) and day.frame.dock.barred is not bool(day.desk.start_refusal(day.shot)):
             faults.append(f"{entry.name}: the palm buttons are not as they are drawn")
     typist.opens(page_table.AUTOMATIC)
     assert faults == [], "\n".join(faults)

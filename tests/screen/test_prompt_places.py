@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
+import pytest
+
 from app.desk.prompt_line import CHOOSE_FILE, GIVE_UP, Sort
 from app.screen.page_table import menu_of
 from core.executor.commands import Reset
@@ -55,3 +59,30 @@ def test_no_page_offers_a_start_that_is_refused(operator: Operator) -> None:
         if frame.go(entry.name):
             operator.window.refresh()
             assert desk.start_words not in frame.prompt.state or not desk.barred(), entry.name
+
+
+@pytest.mark.parametrize(
+    ("text", "starts"),
+    [
+        ("", False),
+        ("G90G94F300\nT1\nX1Z.1\nM30\n", True),
+        ("T29\nX1Z.1\nM30\n", False),
+        ("G9O\n", False),
+    ],
+    ids=["no program", "a sound one", "a tool without an offset", "an error"],
+)
+def test_the_palm_buttons_are_bright_only_for_a_start_that_would_begin(
+    operator: Operator, tmp_path: Path, text: str, *, starts: bool
+) -> None:
+    operator.drives_on()
+    if text:
+        (tmp_path / "part.nc").write_text(text)
+        operator.stage.desk.session.load(tmp_path / "part.nc")
+        operator.stage.desk.session.settled(30.0)
+    operator.pause(0.2)
+    operator.stage.checks_start()
+    operator.window.refresh()
+    assert operator.frame.dock is not None
+    assert operator.frame.dock.barred is not starts
+    operator.palms()
+    assert (operator.shot.state is State.RUN) is starts

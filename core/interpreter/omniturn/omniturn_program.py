@@ -8,6 +8,7 @@ from itertools import islice
 
 from core.interpreter.diagnostic_log import without_repeats
 from core.interpreter.omniturn.code_table import FLOW_CODES
+from core.interpreter.omniturn.follow_ups import without_follow_ups
 from core.interpreter.omniturn.loops_and_subroutines import Structure, call_target, find_structure
 from core.interpreter.omniturn.omniturn_statement import (
     PLANE,
@@ -207,7 +208,7 @@ def read_program(source: Source, strict: bool = False) -> Program:
     if not any(fault.code in {"after-end", "no-end", "subroutine-twice"} for fault in faults):
         problems += _beyond_the_end(ready, structure)
     problems.sort(key=lambda problem: (problem.line, problem.column))
-    problems = without_repeats(problems)
+    problems = without_repeats(without_follow_ups(problems, source.lines))
     if any(problem.severity is Severity.ERROR for problem in problems):
         problems = [*filter(None, (recognize(source.lines),)), *problems]
     return Program(
