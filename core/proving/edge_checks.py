@@ -33,6 +33,9 @@ _ENTERS = 1.0  # mm; less is a chamfer or a face
 _BREAKS_THROUGH = 2.54  # mm that a tool may go beyond the stock
 _OFF_AXIS = 0.1  # mm; less is a correction by a work shift
 _LOOP = 200.0  # degrees; an insert with a corner gets around less than 180
+_QUARTER = (80.0, 100.0)  # degrees
+_EDGE = 3.0  # mm of radius with which an edge is rounded at most
+_AT_FACE = 0.05  # mm
 _NEAR = 1e-6
 _DRILLS = frozenset({ToolKind.DRILL, ToolKind.CENTRE_DRILL, ToolKind.REAMER, ToolKind.TAP})
 
@@ -75,6 +78,7 @@ class EdgeChecks:
             around = f"{_turning(move):.0f}°"
             yield Found("arc-loop", f"{edge_name(tool)} is fed around {around} of an arc through the part.")
             return
+        yield from _hollow_at_edge(move, shape, cutter, part, tool)
         yield from size_faults(move, met, shape, cutter, tool, stock_given=self.stock_given)
         yield from self._spindle(move, shape, cutter, tool)
         yield from _off_axis(move, shape, tool)
@@ -211,6 +215,27 @@ def _turning(move: TipMove) -> float:
     headings = np.unwrap(np.arctan2(*np.diff(np.array(move.points), axis=0).T[::-1]))
     chords = len(headings)
     return math.degrees(abs(float(headings[-1] - headings[0]))) * chords / (chords - 1)
+
+
+def _hollow_at_edge(
+    move: TipMove, shape: ToolShape, cutter: Cutter, part: TurnedPart, tool: int
+) -> Iterator[Found]:
+    """A small quarter circle that begins along Z at the face, and so is hollow."""
+    if not (cutter.held and shape.kind is ToolKind.TURNING and cutter.side is Side.OUTSIDE):
+        return
+    if not _QUARTER[0] < _turning(move) < _QUARTER[1] or shape.direction[0] >= 0:
+        return
+    points = np.array(move.points) * [1.0, cutter.across]
+    (z_in, r_in), (z_out, r_out) = np.diff(points, axis=0)[[0, -1]]
+    radius = math.dist(points[0], points[-1]) / math.sqrt(2.0)
+    faces = np.flatnonzero(part.outermost > 0.0)
+    front = part.columns.first + part.columns.step * float(faces[-1]) if len(faces) else -math.inf
+    along, away = -z_in > 5.0 * abs(r_in), r_out > 5.0 * abs(z_out)
+    if along and away and radius < _EDGE and abs(points[0][0] - front) < _AT_FACE:
+        words = (
+            f"{edge_name(tool)} hollows out the edge of the face, radius {move.modal.length_text(radius)}."
+        )
+        yield Found("hollow-at-edge", words)
 
 
 def part_depth(move: TipMove, stock: Stock | None) -> float:

@@ -203,6 +203,12 @@ CHECKS: Mapping[str, Check] = {
         "An arc through more than 200° meets material; not of a round insert.",
         "Check the direction of the arc, and the signs of its center.",
     ),
+    "hollow-at-edge": Check(
+        _WARNING,
+        "An arc hollows out the front edge of the part, where an edge is usually rounded.",
+        "A quarter circle, radius up to .118 in, begins along Z at the face and ends away from the axis.",
+        "Check the direction of the arc: the other one rounds the edge.",
+    ),
     "over-axis": Check(
         _ERROR,
         "An outside tool cuts beyond the axis.",

@@ -30190,6 +30190,11 @@
     </message>
     <message>
       <location filename="core/proving/edge_checks.py" />
+      <source>%1 hollows out the edge of the face, radius %2.</source>
+      <translation>%1 ahueca el canto de la cara, radio %2.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/edge_checks.py" />
       <source>%1 is fed %2 into solid material.</source>
       <translation>%1 avanza %2 en material macizo.</translation>
     </message>
@@ -30375,6 +30380,11 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
+      <source>A quarter circle, radius up to .118 in, begins along Z at the face and ends away from the axis.</source>
+      <translation>Un cuarto de círculo, de radio hasta .118 in, empieza a lo largo de Z en la cara y termina alejándose del eje.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
       <source>A rapid right behind a cut takes off metal at a smaller radius than the cut.</source>
       <translation>Un rápido justo después de un corte arranca metal a un radio menor que el corte.</translation>
     </message>
@@ -30447,6 +30457,11 @@
       <location filename="core/proving/part_checks.py" />
       <source>A tool, or its holder, runs into the tailstock's centre or quill.</source>
       <translation>Una herramienta, o su portaherramientas, choca con el punto o la caña del contrapunto.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>An arc hollows out the front edge of the part, where an edge is usually rounded.</source>
+      <translation>Un arco ahueca el canto delantero de la pieza, donde un canto suele redondearse.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -30557,6 +30572,11 @@
       <location filename="core/proving/part_checks.py" />
       <source>Check the direction of the arc, and the signs of its center.</source>
       <translation>Compruebe el sentido del arco y los signos de su centro.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>Check the direction of the arc: the other one rounds the edge.</source>
+      <translation>Compruebe el sentido del arco: el otro redondea el canto.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />

@@ -173,3 +173,20 @@ def test_two_tools_with_one_offset_are_one_note_and_not_neighbours() -> None:
     gang = {1: (0.0, -25.4), 4: (0.0, -25.4)}
     both = part_of(text(TURNED.format(t=1, z="-.5")), ROD, {1: TURNING, 4: LEFT}, gang=gang)
     assert [(each.check, str(each.severity)) for each in both.findings] == [("tools-in-one-place", "note")]
+
+
+EDGE = "T1\nX[.6]Z[0]\nG95F[.004]X[-.02]\nG94F[300]Z[.05]\nX[{x}]\nG95F[.004]Z[{z}]\n{arc}\nZ[-.5]\nX[.6]"
+
+
+@pytest.mark.parametrize(
+    ("x", "z", "arc", "expected"),
+    [
+        (".4", "0", "G03X.44Z-.04R.04", True),  # hollow: along Z at the face, and then away from the axis
+        (".4", "0", "G02X.44Z-.04R.04", False),  # the edge is rounded
+        (".4", "-.2", "G03X.44Z-.24R.04", False),  # the fillet of a shoulder
+        (".3", "0", "G03X.45Z-.15R.15", False),  # too large for the rounding of an edge
+    ],
+)  # fmt: skip
+def test_a_hollow_at_the_edge_of_the_face(x: str, z: str, arc: str, expected: bool) -> None:
+    program = text(EDGE.format(x=x, z=z, arc=arc))
+    assert (("hollow-at-edge", "warning") in found(program)) is expected

@@ -34,7 +34,6 @@ NOSE = 0.0156 * INCH
 ERRORS = 129  # slips that are reported as errors
 # Slips that the proof does not report at their place, with the cause.
 MISSED = {
-    "wrong arc direction 3": "a concave corner for a convex one: only a drawing shows it",
     "Z zero at the wrong face 2": "a deeper hole within flutes and bar: only a drawing shows it",
     "Z zero at the wrong face 3": "G92 defines part zero: the whole part moves with it",
     "digits exchanged 3": "a taper for a chamfer: only a drawing shows it",

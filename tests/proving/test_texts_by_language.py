@@ -118,6 +118,9 @@ MORE: dict[str, tuple[str, Stock, dict[str, Any]]] = {
     "cut-standing": (
         PASS.format(t=1, z="-.3").replace("G95 F.004", "M5\nF4"), ROD, {"live_codes": True}
     ),
+    "hollow-at-edge": (
+        ARC.replace("Z-.6\n", "Z0\n").replace("G3", "G2").replace("Z-.625", "Z-.025"), ROD, {}
+    ),
     "arc-loop": (ARC.replace("CR=.025", "I.025 K0"), ROD, {}),
     "tap-no-hole": ("T10 D1\nX0 Z.1\nG95 F.05 Z-.4\nM5\nM4\nZ.1\n", ROD, {}),
 }  # fmt: skip
