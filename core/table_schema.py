@@ -211,12 +211,33 @@ class Values:
         return kind(**said, **given)
 
 
+# Keys whose values hold passwords or tokens: also addresses, which have them in front of @, in the path or
+# behind the question mark.
+_SECRETS = frozenset(
+    {
+        "announce.hook",
+        "announce.password",
+        "sharing.git",
+        "sharing.postgresql",
+        "status_page.agents",
+        "status_page.desks",
+        "status_page.token",
+    }
+)
+HIDDEN = "***"
+
+
 def written(value: object) -> str:
     """A value the way TOML writes it, short enough for a sentence."""
     if isinstance(value, bool):
         return "true" if value else "false"
     text = f'"{value}"' if isinstance(value, str) else str(value)
     return text if len(text) <= 40 else text[:37] + "..."
+
+
+def written_openly(path: str, value: object) -> str:
+    """A value as TOML writes it, hidden if it holds a password or a token."""
+    return HIDDEN if path in _SECRETS else written(value)
 
 
 def joined(path: str, key: str) -> str:
@@ -251,7 +272,7 @@ def read_table(
             findings += _default(field, place, values)
         elif problem := _problem(raw, field, values.inch):
             values.wrong.add(place)
-            findings.append(Finding(place, written(raw), f"expected {problem}", "wrong-value"))
+            findings.append(Finding(place, written_openly(place, raw), f"expected {problem}", "wrong-value"))
         elif values.inch is not None or field.unit not in LENGTHS:
             values.found[place] = _converted(raw, field, bool(values.inch))
     return findings

@@ -1,6 +1,7 @@
 """The arrows of the house, as a failing test."""
 
 import importlib
+import re
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -109,3 +110,14 @@ def test_every_folder_of_a_driver_is_in_its_contracts() -> None:
     for contract, apart in (("lookalikes", {"lookalikes", "simulated"}), ("drivers-apart", {"lookalikes"})):
         held = text.partition(f"[importlinter:contract:{contract}]")[2].partition("\n[importlinter:")[0]
         assert [name for name in folders if f"drivers.{name}\n" not in held and name not in apart] == []
+
+
+def test_pickle_goes_between_our_own_processes_alone() -> None:
+    """Unpickling runs what it is given: it is no format of a file."""
+    sender_and_receiver = {"app/cli/proof_job.py", "app/cli/proof_work.py", "app/compose/feeder_process.py"}
+    house = Path(__file__).parents[1]
+    paths = [path for top in OURS for path in (house / top).rglob("*.py")]
+    found = [
+        path for path in paths if re.search(r"^\s*(import|from) pickle\b", path.read_text(), re.MULTILINE)
+    ]
+    assert {path.relative_to(house).as_posix() for path in found} == sender_and_receiver

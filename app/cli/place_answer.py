@@ -16,7 +16,9 @@ from core.sharing.sharing_errors import Cause
 T = TypeVar("T")
 _TOLD_AFTER = 30.0  # s, as on the desk; a slow place may take longer and answer yet
 _DEAD_AFTER = 300.0  # s in which not one byte of a folder came: a script would wait for it for ever
-_OPEN = "import sys; open(sys.argv[1], 'rb').read(1)"
+_OPEN = (  # a pipe in its place is told by who reads it
+    "import os, sys; os.read(os.open(sys.argv[1], os.O_RDONLY | getattr(os, 'O_NONBLOCK', 0)), 1)"
+)
 
 
 def answered(place: SharedPlace, work: Callable[[], T], told_after: float = _TOLD_AFTER) -> T:

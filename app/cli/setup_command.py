@@ -49,6 +49,8 @@ def _save(args: argparse.Namespace) -> int:
 
     told = save_setup(Path(args.file), args.machine)
     sys.stdout.write(f"{args.file} holds the store, programs: {told.programs}, {told.machine}\n")
+    if told.left_out:
+        sys.stdout.write(f"left out, because they are no programs: {', '.join(told.left_out)}\n")
     return EXIT_OK
 
 

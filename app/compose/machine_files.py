@@ -1,4 +1,4 @@
-"""Machine files by their names: what is read, and what of the shipped ones was read before."""
+"""Machine files by their names, the shipped ones and others."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ from functools import lru_cache
 from pathlib import Path
 
 import resources
-from app.compose import kept_machines
 from core.machine.machine_model import Machine
 
 SHIPPED = "gt75.toml"
@@ -44,11 +43,5 @@ def shipped_machine(name: str) -> Machine:
     return _shipped(f"{name}.toml")
 
 
-@lru_cache(maxsize=8)
 def _shipped(name: str) -> Machine:
-    file, text = resources.machine_path(name), resources.machine_file(name)
-    machine = kept_machines.find(file, text)
-    if machine is None:
-        machine = parse_machine(text, name)
-        kept_machines.keep(file, text, machine)
-    return machine
+    return parse_machine(resources.machine_file(name), name)

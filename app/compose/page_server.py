@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import errno
 import logging
+import math
 import socket
 import sys
 import threading
+import time
 from collections.abc import Callable
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from core.ports import DriverError
@@ -16,8 +19,8 @@ if TYPE_CHECKING:
     from _typeshed.wsgi import WSGIApplication
 
 _THREADS = 3  # that answer browsers
-_WAITING = 100  # connections
-_SILENT = 10  # s after which a browser that neither asks nor reads is given up
+_WAITING = 100  # connections that the system holds until they are accepted
+_LONGEST = 16 * 1024  # bytes of a request
 _TURN = 0.5  # s
 ENDS = 2.0  # s that closing waits for its threads
 
@@ -25,29 +28,38 @@ ENDS = 2.0  # s that closing waits for its threads
 class PageServer:
     """Answers browsers on a socket that listens, until it is closed."""
 
-    def __init__(self, page: WSGIApplication, listening: socket.socket, between: Callable[[], None]) -> None:
+    def __init__(
+        self,
+        page: WSGIApplication,
+        listening: socket.socket,
+        between: Callable[[], None],
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
         """``between`` is called twice a second by the server's own thread."""
         from waitress import wasyncore
         from waitress.server import create_server
         from waitress.task import ThreadedTaskDispatcher
 
+        from app.compose.page_connections import MOST, Connection
+
         self._loop, self._close_all = wasyncore.loop, wasyncore.close_all
-        self._between = between
+        self._between, self._clock = between, clock
         self._channels: dict[int, Any] = {}
         self._workers = ThreadedTaskDispatcher()
         self._workers.queue_logger.setLevel(logging.ERROR)  # that one browser waits for another is no warning
         self._workers.set_thread_count(_THREADS)
-        create_server(
+        server: Any = create_server(
             page,
             self._channels,
             _dispatcher=self._workers,
             sockets=[listening],
             ident="",
-            channel_timeout=_SILENT,
-            cleanup_interval=_SILENT // 2,
-            connection_limit=_WAITING,
+            connection_limit=2 * MOST,  # never reached: Connection has the limits
             max_request_body_size=1,
+            max_request_header_size=_LONGEST,
         )
+        self._server = server
+        server.channel_class = partial(Connection, clock=clock)
         self._closing = threading.Event()
         self._thread = threading.Thread(target=self._serve, name="status-page", daemon=True)
 
@@ -59,12 +71,17 @@ class PageServer:
         """No browser is answered any more."""
         self._closing.set()
         self._thread.join(ENDS)
-        self._workers.shutdown()
 
     def _serve(self) -> None:
+        looked = -math.inf
         while not self._closing.is_set():
             self._loop(timeout=_TURN, map=self._channels, count=1)
-            self._between()
+            for connection in tuple(self._server.active_channels.values()):
+                connection.end_if_late()
+            if self._clock() - looked >= _TURN:
+                looked = self._clock()
+                self._between()
+        self._workers.shutdown(timeout=1)  # first: an answer that is ready still needs the sockets
         self._close_all(self._channels)
 
 

@@ -2,22 +2,32 @@
 
 from __future__ import annotations
 
-import errno
 import hashlib
 import json
 import os
 import shutil
 import tempfile
 import zipfile
-import zlib
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime
-from pathlib import Path, PurePath, PurePosixPath
+from pathlib import Path, PurePosixPath
 from typing import Self
 
 from app.compose.journal import UNDER_WAY
 from app.compose.machine_setup import read_machine
+from app.compose.setup_archive import (
+    BESIDE,
+    FORMAT,
+    MACHINE,
+    MANIFEST,
+    NO_ROOM,
+    PROGRAMS,
+    STORE,
+    is_machine_file,
+    problem,
+    unpack,
+)
 from app.desk.command_errors import CommandError
 from app.desk.data_folder import data_folder
 from core.coded_error import error_code
@@ -27,31 +37,18 @@ from core.store.store import Store
 from core.store.store_errors import StoreError
 from core.store.store_file import FILE_NAME
 
-_KIND = "turndesk setup "
-FORMAT = f"{_KIND}1"
-MANIFEST, STORE, PROGRAMS, MACHINE = "manifest.json", "store.db", "programs", "machine"
-MOST = 512 * 1024 * 1024  # bytes of one member: more is no setup of ours
-_NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
-# What a spoilt ZIP makes Python raise: its parts, how it is packed, what is in it.
-_NOT_WHOLE = (
-    zipfile.BadZipFile,
-    zlib.error,
-    EOFError,
-    KeyError,
-    NotImplementedError,
-    RuntimeError,
-    ValueError,
-)
-_BESIDE = (".hal", ".xml")  # what lies beside a machine file under its name, and belongs to it
-
 
 @dataclass(frozen=True, slots=True)
 class SetupTold:
-    """What a setup file holds; ``placed`` is where its machine file was put."""
+    """Contents of a setup file; ``placed`` is where its machine file was put.
+
+    ``left_out`` are files of the program folder that are neither programs nor drawings.
+    """
 
     programs: int
     machine: str
     placed: Path | None = None
+    left_out: tuple[str, ...] = ()
 
 
 def save_setup(target: Path, machine_file: str | None) -> SetupTold:
@@ -66,7 +63,8 @@ def save_setup(target: Path, machine_file: str | None) -> SetupTold:
         members = {STORE: _copy_of_store(folder, Path(name))}
         members |= {f"{PROGRAMS}/{path}": folder / PROGRAMS / path for path in _programs(folder)}
         members |= machine
-        _write(made, members)
+        left_out = _write(made, members)
+        _check_loadable(made, target)
         try:
             shutil.copyfile(made, part)
             put_in_place(part, target)
@@ -74,7 +72,7 @@ def save_setup(target: Path, machine_file: str | None) -> SetupTold:
             with suppress(OSError):
                 part.unlink(missing_ok=True)
             raise CommandError(f"{target} cannot be written: {error.strerror}", "cannot-write") from error
-    return _told(list(members))
+    return replace(_told([each for each in members if each not in left_out]), left_out=left_out)
 
 
 def _copy_of_store(folder: Path, beside: Path) -> Path:
@@ -107,13 +105,17 @@ def _machine_members(named: str | None) -> dict[str, Path]:
         raise CommandError(
             f"{named} is shipped with every TurnDesk; leave --machine out, or name a file", "shipped-machine"
         )
-    beside = [path.with_suffix(ending) for ending in _BESIDE]
+    beside = [path.with_suffix(ending) for ending in BESIDE]
     return {f"{MACHINE}/{each.name}": each for each in (path, *beside) if each.is_file()}
 
 
-def _write(made: Path, members: dict[str, Path]) -> None:
-    """Raises CommandError, also for a program that may not be read."""
+def _write(made: Path, members: dict[str, Path]) -> tuple[str, ...]:
+    """Write the archive; return the programs left out. Raises CommandError if a file cannot be read."""
     try:
+        left_out = [
+            each for each in members if each.startswith(f"{PROGRAMS}/") and problem(each, members[each])
+        ]
+        members = {name: path for name, path in members.items() if name not in left_out}
         hashes = {name: hashlib.sha256(path.read_bytes()).hexdigest() for name, path in members.items()}
         told = {"format": FORMAT, "made": datetime.now(UTC).isoformat(timespec="seconds"), "sha256": hashes}
         # A computer without a clock of its own dates its files before 1980, which ZIP cannot say.
@@ -122,11 +124,21 @@ def _write(made: Path, members: dict[str, Path]) -> None:
             for name, path in members.items():
                 file.write(path, name)
     except OSError as error:
-        if error.errno in _NO_ROOM:
+        if error.errno in NO_ROOM:
             raise CommandError(
                 f"{made.parent.parent} has no room for a setup; make room there", "disk-full"
             ) from error
         raise CommandError(f"{error.filename} cannot be read: {error.strerror}", "unreadable") from error
+    return tuple(left_out)
+
+
+def _check_loadable(made: Path, target: Path) -> None:
+    """Raise CommandError if the archive is beyond what ``load_setup`` accepts."""
+    try:
+        with tempfile.TemporaryDirectory(prefix="turndesk-") as name:
+            unpack(made, Path(name))
+    except CommandError as error:
+        raise CommandError(str(error).replace(str(made), str(target)), error_code(error)) from error
 
 
 def _told(names: list[str], placed: Path | None = None) -> SetupTold:
@@ -141,7 +153,7 @@ def _told(names: list[str], placed: Path | None = None) -> SetupTold:
 def check_setup(source: Path) -> SetupTold:
     """Look through a setup file; changes nothing. Raises CommandError naming what is wrong with it."""
     with tempfile.TemporaryDirectory(prefix="turndesk-") as name:
-        return _told(_unpacked(source, Path(name)))
+        return _told(unpack(source, Path(name)))
 
 
 def load_setup(source: Path) -> tuple[SetupTold, Path | None]:
@@ -152,7 +164,7 @@ def load_setup(source: Path) -> tuple[SetupTold, Path | None]:
     """
     folder, stamp = data_folder(), datetime.now(UTC).strftime("%Y%m%dT%H%M%SZ")
     with tempfile.TemporaryDirectory(prefix="turndesk-") as name, _Beside(stamp) as beside:
-        names = _unpacked(source, Path(name))
+        names = unpack(source, Path(name))
         try:
             for each in names:
                 if each != STORE:
@@ -186,7 +198,9 @@ class _Beside:
     @property
     def machine(self) -> Path | None:
         """Where the machine file is put."""
-        return next((at for at in self._places.values() if _is_machine_file(at.parent.name, at)), None)
+        return next(
+            (at for at in self._places.values() if at.parent.name == "machines" and is_machine_file(at)), None
+        )
 
     def put(self, source: Path, target: Path) -> None:
         """Beside its place; another text that stands there is kept under a name of its own."""
@@ -206,69 +220,3 @@ class _Beside:
         """All of them, one after the other."""
         for draft, target in self._places.items():
             put_in_place(draft, target)
-
-
-def _is_machine_file(folder: str, path: PurePath) -> bool:
-    """Not what lies beside it under its name."""
-    return folder in {MACHINE, "machines"} and path.suffix not in _BESIDE
-
-
-def _unpacked(source: Path, folder: Path) -> list[str]:
-    """Every member checked and written below ``folder``; their names."""
-    try:
-        with zipfile.ZipFile(source) as file:
-            names = _checked(source, file, folder)
-    except OSError as error:
-        if error.errno in _NO_ROOM:
-            raise CommandError(
-                f"{folder.parent} has no room to unpack {source}; make room there", "disk-full"
-            ) from error
-        raise CommandError(f"{source} cannot be read: {error.strerror or error}", "unreadable") from error
-    except _NOT_WHOLE as error:
-        raise CommandError(f"{source} is no setup file that can be read: {error}", "damaged-setup") from error
-    try:
-        found = backup.problems(folder / STORE)
-    except StoreError as error:
-        raise CommandError(f"{source}: {error}", error_code(error)) from error
-    if found:
-        raise CommandError(f"{source}: {found[0]}; make it anew with 'turndesk setup save'", "damaged-store")
-    for name in names:
-        if _is_machine_file(PurePosixPath(name).parent.name, PurePosixPath(name)):
-            read_machine(str(folder / name))
-    return names
-
-
-def _hashes(source: Path, told: object) -> dict[str, str]:
-    """Of every member, by the manifest. Raises CommandError where it is none of this kind."""
-    form = told.get("format") if isinstance(told, dict) else None
-    if isinstance(form, str) and form.startswith(_KIND) and form != FORMAT:
-        raise CommandError(
-            f"{source} was saved by another TurnDesk ({form}, here {FORMAT}); use that one", "other-version"
-        )
-    hashes = told.get("sha256") if isinstance(told, dict) else None
-    if form != FORMAT or not isinstance(hashes, dict) or STORE not in hashes:
-        raise CommandError(
-            f"{source} is no setup of this kind ({FORMAT}); make it anew with 'setup save'", "not-a-setup"
-        )
-    return {str(name): str(value) for name, value in hashes.items()}
-
-
-def _checked(source: Path, file: zipfile.ZipFile, folder: Path) -> list[str]:
-    hashes = _hashes(source, json.loads(file.read(MANIFEST)))
-    for name, expected in hashes.items():
-        at = PurePosixPath(name)
-        top = at.parts[0] if len(at.parts) > 1 else ""
-        if name != STORE and (top not in {PROGRAMS, MACHINE} or ".." in at.parts or "\\" in name):
-            raise CommandError(f"{source} holds {name}, which has no place in a setup", "foreign-member")
-        if file.getinfo(name).file_size > MOST:
-            raise CommandError(
-                f"{source} holds {name}, which is larger than a setup can be", "member-too-large"
-            )
-        data = file.read(name)
-        if hashlib.sha256(data).hexdigest() != expected:
-            raise CommandError(
-                f"{source}: {name} is not what was saved; copy the file again", "damaged-member"
-            )
-        (folder / name).parent.mkdir(parents=True, exist_ok=True)
-        (folder / name).write_bytes(data)
-    return list(hashes)

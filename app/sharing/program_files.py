@@ -9,6 +9,7 @@ from hashlib import sha256
 from pathlib import Path
 
 from app.desk.program_folder import ENDINGS
+from core.regular_file import read_regular
 from core.sharing.version_record import MOST_BYTES
 from core.store.program_records import check_name
 from core.store.shared_versions import key_of
@@ -64,7 +65,7 @@ class FilesOfMachine:
         before = self._read.get(path.name)
         if before is not None and before[0] == stamp:
             return before[1]
-        digest = sha256(path.read_bytes()).hexdigest()
+        digest = sha256(read_regular(path, MOST_BYTES)).hexdigest()
         if time.time_ns() - stamp[0] > _GRAIN:
             self._read[path.name] = stamp, digest
         return digest

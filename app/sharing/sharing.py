@@ -16,9 +16,10 @@ from pathlib import Path
 from app.programs.whole_file import FileError, write_new, write_whole
 from app.sharing.program_files import FilesOfMachine, SharedFile
 from core.coded_error import CodedError, error_code
+from core.regular_file import read_regular
 from core.sharing.shared_place import Found, Published, SharedPlace
 from core.sharing.sharing_errors import Cause, SharingError
-from core.sharing.version_record import DeskState, new_version
+from core.sharing.version_record import MOST_BYTES, DeskState, new_version
 from core.store import program_records, shared_versions
 from core.store.shared_versions import Family, SharedVersion, key_of
 from core.store.store import Store
@@ -128,7 +129,7 @@ class Sharing:
         version = family.of_text(file.digest)
         if version is None:
             try:
-                text = file.path.read_bytes()
+                text = read_regular(file.path, MOST_BYTES)
             except OSError:
                 return  # it has gone between two looks
             follows = (family.here,) if here is not None else ()

@@ -29,7 +29,7 @@ def current_address(address: str) -> str:
 
 
 def asked_agent(address: str) -> OtherDesk:
-    """One machine, asked now; waits for two seconds at most for each piece of the answer."""
+    """One machine, asked now; waits for two seconds at most."""
     return answered(address, current_address(address), _MOST, streams_answer)
 
 

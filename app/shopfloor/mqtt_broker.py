@@ -25,6 +25,11 @@ ONLINE, OFFLINE = "online", "offline"
 _SURE = 1  # quality of service: at least once
 KEEP_ALIVE = 15  # s; half as much again without a sign of us, and the broker tells our last will
 _SILENT = "Keep alive timeout"  # as paho calls it
+_NO_WORD = "it ended the connection without an MQTT answer; is this its port without TLS?"
+_REFUSALS = {
+    "Not authorized": "it refuses the user or the password of [announce] (Not authorized)",
+    "Bad user name or password": "it refuses the user or the password of [announce]",
+}
 _log = logging.getLogger(__name__)
 
 
@@ -48,6 +53,7 @@ class MqttBroker:
     def __init__(self, table: AnnounceTable) -> None:
         self._topic = table.topic.rstrip("/")
         self._state = b""
+        self._answered = self._refused = False  # by the connection that there is; paho's thread alone
         self._waiting: deque[Announcement] = deque(maxlen=HELD)
         self._handing = threading.Lock()  # the announcer's thread and paho's both hand over, in order
         self._client = client = _Client(CallbackAPIVersion.VERSION2)
@@ -109,8 +115,10 @@ class MqttBroker:
         reason: ReasonCode,
         _more: Properties | None,
     ) -> None:
+        self._answered = True
         if reason.is_failure:
-            self._trouble.say(str(reason))
+            self._refused = True
+            self._trouble.say(_REFUSALS.get(reason.getName(), str(reason)))
             return
         self._trouble.over()
         client.publish(f"{self._topic}/available", ONLINE, _SURE, retain=True)
@@ -127,5 +135,11 @@ class MqttBroker:
         _more: Properties | None,
     ) -> None:
         """Also where a host takes the connection and says no word: paho gives it up behind the keep-alive."""
-        if reason.is_failure:
-            self._trouble.say(NO_ANSWER if str(reason) == _SILENT else "the connection is lost")
+        answered, refused = self._answered, self._refused
+        self._answered = self._refused = False
+        if refused or not reason.is_failure:  # the refusal has said the cause
+            return
+        if str(reason) == _SILENT:
+            self._trouble.say(NO_ANSWER)
+        else:
+            self._trouble.say("the connection is lost" if answered else _NO_WORD)

@@ -3,18 +3,45 @@
 from __future__ import annotations
 
 import logging
+import ssl
+from http.client import BadStatusLine, InvalidURL, RemoteDisconnected
+from urllib.error import URLError
+from urllib.parse import urlsplit
 
 LONGEST = 200  # characters of what the other side says that a sentence repeats
 NO_ANSWER = "no answer"
+_NO_TLS = frozenset({"WRONG_VERSION_NUMBER", "RECORD_LAYER_FAILURE", "HTTP_REQUEST"})
+_TLS_ALERT = "\x15\x03"
 _CAUSES = 10  # that are told of one trouble: somebody may answer otherwise each time
 
 
 def cause_of(error: Exception) -> str:
-    """In the system's words, without their number: a refused connection, an unknown name, silence."""
-    cause = getattr(error, "reason", error)  # urllib wraps what the system has said
-    if isinstance(cause, TimeoutError) and cause.errno is None:
-        return NO_ANSWER
-    return one_line(str(getattr(cause, "strerror", None) or cause))
+    """In the words of the system or of the other side, without numbers, passwords and tokens."""
+    cause = error.reason if isinstance(error, URLError) else error  # it wraps what the system has said
+    match cause:
+        case TimeoutError() if cause.errno is None:
+            words = NO_ANSWER
+        case ssl.SSLCertVerificationError():
+            words = f"its certificate cannot be verified: {cause.verify_message}"
+        case ssl.SSLError() if cause.reason in _NO_TLS:
+            words = "it speaks no TLS: its address begins with http://"
+        case RemoteDisconnected():
+            words = "it ended the connection without an answer"
+        case BadStatusLine() if str(cause).startswith(_TLS_ALERT):
+            words = "it accepts TLS only: its address begins with https://"
+        case BadStatusLine():
+            words = "what it answers is not HTTP"
+        case InvalidURL():  # its sentence has the address with the token
+            words = "its address has signs that no address may have"
+        case _:
+            words = str(getattr(cause, "strerror", None) or cause)
+    return one_line(words)
+
+
+def host_of(address: str) -> str:
+    """Scheme, host and port of a web address: the rest may hold a password or a token."""
+    parts = urlsplit(address)
+    return f"{parts.scheme}://{parts.netloc.rpartition('@')[2]}"
 
 
 def one_line(words: str) -> str:

@@ -15,11 +15,12 @@ from http.client import HTTPException
 from typing import NamedTuple
 from urllib.error import HTTPError, URLError
 from urllib.parse import urlsplit, urlunsplit
-from urllib.request import ProxyHandler, build_opener
+from urllib.request import ProxyHandler
 
 from app.desk.translation import tr
 from app.shopfloor.network_causes import cause_of, one_line
 from app.shopfloor.status_page import NOT_YET, OtherDesk
+from app.shopfloor.timed_http import timed_opener
 
 EVERY = 3.0  # s
 LOOKED_AT = 15.0  # s after which nobody looks any more
@@ -27,7 +28,7 @@ STALE = 10.0  # s after which what was heard is not true any more
 _PATIENCE = 2.0  # s
 _LARGEST = 1e9  # of its figures; JSON as Python reads it has Infinity and NaN
 _MOST = 100_000  # bytes
-_ASK = build_opener(ProxyHandler({}))  # desks of one shop are not asked by way of a proxy
+_ASK = timed_opener(ProxyHandler({}))  # desks of one shop are not asked by way of a proxy
 
 
 def status_address(address: str) -> str:
@@ -44,7 +45,7 @@ class Answer(NamedTuple):
 
 
 def asked(address: str) -> OtherDesk:
-    """One desk, asked now; waits for two seconds at most for each piece of its answer."""
+    """One desk, asked now; waits for two seconds at most."""
     return answered(address, status_address(address), _MOST, _desk_answer)
 
 
@@ -73,7 +74,7 @@ def answered(address: str, question: str, most: int, read: Callable[[bytes], Ans
 
 
 def _refused(error: HTTPError) -> str:
-    if error.code == HTTPStatus.FORBIDDEN:
+    if error.code in {HTTPStatus.FORBIDDEN, HTTPStatus.UNAUTHORIZED}:
         return tr("it wants another token")
     return one_line(tr("it answers {answer}").format(answer=f"{error.code} {error.reason}"))
 

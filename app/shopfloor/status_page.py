@@ -68,6 +68,8 @@ class StatusPage:
         if environ["REQUEST_METHOD"] not in {"GET", "HEAD"}:
             return HTTPStatus.METHOD_NOT_ALLOWED, [("Allow", "GET, HEAD"), _TEXT], _NO_ORDERS
         given = _given(environ)
+        if not (given.isascii() and given.isprintable()):
+            return HTTPStatus.BAD_REQUEST, [_TEXT], b"a token has letters, figures, - and _ only\n"
         if self.token and not hmac.compare_digest(given.encode(), self.token.encode()):
             return HTTPStatus.FORBIDDEN, [_TEXT], _NO_TOKEN
         make = _PAGES.get(environ.get("PATH_INFO", "/"))
@@ -76,8 +78,8 @@ class StatusPage:
         kind, body = make(self)
         if not body:
             return HTTPStatus.NOT_FOUND, [_TEXT], b"there is none now\n"
-        cookie = f"{_cookie(environ)}={given}; HttpOnly; SameSite=Strict; Path=/"
-        kept = [("Set-Cookie", cookie)] if given else []
+        cookie = f"{_cookie(environ)}={self.token}; HttpOnly; SameSite=Strict; Path=/"
+        kept = [("Set-Cookie", cookie)] if self.token else []
         return HTTPStatus.OK, [("Content-Type", kind), *kept], body
 
     def page(self) -> tuple[str, bytes]:

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import logging
 import threading
+import time
 from collections import deque
 from collections.abc import Callable
 from http import HTTPStatus
-from http.client import BadStatusLine, HTTPException
+from http.client import HTTPException
 from urllib.error import HTTPError, URLError
-from urllib.request import HTTPRedirectHandler, Request, build_opener
+from urllib.request import HTTPRedirectHandler, Request
 
 from app.shopfloor.announcements import HELD, Announcement
-from app.shopfloor.network_causes import Trouble, cause_of, one_line
+from app.shopfloor.network_causes import Trouble, cause_of, host_of, one_line
 from app.shopfloor.status_file import Status
+from app.shopfloor.timed_http import Clock, timed_opener
 
 _PATIENCE = 5.0  # s
 _LATER = frozenset({HTTPStatus.REQUEST_TIMEOUT, HTTPStatus.TOO_MANY_REQUESTS})
@@ -31,7 +33,7 @@ class WebHook:
         self._address, self._again, self._post = address, again, post or posted
         self._waiting: deque[Announcement] = deque(maxlen=HELD)
         self._there, self._closing = threading.Event(), threading.Event()
-        self._trouble = Trouble(_log, address)
+        self._trouble = Trouble(_log, host_of(address))
         self._thread = threading.Thread(target=self._work, name="web-hook", daemon=True)
         self._thread.start()
 
@@ -79,11 +81,11 @@ class _Stay(HTTPRedirectHandler):
         """No other request: the answer stands as a refusal."""
 
 
-def posted(address: str, body: bytes) -> None:
-    """Post JSON to an address. Raises OSError, ValueError or HTTPException."""
+def posted(address: str, body: bytes, clock: Clock = time.monotonic) -> None:
+    """Post JSON to an address. Raises OSError, ValueError or HTTPException, also after ``_PATIENCE``."""
     request = Request(address, body, {"Content-Type": "application/json"}, method="POST")
     try:
-        with build_opener(_Stay).open(request, timeout=_PATIENCE):
+        with timed_opener(_Stay, clock=clock).open(request, timeout=_PATIENCE):
             return
     except HTTPError as error:
         error.close()
@@ -93,6 +95,6 @@ def posted(address: str, body: bytes) -> None:
 def _why(error: Exception) -> str:
     if isinstance(error, HTTPError):
         to = error.headers.get("Location", "") if error.code < 400 else ""
-        where = f", moved to {to}: [announce] hook must name that address" if to else ""
+        where = f", moved to {host_of(to)}: [announce] hook must name that address" if to else ""
         return one_line(f"it answers {error.code} {error.reason}{where}")
-    return "what it answers is not HTTP" if isinstance(error, BadStatusLine) else cause_of(error)
+    return cause_of(error)

@@ -6,7 +6,7 @@ import tomllib
 from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
-from core.table_schema import joined, written
+from core.table_schema import joined, written_openly
 
 ABSENT = "—"
 
@@ -42,7 +42,7 @@ def _differ(old: object, new: object) -> bool:
 
 
 def _shown(values: Mapping[str, object], place: str) -> str:
-    return written(values[place]) if place in values else ABSENT
+    return written_openly(place, values[place]) if place in values else ABSENT
 
 
 def _leaves(table: Mapping[str, object], path: str = "") -> Iterator[tuple[str, object]]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from core.table_schema import Driver, DriverTable, Field, FileReading, Finding, Kind, Unit, written
 
@@ -27,8 +27,8 @@ class SharingTable:
     """
 
     folder: str
-    git: str
-    postgresql: str
+    git: str = field(repr=False)
+    postgresql: str = field(repr=False)
     desk: str
     look: float
 

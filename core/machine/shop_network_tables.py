@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from ipaddress import ip_address
 from urllib.parse import urlsplit
 
-from core.table_schema import Driver, DriverTable, Field, FileReading, Finding, Kind, Unit, written
+from core.table_schema import HIDDEN, Driver, DriverTable, Field, FileReading, Finding, Kind, Unit, written
 
 LEAST_TOKEN = 12  # characters
 _WEB = ("http://", "https://")
@@ -40,9 +40,9 @@ class StatusPageTable:
     enabled: bool
     bind: str
     port: int
-    token: str
-    desks: str
-    agents: str
+    token: str = field(repr=False)
+    desks: str = field(repr=False)
+    agents: str = field(repr=False)
 
     @property
     def others(self) -> tuple[str, ...]:
@@ -65,8 +65,8 @@ class AnnounceTable:
     mqtt: str
     topic: str
     user: str
-    password: str
-    hook: str
+    password: str = field(repr=False)
+    hook: str = field(repr=False)
     again: float
 
 
@@ -93,7 +93,7 @@ def broker_of(text: str) -> tuple[str, int]:
     if not colon:
         host, port = text, "1883"
     number = int(port)
-    if not host or not 0 < number < 65536:
+    if not host or "@" in host or not 0 < number < 65536:
         raise ValueError(text)
     return host, number
 
@@ -110,13 +110,11 @@ def _page_rules(file: FileReading) -> Iterator[Finding]:
         yield Finding("status_page.token", "", why, "broken-rule")
     for address in values.text("status_page.desks").split():
         if not is_web_address(address):
-            yield Finding(
-                "status_page.desks", written(address), "an address that begins with http://", "broken-rule"
-            )
+            yield Finding("status_page.desks", HIDDEN, "an address that begins with http://", "broken-rule")
     for address in values.text("status_page.agents").split():
         if not is_web_address(address) or not urlsplit(address).path.strip("/"):
             why = "the agent's address and the device, such as http://shop-pc:5000/LATHE2"
-            yield Finding("status_page.agents", written(address), why, "broken-rule")
+            yield Finding("status_page.agents", HIDDEN, why, "broken-rule")
 
 
 def _announce_rules(file: FileReading) -> Iterator[Finding]:
@@ -130,13 +128,13 @@ def _announce_rules(file: FileReading) -> Iterator[Finding]:
     except ValueError:
         yield Finding(
             "announce.mqtt",
-            written(broker),
+            written(broker.rpartition("@")[2]),
             'the address of the broker, such as "shop-pc:1883"',
             "broken-rule",
         )
     if hook and not is_web_address(hook):
         yield Finding(
-            "announce.hook", written(hook), "an address that begins with http:// or https://", "broken-rule"
+            "announce.hook", HIDDEN, "an address that begins with http:// or https://", "broken-rule"
         )
     topic = values.text("announce.topic")
     if topic.startswith("/") or any(sign in topic for sign in "+# "):

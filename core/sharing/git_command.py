@@ -17,6 +17,7 @@ PATIENCE = 60.0  # s: a transfer that takes longer is given up
 _SAID = (
     (Cause.OTHER_HOST, r"host key for .* has changed"),
     (Cause.UNKNOWN_HOST, r"host key verification failed"),
+    (Cause.GIT_NOT_TRUSTED, r"certificate"),
     (Cause.NO_SSH, r"\bssh: (command )?not found|cannot run ssh"),
     (Cause.NO_GIT_THERE, r"git-(upload|receive)-pack.*not found|bad line length"),
     (
@@ -105,6 +106,8 @@ class GitCommand:
 
 
 def _bare(line: str) -> str:
+    """Without who logs in: git repeats addresses."""
+    line = re.sub(r"://[^/\s'\"]*@", "://", line)
     return re.sub(r"^(remote|fatal|error|ssh): *", "", line.strip(), flags=re.IGNORECASE)
 
 

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-import importlib.util
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
-from typing import TYPE_CHECKING
+from contextlib import contextmanager, suppress
+from typing import TYPE_CHECKING, Any
 
+from core.sharing.connection_string import parsed, shown, with_tls
 from core.sharing.shared_place import Found, Published, database_at
 from core.sharing.sharing_errors import Cause, SharingError
 from core.sharing.version_record import (
     FORMAT,
+    LONGEST_RECORD,
+    LONGEST_STATE,
+    MOST_BYTES,
     DeskState,
     RecordError,
     checked_text,
@@ -33,13 +36,24 @@ CREATE TABLE IF NOT EXISTS turndesk.desks (home text PRIMARY KEY, state bytea NO
 """
 _ADD = "INSERT INTO turndesk.versions VALUES (%s, %s, %s) ON CONFLICT DO NOTHING"
 _TELL = "INSERT INTO turndesk.desks VALUES (%s, %s) ON CONFLICT (home) DO UPDATE SET state = excluded.state"
+# Longer values than ours come cut off, so that they are strays.
+_DESKS = "SELECT home, substr(state, 1, %s) FROM turndesk.desks"
+_LIMITS = {
+    "connect_timeout": 5,
+    "application_name": "turndesk",
+    "options": "-c statement_timeout=30s -c lock_timeout=10s -c synchronous_commit=on",
+    "keepalives_idle": 10,
+    "tcp_user_timeout": 15_000,  # ms: a network that has gone is noticed
+}
 _AT_ONCE = 500  # records a question
-# What a server says that is asked but refuses to begin: libpq hands on its sentence and no code.
+# What a server says that is asked but refuses to begin: libpq hands on its sentence and no code. It may try
+# twice, with TLS and without: the cause that stands first here is the one to remove.
 _AT_THE_DOOR: tuple[tuple[Cause, tuple[str, ...]], ...] = (
-    (
-        Cause.NO_RIGHT,
-        ("authentication failed", "no pg_hba.conf entry", "permission denied", "no password supplied"),
-    ),
+    (Cause.WRONG_PASSWORD, ("authentication failed", "no password supplied")),
+    (Cause.NOT_TRUSTED, ("certificate", "ssl error")),
+    (Cause.NO_TLS, ("does not support ssl",)),
+    (Cause.TLS_ONLY, ("no encryption",)),
+    (Cause.NO_RIGHT, ("no pg_hba.conf entry", "permission denied")),
     (Cause.NOT_THERE, ("does not exist",)),
     (Cause.FULL, ("no space left",)),
 )
@@ -61,8 +75,9 @@ class SharedDatabase:
     """
 
     def __init__(self, conninfo: str) -> None:
-        self.name = database_at(_named(conninfo))
-        self._conninfo = conninfo
+        self.name, self._conninfo = database_at("of [sharing] postgresql"), conninfo
+        with suppress(SharingError):  # told by whoever asks the database
+            self.name = database_at(shown(with_tls(parsed(conninfo))))
 
     def begin(self) -> None:
         """Schema and tables, in one transaction."""
@@ -80,8 +95,9 @@ class SharedDatabase:
             there = {str(row[0]) for row in connection.execute("SELECT id FROM turndesk.versions")}
             wanted, fresh, strays = sorted(there - known.keys()), list[SharedVersion](), list[str]()
             for first in range(0, len(wanted), _AT_ONCE):
-                query = "SELECT id, record FROM turndesk.versions WHERE id = ANY(%s)"
-                for name, record in connection.execute(query, (wanted[first : first + _AT_ONCE],)):
+                query = "SELECT id, substr(record, 1, %s) FROM turndesk.versions WHERE id = ANY(%s)"
+                some = wanted[first : first + _AT_ONCE]
+                for name, record in connection.execute(query, (LONGEST_RECORD, some)):
                     try:
                         fresh.append(read_version(name, bytes(record)))
                     except RecordError:
@@ -99,9 +115,9 @@ class SharedDatabase:
 
     def text(self, version: SharedVersion) -> bytes:
         """One row."""
-        query = "SELECT program_text FROM turndesk.versions WHERE id = %s"
+        query = "SELECT substr(program_text, 1, %s) FROM turndesk.versions WHERE id = %s"
         with self._asked() as connection:
-            row = connection.execute(query, (version.id,)).fetchone()
+            row = connection.execute(query, (MOST_BYTES + 1, version.id)).fetchone()
         try:
             return checked_text(version, bytes(row[0]) if row is not None else b"")
         except RecordError as error:
@@ -113,7 +129,7 @@ class SharedDatabase:
     @staticmethod
     def _desks(connection: psycopg.Connection, strays: list[str]) -> tuple[DeskState, ...]:
         found = []
-        for home, state in connection.execute("SELECT home, state FROM turndesk.desks"):
+        for home, state in connection.execute(_DESKS, (LONGEST_STATE,)):
             try:
                 found.append(read_state(home, bytes(state)))
             except RecordError:
@@ -131,19 +147,11 @@ class SharedDatabase:
     @contextmanager
     def _asked(self, *, demand: bool = True) -> Iterator[psycopg.Connection]:
         """One transaction on a connection of its own; what the server refuses comes as SharingError."""
-        if importlib.util.find_spec("psycopg") is None:
-            raise Cause.NO_PSYCOPG.error(self.name)
+        values: dict[str, Any] = with_tls(parsed(self._conninfo))
         import psycopg  # noqa: PLC0415  optional, and only for those who share so
 
         try:
-            with psycopg.connect(
-                self._conninfo,
-                connect_timeout=5,
-                application_name="turndesk",
-                options="-c statement_timeout=30s -c lock_timeout=10s -c synchronous_commit=on",
-                keepalives_idle=10,
-                tcp_user_timeout=15_000,  # ms: a network that has gone is noticed
-            ) as connection:
+            with psycopg.connect(**{**values, **_LIMITS}) as connection:
                 if demand:
                     self._demand(connection)
                 yield connection
@@ -151,22 +159,17 @@ class SharedDatabase:
             raise self._refusal(error.sqlstate or "", str(error)) from error
 
     def _refusal(self, code: str, told: str) -> SharingError:
-        first = next((line for line in told.splitlines() if line.strip()), "it failed")
-        first = first.rpartition(" failed: ")[2]  # of a connection that was not made: the cause alone
-        said = told.lower()
+        lines = [line for line in told.splitlines() if line.strip()] or ["it failed"]
         for cause, begins in _CODES if code else ():
             if code.startswith(begins):
-                return cause.error(self.name, first)
+                return cause.error(self.name, _bare(lines[0]))
         for cause, signs in _AT_THE_DOOR if not code else ():
-            if any(sign in said for sign in signs):
-                return cause.error(self.name, told.rpartition("FATAL:")[2] or first)
-        return Cause.AWAY.error(self.name, first)
+            said = next((line for line in lines if any(sign in line.lower() for sign in signs)), "")
+            if said:
+                return cause.error(self.name, _bare(said))
+        return Cause.AWAY.error(self.name, _bare(lines[0]))
 
 
-def _named(conninfo: str) -> str:
-    """Without a password: it stands in sentences and logs."""
-    if "://" in conninfo:
-        scheme, _, rest = conninfo.partition("://")
-        who, at, where = rest.rpartition("@")
-        return f"{scheme}://{who.partition(':')[0]}{at}{where.partition('?')[0]}"
-    return " ".join(word for word in conninfo.split() if not word.startswith(("password", "sslpassword")))
+def _bare(line: str) -> str:
+    """The cause alone, of a connection that was not made."""
+    return line.rpartition(" failed: ")[2].removeprefix("FATAL:")

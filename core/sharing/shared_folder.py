@@ -6,6 +6,7 @@ for versions, which are the same bytes whoever writes them.
 
 from __future__ import annotations
 
+import errno
 import json
 import os
 import sys
@@ -13,11 +14,13 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
+from core.regular_file import read_regular
 from core.sharing.shared_place import Found, Published, folder_at
 from core.sharing.sharing_errors import Cause, of_system
 from core.sharing.version_record import (
     FORMAT,
     LONGEST_RECORD,
+    LONGEST_STATE,
     MOST_BYTES,
     DeskState,
     RecordError,
@@ -31,6 +34,7 @@ from core.store.shared_versions import SharedVersion
 
 MARK = "turndesk-share.json"  # without it the folder is none of ours: an empty mount point has none
 VERSIONS, DESKS = "versions", "desks"
+LONGEST = LONGEST_RECORD + 1 + MOST_BYTES  # bytes of a version's file
 _ENDING, _STATE, _WRITING = ".version", ".json", ".writing-"
 
 
@@ -93,7 +97,7 @@ class SharedFolder:
         path = self._folder / VERSIONS / f"{version.id}{_ENDING}"
         with self._system():
             self._demand()
-            _, _, text = path.read_bytes().partition(b"\n")
+            _, _, text = read_regular(path, LONGEST).partition(b"\n")
             try:
                 return checked_text(version, text)
             except RecordError as error:
@@ -111,8 +115,9 @@ class SharedFolder:
         path = self._folder / VERSIONS / f"{version.id}{_ENDING}"
         whole = written(version) + b"\n" + text
         if path.exists():
-            if path.read_bytes() == whole:
-                return
+            with suppress(OSError):
+                if read_regular(path, len(whole)) == whole:
+                    return
             path.replace(path.with_name(f"{path.name}.damaged"))  # kept: whoever spoilt it may want to see it
         self._write(path, whole, home)
 
@@ -135,7 +140,7 @@ class SharedFolder:
         for path in _files(self._folder / DESKS):
             home = path.name.removesuffix(_STATE)
             try:
-                found.append(read_state(home, path.read_bytes()))
+                found.append(read_state(home, read_regular(path, LONGEST_STATE)))
             except (RecordError, OSError):
                 strays.append(path.name)
         return tuple(found), strays
@@ -144,9 +149,13 @@ class SharedFolder:
         """Raises SharingError where the folder is not one of shared programs, or of a newer format."""
         os.stat(self._folder)
         try:
-            data = self.mark.read_bytes()
+            data = read_regular(self.mark, LONGEST_RECORD)
         except FileNotFoundError:
             raise Cause.NOT_BEGUN.error(self.name) from None
+        except OSError as error:
+            if error.errno == errno.EINVAL:
+                raise Cause.OTHER.error(self.name, error.strerror) from error
+            raise
         check_mark(self.name, data)
 
     @contextmanager
@@ -177,10 +186,8 @@ def _files(folder: Path) -> list[Path]:
 def _version_in(path: Path) -> SharedVersion | None:
     """None: the file is no whole version, by what its first line says of the rest."""
     try:
-        with path.open("rb") as file:
-            record = file.readline(LONGEST_RECORD)
-            version = read_version(path.name.removesuffix(_ENDING), record.rstrip(b"\n"))
-            text = file.read(MOST_BYTES + 1)
+        record, _, text = read_regular(path, LONGEST).partition(b"\n")
+        version = read_version(path.name.removesuffix(_ENDING), record)
         checked_text(version, text)
     except (RecordError, OSError):
         return None

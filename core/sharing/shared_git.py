@@ -13,7 +13,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from core.sharing.git_command import GitCommand
-from core.sharing.shared_folder import DESKS, MARK, VERSIONS, check_mark
+from core.sharing.shared_folder import DESKS, LONGEST, MARK, VERSIONS, check_mark
 from core.sharing.shared_place import Found, Published, repository_at
 from core.sharing.sharing_errors import Cause, SharingError, of_system
 from core.sharing.version_record import (
@@ -30,6 +30,7 @@ from core.store.shared_versions import SharedVersion
 
 BRANCH = "turndesk"  # the repository may hold other things besides
 _HERE, _THERE = f"refs/heads/{BRANCH}", f"refs/remotes/origin/{BRANCH}"
+_LONGEST_HEAD = 400  # bytes
 _TRIES = 8  # pushes, while other desks push
 _SECOND = ("[rejected]", "stale info", "cannot lock ref", "failed to update ref", "incorrect old value")
 _DAMAGED = (
@@ -145,7 +146,7 @@ class SharedGit:
             self._folder.parent.mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise of_system(str(self._folder), error) from error
-        self._git.run(["init", "--quiet", "--bare", f"--initial-branch={BRANCH}", str(self._folder)])
+        self._git.run(["init", "--quiet", "--bare", f"--initial-branch={BRANCH}", "--", str(self._folder)])
 
     def _branch(self) -> str:
         """What the repository has by its name, fetched; empty: nothing."""
@@ -160,27 +161,30 @@ class SharedGit:
     def _fetch_once(self) -> None:
         refs = f"+{_HERE}:{_THERE}"
         try:
-            self._git.run(["fetch", "--quiet", "--no-tags", "--no-write-fetch-head", self._remote, refs])
+            self._git.run(
+                ["fetch", "--quiet", "--no-tags", "--no-write-fetch-head", "--", self._remote, refs]
+            )
         except SharingError as error:
             if "find remote ref" in error.told:
                 raise Cause.NOT_BEGUN.error(self.name) from error
             raise
 
     def _blobs(self, paths: Sequence[str]) -> dict[str, bytes]:
-        """What files of the branch hold; those that are not there are left out."""
-        asked = "".join(f"{_THERE}:{path}\n" for path in paths if "\n" not in path)
-        out, at, found = self._git.run(["cat-file", "--batch"], asked.encode()), 0, dict[str, bytes]()
-        for path in (path for path in paths if "\n" not in path):
-            head, _, _ = (
-                out[at:].partition(b"\n") if len(out) - at < 400 else out[at : at + 400].partition(b"\n")
-            )
+        """What files of the branch hold; not those that are missing or longer than any of ours."""
+        names = [path for path in paths if "\n" not in path]
+        sizes = self._objects("--batch-check", names).splitlines()
+        wanted = [name for name, head in zip(names, sizes, strict=False) if 0 <= _size(head) <= LONGEST]
+        out, at, found = self._objects("--batch", wanted), 0, dict[str, bytes]()
+        for path in wanted:
+            head, _, _ = out[at : at + _LONGEST_HEAD].partition(b"\n")
             at += len(head) + 1
-            words = head.split(b" ")
-            if len(words) == 3 and words[1] == b"blob":
-                size = int(words[2])
-                found[path] = out[at : at + size]
-                at += size + 1
+            found[path] = out[at : at + _size(head)]
+            at += _size(head) + 1
         return found
+
+    def _objects(self, how: str, paths: Sequence[str]) -> bytes:
+        asked = "".join(f"{_THERE}:{path}\n" for path in paths)
+        return self._git.run(["cat-file", how], asked.encode())
 
     def _commit(self, files: Mapping[str, bytes], subject: str, *, onto: str) -> None:
         """On top of a commit, as git's fast-import takes it: one process for a thousand files."""
@@ -196,7 +200,7 @@ class SharedGit:
     def _push(self) -> bool:
         """False: another desk was first."""
         try:
-            self._git.run(["push", "--quiet", self._remote, f"{_HERE}:{_HERE}"])
+            self._git.run(["push", "--quiet", "--", self._remote, f"{_HERE}:{_HERE}"])
         except SharingError as error:
             if any(sign in error.told for sign in _SECOND):
                 return False
@@ -205,10 +209,18 @@ class SharedGit:
 
 
 def _named(remote: str) -> str:
-    """Without a password: it stands in sentences and logs."""
+    """Without a password: it stands in sentences and logs. On the web the user's name may be a token too."""
     scheme, between, rest = remote.partition("://")
     who, at, where = rest.rpartition("@")
+    if scheme in {"http", "https"}:
+        return f"{scheme}{between}{where.partition('?')[0]}"
     return f"{scheme}{between}{who.partition(':')[0]}{at}{where}"
+
+
+def _size(head: bytes) -> int:
+    """Of a file, by the line in front of it; -1: there is none of that name, or it is no file."""
+    words = head.split(b" ")
+    return int(words[2]) if len(words) == 3 and words[1] == b"blob" else -1
 
 
 def _last(path: str) -> str:

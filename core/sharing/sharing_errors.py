@@ -41,6 +41,24 @@ class Cause(Enum):
         "the computer of {place} answers, but not as git does ({why}); is git installed there, and may this "
         "user start it by ssh?"
     )
+    UNREADABLE = (
+        "[sharing] postgresql cannot be read as a connection string; write a value with blanks in quotation "
+        "marks, and / and @ of a password in an address as %2F and %40"
+    )
+    WRONG_PASSWORD = "{place} refuses the user or the password ({why}); correct them in [sharing] postgresql"
+    NOT_TRUSTED = (
+        "the certificate of {place} cannot be verified ({why}); name the certificate of whoever issued it "
+        "as sslrootcert=FILE in [sharing] postgresql"
+    )
+    GIT_NOT_TRUSTED = (
+        "the certificate of {place} cannot be verified ({why}); name the certificate of whoever issued it: "
+        "git config --global http.sslCAInfo FILE"
+    )
+    NO_TLS = (
+        "{place} offers no TLS ({why}); turn it on there, or, where everybody in the network is trusted, "
+        "write sslmode=disable in [sharing] postgresql"
+    )
+    TLS_ONLY = "{place} accepts TLS only ({why}); remove sslmode from [sharing] postgresql"
     NO_PSYCOPG = "[sharing] postgresql wants psycopg, which is not installed; install turndesk[postgresql]"
     NAME_TAKEN = (
         "{place}: another desk is called {why} too; give this one its own name (desk in [sharing]), "
@@ -75,4 +93,6 @@ def of_system(place: str, error: OSError) -> SharingError:
         return Cause.NO_RIGHT.error(place, why)
     if error.errno in _NOT_THERE:
         return Cause.NOT_THERE.error(place, why)
+    if error.errno == errno.EINVAL:  # a file that is none of ours: core/regular_file.py
+        return Cause.DAMAGED.error(place, why)
     return Cause.AWAY.error(place, why)

@@ -14,6 +14,7 @@ from core.store.store_errors import StoreError
 
 FORMAT = 1
 MOST_BYTES = 32 * 1024 * 1024  # of a program: more is not shared
+LONGEST_STATE = 4 * 1024 * 1024  # bytes of what a desk says it has
 LONGEST_RECORD = 64 * 1024
 _TEXTS = ("program", "text", "desk", "saved", "why")
 _HEX = frozenset("0123456789abcdef")

@@ -4,6 +4,7 @@
 
 ROOT=${ROOT:-$(CDPATH='' cd -- "$(dirname -- "$0")/.." && pwd)}
 PYTHON_ENV=${TURNDESK_VENV:-$ROOT/.venv}
+case $PYTHON_ENV in -*) PYTHON_ENV=./$PYTHON_ENV ;; esac  # a folder, never an option of a program
 
 # Qt needs these even without a window (offscreen) …
 QT_LIBRARIES="libgl1 libegl1 libglib2.0-0 libxkbcommon0 libdbus-1-3 libfontconfig1"
@@ -17,6 +18,25 @@ STORY_PACKAGES="xvfb openbox xdotool x11-utils x11-xkb-utils libxtst6"
 APT_OPTIONS=""
 
 say() { printf '%s\n' "$*" >&2; }
+
+# patiently WHAT COMMAND …: runs the command, keeps what it says in said (no disk is needed), and shows WHAT every 8 s.
+patiently() {
+    what=$1
+    shift
+    (
+        trap 'kill "$!"; exit' TERM
+        seconds=0
+        while sleep 8 & wait "$!" && kill -0 "$$" 2>/dev/null; do  # Ctrl+C ends the shell, not this
+            seconds=$((seconds + 8))
+            say "$what: $seconds s"
+        done
+    ) &
+    sign=$!
+    said=$("$@" 2>&1) && status=0 || status=$?
+    kill "$sign"
+    wait "$sign" 2>/dev/null || :
+    return "$status"
+}
 
 installed() {
     # Ubuntu 24.04 renamed libglib2.0-0 to libglib2.0-0t64.
@@ -39,8 +59,9 @@ as_root() { if [ "$(id -u)" = 0 ]; then "$@"; else sudo "$@"; fi; }
 # apt_get INSTRUCTION …: apt-get without questions, its last lines kept in apt_says.
 apt_get() {
     # shellcheck disable=SC2086
-    apt_says=$(as_root env DEBIAN_FRONTEND=noninteractive LC_ALL=C apt-get -qq $APT_OPTIONS "$@" 2>&1) && return
-    apt_says=$(printf '%s\n' "$apt_says" | grep '^[EW]:' | tail -n 4)
+    patiently "apt-get $1" as_root env DEBIAN_FRONTEND=noninteractive LC_ALL=C apt-get -qq \
+        -o Acquire::http::Timeout=10 -o Acquire::https::Timeout=10 $APT_OPTIONS "$@" && return
+    apt_says=$(printf '%s\n' "$said" | grep -E '^[EW]:|No space left' | tail -n 4)
     return 1
 }
 
@@ -66,6 +87,7 @@ not_installed() {
     say "Not installed:$missing. apt-get says:"
     say "$apt_says"
     case $apt_says in
+        *"No space left"* | *"enough free space"*) say "Its disk is full: make room, then start again." ;;
         *"Unable to locate"* | *"no installation candidate"* | *"Failed to fetch"* | *resolving* | *onnect*)
             say "Is there a network? Without one, bring the bundle in one file (docs/setup.md), or install them from the distribution's medium." ;;
     esac
@@ -143,34 +165,44 @@ new_environment() {
             break
         done
         say "The Python environment was made by another Python or at another place; making it anew"
-        rm -rf "$PYTHON_ENV"
+        rm -rf -- "$PYTHON_ENV"
     fi
     # First its sign: what is broken off here is made anew next time.
-    { mkdir -p "$PYTHON_ENV" && place >"$PYTHON_ENV/.turndesk-place"; } 2>/dev/null \
-        || { say "$(id -un) may not write to $PYTHON_ENV: name a folder in TURNDESK_VENV, or start as its owner."; exit 2; }
-    make_environment
+    said=$({ LC_ALL=C mkdir -p "$PYTHON_ENV" && place | LC_ALL=C cat >"$PYTHON_ENV/.turndesk-place"; } 2>&1) || not_fetched
+    patiently "Making the Python environment" make_environment || not_fetched
 }
 
-# pip_install WORDS: pip install of the environment, or uv's, which is quicker; what it says is kept in a file.
+# pip_install WORDS: pip install of the environment, or uv's, which is quicker; what it says is kept in said.
 pip_install() {
-    PIP_SAYS="$PYTHON_ENV/.turndesk-log"
     if [ -x "$PYTHON_ENV/bin/pip" ]; then
-        "$PYTHON_ENV/bin/python" -m pip install -q --disable-pip-version-check "$@" >"$PIP_SAYS" 2>&1
+        patiently "Python packages" "$PYTHON_ENV/bin/python" -m pip install -q --disable-pip-version-check "$@"
     else
-        uv pip install -q --python "$PYTHON_ENV/bin/python" "$@" >"$PIP_SAYS" 2>&1
+        patiently "Python packages" uv pip install -q --python "$PYTHON_ENV/bin/python" "$@"
     fi
 }
 
-log_has() { grep -qiE "$1" "$PIP_SAYS"; }
+log_has() { printf '%s\n' "$said" | grep -qiE "$1"; }
+
+# is_full FOLDER: whether its disk has less than 2 MB left; Python's venv does not say why it gave up.
+is_full() {
+    free=$(df -Pk -- "$1" 2>/dev/null | awk 'NR == 2 { print $4 }')
+    [ "${free:-9999}" -lt 2048 ]
+}
+
+# keep_log: what was said goes to a file, where the disk takes it.
+keep_log() {
+    log="$PYTHON_ENV/.turndesk-log"
+    { printf '%s\n' "$said" >"$log"; } 2>/dev/null && say "All that it said is in $log"
+}
 
 # not_fetched: one clear sentence for why pip gave up, told from what it wrote.
 not_fetched() {
     if log_has 'do not match the hashes|hash mismatch|bad magic number|BadZipFile|not a zip file|invalid wheel'; then
         say "A Python package that came is not the one TurnDesk was tested with: damaged on the way, or tampered with. It was not installed."
-        say "$(grep -iE '^ +[a-z0-9._-]+==|hash mismatch' "$PIP_SAYS" | sed 's/ (from -r .*//' | head -n 2)"
+        say "$(printf '%s\n' "$said" | grep -iE '^ +[a-z0-9._-]+==|hash mismatch' | sed 's/ (from -r .*//' | head -n 2)"
         say "Start again; if it stays, find out what stands between here and the package index (a proxy, a mirror, a folder of wheels)."
-    elif log_has 'no space left'; then
-        say "No room left on the disk of $PYTHON_ENV: the Python packages need 500 MB. Make room, then start again."
+    elif log_has 'no space left' || is_full "$PYTHON_ENV" || is_full "${TMPDIR:-/tmp}"; then
+        say "No room left on the disk of $PYTHON_ENV or of ${TMPDIR:-/tmp}: the Python packages need 500 MB. Make room, then start again."
     elif log_has 'permission denied|read-only file system'; then
         say "$(id -un) may not write to $PYTHON_ENV: name a folder in TURNDESK_VENV, or start as its owner."
     elif log_has 'certificate'; then
@@ -184,9 +216,9 @@ not_fetched() {
         say "with glibc 2.34 (Debian 12, Ubuntu 22.04) or 64-bit ARM with glibc 2.39 (Debian 13, Ubuntu 24.04), or newer."
     else
         say "The Python packages could not be installed. pip says:"
-        say "$(tail -n 4 "$PIP_SAYS")"
+        say "$(printf '%s\n' "$said" | tail -n 4)"
     fi
-    say "All that it said is in $PIP_SAYS"
+    keep_log || :
     exit 2
 }
 
@@ -204,7 +236,7 @@ python_environment() {
     # shellcheck disable=SC2086
     pip_install $LOCKED --only-binary :all: -r "$locked" || not_fetched
     pip_install --no-deps --no-build-isolation -e "$ROOT" || not_fetched
-    printf '%s\n' "$wanted" >"$stamp"
+    said=$({ printf '%s\n' "$wanted" | LC_ALL=C cat >"$stamp"; } 2>&1) || not_fetched
 }
 
 export OPENBLAS_NUM_THREADS=1

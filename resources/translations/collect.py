@@ -101,6 +101,12 @@ APART = frozenset(
 )
 # Read by somebody, and not to be told from names by their looks.
 ALSO = (
+    "its certificate cannot be verified: %1",
+    "it speaks no TLS: its address begins with http://",
+    "it ended the connection without an answer",
+    "it accepts TLS only: its address begins with https://",
+    "what it answers is not HTTP",
+    "its address has signs that no address may have",
     "a drill",
     "a reamer",
     "a tap",

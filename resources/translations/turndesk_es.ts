@@ -4665,6 +4665,16 @@
     </message>
     <message>
       <location filename="" />
+      <source>it accepts TLS only: its address begins with https://</source>
+      <translation>solo acepta TLS: su dirección empieza por https://</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>it ended the connection without an answer</source>
+      <translation>cerró la conexión sin responder</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>it is written by a mask of the newer controls, whose digits differ from edition to edition; name the contour in CYCLE95</source>
       <translation>lo escribe una máscara de los controles nuevos, cuyas cifras cambian de una edición a otra; nombre el contorno en CYCLE95</translation>
     </message>
@@ -4677,6 +4687,21 @@
       <location filename="" />
       <source>it is written by a mask of the newer controls, whose digits differ from edition to edition; write the groove with CYCLE93</source>
       <translation>lo escribe una máscara de los controles nuevos, cuyas cifras cambian de una edición a otra; escriba la ranura con CYCLE93</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>it speaks no TLS: its address begins with http://</source>
+      <translation>no usa TLS: su dirección empieza por http://</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>its address has signs that no address may have</source>
+      <translation>su dirección tiene signos no permitidos en una dirección</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>its certificate cannot be verified: %1</source>
+      <translation>su certificado no se puede verificar: %1</translation>
     </message>
     <message>
       <location filename="" />
@@ -5222,6 +5247,11 @@
       <location filename="" />
       <source>warning</source>
       <translation>aviso</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>what it answers is not HTTP</source>
+      <translation>lo que responde no es HTTP</translation>
     </message>
     <message>
       <location filename="" />
@@ -32839,6 +32869,11 @@
       <translation>S%1 es más que las %2 rpm de este husillo: escriba %3 o menos.</translation>
     </message>
     <message>
+      <location filename="core/sharing/connection_string.py" />
+      <source>%1 (TLS not verified)</source>
+      <translation>%1 (TLS sin verificar)</translation>
+    </message>
+    <message>
       <location filename="core/sharing/shared_folder.py" />
       <source>%1 is damaged</source>
       <translation>%1 está dañado</translation>
@@ -32860,8 +32895,23 @@
     </message>
     <message>
       <location filename="core/sharing/sharing_errors.py" />
+      <source>[sharing] postgresql cannot be read as a connection string; write a value with blanks in quotation marks, and / and @ of a password in an address as %2F and %40</source>
+      <translation>[sharing] postgresql no se puede leer como cadena de conexión; escriba entre comillas un valor con espacios, y / y @ de la contraseña de una dirección como %2F y %40</translation>
+    </message>
+    <message>
+      <location filename="core/sharing/sharing_errors.py" />
       <source>[sharing] postgresql wants psycopg, which is not installed; install turndesk[postgresql]</source>
       <translation>[sharing] postgresql necesita psycopg, que no está instalado; instale turndesk[postgresql]</translation>
+    </message>
+    <message>
+      <location filename="core/sharing/sharing_errors.py" />
+      <source>the certificate of {place} cannot be verified ({why}); name the certificate of whoever issued it as sslrootcert=FILE in [sharing] postgresql</source>
+      <translation>el certificado de {place} no se puede verificar ({why}); indique el certificado de su emisor como sslrootcert=ARCHIVO en [sharing] postgresql</translation>
+    </message>
+    <message>
+      <location filename="core/sharing/sharing_errors.py" />
+      <source>the certificate of {place} cannot be verified ({why}); name the certificate of whoever issued it: git config --global http.sslCAInfo FILE</source>
+      <translation>el certificado de {place} no se puede verificar ({why}); indique el certificado de su emisor: git config --global http.sslCAInfo ARCHIVO</translation>
     </message>
     <message>
       <location filename="core/sharing/sharing_errors.py" />
@@ -32887,6 +32937,11 @@
       <location filename="core/sharing/sharing_errors.py" />
       <source>the disk of {place} is full; make room there</source>
       <translation>el disco de {place} está lleno; libere espacio allí</translation>
+    </message>
+    <message>
+      <location filename="core/sharing/sharing_errors.py" />
+      <source>{place} accepts TLS only ({why}); remove sslmode from [sharing] postgresql</source>
+      <translation>{place} solo acepta TLS ({why}); quite sslmode de [sharing] postgresql</translation>
     </message>
     <message>
       <location filename="core/sharing/sharing_errors.py" />
@@ -32920,8 +32975,18 @@
     </message>
     <message>
       <location filename="core/sharing/sharing_errors.py" />
+      <source>{place} offers no TLS ({why}); turn it on there, or, where everybody in the network is trusted, write sslmode=disable in [sharing] postgresql</source>
+      <translation>{place} no ofrece TLS ({why}); actívelo allí o, si se confía en toda la red, escriba sslmode=disable en [sharing] postgresql</translation>
+    </message>
+    <message>
+      <location filename="core/sharing/sharing_errors.py" />
       <source>{place} refuses it: {why}</source>
       <translation>{place} lo rechaza: {why}</translation>
+    </message>
+    <message>
+      <location filename="core/sharing/sharing_errors.py" />
+      <source>{place} refuses the user or the password ({why}); correct them in [sharing] postgresql</source>
+      <translation>{place} rechaza el usuario o la contraseña ({why}); corríjalos en [sharing] postgresql</translation>
     </message>
     <message>
       <location filename="core/sharing/sharing_errors.py" />

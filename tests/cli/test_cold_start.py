@@ -7,18 +7,15 @@ import sys
 
 import pytest
 
-import resources
-from app.compose import kept_machines
-from app.compose.machine_files import SHIPPED, parse_machine
-
 PROGRAM = "G90G94F300G72\nM03S2000\nT1\nX1Z.1\nG95F.003\nX.5Z0\nX.6Z-.1\nG00X1\nZ1\nM30\n"
 OF_THE_REST = (
-    *("PySide6", "app.screen", "app.report", "app.compose.machine_drivers", "app.offsets.offset_book"),
+    *("PySide6", "app.screen", "app.report", "app.offsets.offset_book"),
     *("core.executor", "core.alarms", "core.drawings", "core.ports", "core.records", "core.shapes"),
-    *("core.machine.machine_file", "core.machine.driver_tables", "core.store.store", "core.quality"),
+    *("core.store.store", "core.quality"),
     *("core.interpreter.klartext", "core.interpreter.sinumerik", "core.part.milled_part"),
-    *("drivers.canopen", "drivers.grblhal", "drivers.hal", "drivers.inverter", "drivers.lookalikes"),
-    *("drivers.mtconnect", "drivers.pendant", "drivers.setpoint_queue"),
+    *("drivers.canopen.canopen_machine", "drivers.grblhal.grblhal_machine", "drivers.hal.hal_machine"),
+    *("drivers.inverter.inverter_spindle", "drivers.mtconnect.mtconnect_adapter"),
+    *("drivers.pendant.pendant_reader", "drivers.lookalikes", "drivers.setpoint_queue"),
 )
 OF_PYTHON = (
     *("concurrent", "difflib", "hashlib", "importlib.resources", "logging", "random", "socket", "sqlite3"),
@@ -26,11 +23,8 @@ OF_PYTHON = (
 )
 PROVE = """
 import sys
-from pathlib import Path
-from app.compose import kept_machines, machine_files
-kept_machines._place = lambda _file: Path(sys.argv[1])
 from app.cli.main import main
-status = main(["prove", sys.argv[2]])
+status = main(["prove", sys.argv[1]])
 print(status, *sys.modules, file=sys.stderr)
 """
 
@@ -40,14 +34,10 @@ def loaded(tmp_path_factory: pytest.TempPathFactory) -> frozenset[str]:
     """The modules of a process that has proved a short program, on the shipped lathe, without a store."""
     folder = tmp_path_factory.mktemp("cold")
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(kept_machines, "_place", lambda _file: folder / "kept")
-        patch.setattr(sys, "dont_write_bytecode", False)
-        text = resources.machine_file(SHIPPED)
-        kept_machines.keep(folder, text, parse_machine(text, SHIPPED))
         patch.setenv("TURNDESK_HOME", str(folder / "home"))
         program = folder / "part.nc"
         program.write_text(PROGRAM)
-        command = [sys.executable, "-c", PROVE, str(folder / "kept"), str(program)]
+        command = [sys.executable, "-c", PROVE, str(program)]
         done = subprocess.run(command, check=True, capture_output=True, text=True)
     status, *names = done.stderr.split()
     assert status == "0", done

@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 import errno
+import hashlib
+import json
 import os
+import resource
 import shutil
 import subprocess
 import zipfile
+from collections.abc import Mapping
 from pathlib import Path
 
 import pytest
 
 import resources
 from app.cli.setup_command import SHELLS
+from app.compose import setup_archive
 from tests.cli.conftest import Turndesk
 
 
@@ -265,3 +270,106 @@ def test_a_command_in_a_folder_with_blanks_and_signs_is_quoted_as_an_entry_wants
     assert turndesk("setup", "desktop").status == 0
     entry = (tmp_path / "data" / "applications" / "turndesk.desktop").read_text()
     assert f'Exec="{tmp_path}/my \\\\$own \\\\"50%%\\\\"/turndesk"\n' in entry
+
+
+# --- hostile archives -----------------------------------------------------------------------------------
+
+
+def _with(saved: Path, bad: Path, more: Mapping[str, bytes]) -> Path:
+    """The saved setup with more members, each with its good SHA-256."""
+    with zipfile.ZipFile(saved) as old, zipfile.ZipFile(bad, "w", zipfile.ZIP_DEFLATED) as new:
+        told = json.loads(old.read("manifest.json"))
+        told["sha256"] |= {name: hashlib.sha256(data).hexdigest() for name, data in more.items()}
+        new.writestr("manifest.json", json.dumps(told))
+        for name in old.namelist():
+            if name not in {"manifest.json", *more}:
+                new.writestr(name, old.read(name))
+        for name, data in more.items():
+            new.writestr(name, data)
+    return bad
+
+
+@pytest.mark.parametrize(
+    ("name", "data", "code"),
+    [
+        ("machine/a/b/c.toml", b"[axes]\n", "too-deep"),
+        ("machine/b.toml", b"[axes]\n", "foreign-member"),
+        ("machine/mine.xml", b"<a>", "damaged-member"),
+        ("machine/mine.hal", b"\xff\x00", "damaged-member"),
+        ("programs/a/b/c/d/e/f/g/h.nc", b"G90\n", "too-deep"),
+        ("programs/a.nc", b"\x7fELF\0\0", "file-binary"),
+        ("programs/a.dxf", b"\0", "file-binary"),
+        ("programs/a:b.nc", b"G90\n", "invalid-name"),
+        ("programs//a.nc", b"G90\n", "foreign-member"),
+        ("programs", b"G90\n", "foreign-member"),
+        ("start.sh", b"G90\n", "foreign-member"),
+    ],
+)
+def test_every_file_is_checked_by_its_kind_before_anything_is_placed(
+    name: str, data: bytes, code: str, saved: Path, turndesk: Turndesk, tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:  # fmt: skip
+    bad = _with(saved, tmp_path / "bad.setup", {name: data})
+    monkeypatch.setenv("TURNDESK_HOME", str(tmp_path / "other"))
+    told = turndesk("setup", "load", bad)
+    assert (told.status, told.code) == (2, code)
+    assert not (tmp_path / "other").exists()
+
+
+def test_a_member_that_the_manifest_does_not_list_is_refused(
+    saved: Path, turndesk: Turndesk, tmp_path: Path
+) -> None:
+    with zipfile.ZipFile(saved, "a") as file:
+        file.writestr("programs/more.nc", "G90\n")
+    told = turndesk("setup", "load", saved, "--check")
+    assert (told.status, told.code) == (2, "foreign-member")
+
+
+@pytest.mark.parametrize("name", ["manifest.json", "store.db", "programs/part.nc", "machine/mine.toml"])
+def test_what_unpacks_to_more_than_a_setup_holds_is_refused_while_it_is_counted(
+    name: str, saved: Path, turndesk: Turndesk, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    most = dict(setup_archive.MOST_BYTES) | {name.partition("/")[0]: 3}
+    monkeypatch.setattr(setup_archive, "MOST_BYTES", most)
+    told = turndesk("setup", "load", saved, "--check")
+    assert (told.status, told.code) == (2, "member-too-large")
+
+
+def test_all_members_together_have_a_limit(
+    saved: Path, turndesk: Turndesk, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(setup_archive, "MOST_BYTES_OF_ALL", 1000)
+    told = turndesk("setup", "load", saved, "--check")
+    assert (told.status, told.code) == (2, "member-too-large")
+
+
+def test_a_manifest_of_gigabytes_is_not_unpacked(saved: Path, turndesk: Turndesk, tmp_path: Path) -> None:
+    """Packed it has under a megabyte; the process may have 256 MB more than it has now."""
+    bad = tmp_path / "bad.setup"
+    with zipfile.ZipFile(bad, "w", zipfile.ZIP_DEFLATED) as file, file.open("manifest.json", "w") as member:
+        for _ in range(320):
+            member.write(bytes(1024 * 1024))
+    limits = resource.getrlimit(resource.RLIMIT_AS)
+    used = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
+    resource.setrlimit(resource.RLIMIT_AS, (used + 256 * 1024 * 1024, limits[1]))
+    try:
+        told = turndesk("setup", "load", bad, "--check")
+    finally:
+        resource.setrlimit(resource.RLIMIT_AS, limits)
+    assert (told.status, told.code) == (2, "member-too-large")
+
+
+def test_a_list_of_too_many_members_is_not_read(saved: Path, turndesk: Turndesk, tmp_path: Path) -> None:
+    more = {f"programs/{number}": b"" for number in range(setup_archive.MOST_MEMBERS)}
+    told = turndesk("setup", "load", _with(saved, tmp_path / "bad.setup", more), "--check")
+    assert (told.status, told.code) == (2, "too-many-members")
+
+
+def test_what_no_desk_would_take_is_left_out_of_a_setup(saved: Path, turndesk: Turndesk, home: Path) -> None:
+    (home / "programs" / "notes.pdf").write_bytes(b"%PDF\0")
+    (home / "programs" / "empty.nc").write_bytes(b"")
+    (home / "programs" / "part.dxf").write_bytes(b"0\nEOF\n")
+    told = turndesk("setup", "save", saved)
+    assert told.status == 0
+    assert "programs/notes.pdf" in told.out
+    assert "programs: 3" in turndesk("setup", "load", saved, "--check").out

@@ -7,7 +7,9 @@ import tomllib
 import pytest
 
 import resources
+from app.compose.machine_files import parse_machine
 from core.machine.machine_changes import ABSENT, changes
+from core.table_schema import HIDDEN, MachineFileError
 
 SHIPPED = resources.machine_file("gt75.toml")
 
@@ -46,3 +48,37 @@ def test_an_empty_table_that_gets_keys_is_told() -> None:
 def test_what_is_no_toml_raises() -> None:
     with pytest.raises(tomllib.TOMLDecodeError):
         changes("a = \n", "a = 1\n")
+
+
+@pytest.mark.parametrize(
+    ("table", "key", "value"),
+    [
+        ("announce", "password", '"secret"'),
+        ("announce", "hook", '"https://hooks/secret"'),
+        ("sharing", "postgresql", '"host=h password = secret"'),
+        ("sharing", "git", '"https://me:secret@h/x.git"'),
+        ("status_page", "token", '"secret"'),
+        ("status_page", "desks", '"http://a/?token=secret"'),
+    ],
+)
+def test_passwords_and_tokens_are_in_no_list_of_changes(table: str, key: str, value: str) -> None:
+    (change,) = changes("", f"[{table}]\n{key} = {value}\n")
+    assert change == (f"{table}.{key}", ABSENT, HIDDEN)
+
+
+@pytest.mark.parametrize(
+    "lines",
+    [
+        "[announce]\npassword = 1234",
+        '[announce]\nhook = "hooks/1234"',
+        '[announce]\nmqtt = "me:1234@shop-pc:1883"',
+        "[sharing]\npostgresql = [1234]",
+        '[status_page]\ndesks = ["htp://a/?token=1234"]',
+        '[status_page]\nagents = ["http://a?token=1234"]',
+    ],
+)
+def test_nor_in_what_is_wrong_with_a_file(lines: str) -> None:
+    with pytest.raises(MachineFileError) as told:
+        parse_machine(f"{SHIPPED}{lines}\n", "m.toml")
+    assert "1234" not in str(told.value)
+    assert all("1234" not in finding.value for finding in told.value.errors)

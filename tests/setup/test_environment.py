@@ -201,6 +201,92 @@ def test_the_cause_told_is_the_cause(shop: Path, pip_says: str, sentence: str) -
     assert sentence in told.stderr
 
 
+def pip_that_says(shop: Path, words: str) -> None:
+    python = shop / ".venv" / "bin" / "python"
+    pip = f"#!/bin/sh\n[ $1 = -m ] && {{ printf '%s\\n' '{words}' >&2; exit 1; }}\n"
+    executable(python, f'{pip}exec "{sys.executable}" "$@"\n')
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no full device here")
+def test_a_full_disk_is_named_though_nothing_can_be_written_there(shop: Path) -> None:
+    pip_that_says(shop, "OSError: [Errno 28] No space left on device")
+    (shop / ".venv" / ".turndesk-log").symlink_to("/dev/full")
+    told = set_up(shop)
+    assert told.returncode == 2
+    assert "No room left on the disk" in told.stderr
+    assert ".turndesk-log" not in told.stderr
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no full device here")
+def test_a_disk_that_is_full_before_the_first_file_is_named(tmp_path: Path) -> None:
+    place = tmp_path / "env"
+    executable(
+        tmp_path / "bin" / "mkdir",
+        f'#!/bin/sh\nmkdir=$(command -p -v mkdir)\n"$mkdir" "$@"\nln -s /dev/full {place}/.turndesk-place\n',
+    )
+    told = tell("new_environment", TURNDESK_VENV=str(place), PATH=f"{tmp_path / 'bin'}:{os.environ['PATH']}")
+    assert told.returncode == 2
+    assert "No room left on the disk" in told.stderr
+
+
+def test_a_full_disk_is_named_where_python_does_not_say_it(shop: Path) -> None:
+    pip_that_says(shop, "Error: ensurepip returned non-zero exit status 1")
+    df = "#!/bin/sh\necho Filesystem\necho tmpfs 2048 2048 0 100% /x\n"
+    executable(shop / "bin" / "df", df)
+    told = set_up(shop, PATH=f"{shop / 'bin'}:{os.environ['PATH']}")
+    assert "No room left on the disk" in told.stderr
+
+
+def test_a_disk_without_room_for_packages_of_the_system_is_named(tmp_path: Path) -> None:
+    executable(tmp_path / "dpkg-query", "#!/bin/sh\nexit 1\n")
+    executable(tmp_path / "id", "#!/bin/sh\necho 0\n")
+    executable(tmp_path / "apt-get", "#!/bin/sh\necho 'cannot copy: No space left on device'; exit 100\n")
+    told = tell("system_packages libegl1", PATH=f"{tmp_path}:{os.environ['PATH']}")
+    assert told.returncode == 2
+    assert "Its disk is full" in told.stderr
+
+
+def test_whoever_waits_is_told_at_least_every_ten_seconds(tmp_path: Path) -> None:
+    """Two signs of life; the command ends when the third is being waited for."""
+    os.mkfifo(tmp_path / "end")
+    executable(
+        tmp_path / "sleep",
+        f'#!/bin/sh\necho $1 >>"{tmp_path}/slept"\n'
+        f'[ $(wc -l <"{tmp_path}/slept") -lt 3 ] && exit 0\n'
+        f'echo over >"{tmp_path}/end"\nexec tail -f /dev/null\n',
+    )
+    told = tell(
+        f'patiently "It works" sh -c "read word <{tmp_path}/end; echo \\$word"; echo "$said"',
+        PATH=f"{tmp_path}:{os.environ['PATH']}",
+    )
+    assert (told.returncode, told.stdout) == (0, "over\n")
+    assert told.stderr.count("It works: ") == 2
+    assert all(int(seconds) <= 10 for seconds in (tmp_path / "slept").read_text().split())
+
+
+def test_nothing_is_shown_any_more_when_the_set_up_was_ended(tmp_path: Path) -> None:
+    """The end of its output comes when nobody has it open any more."""
+    executable(tmp_path / "sleep", "#!/bin/sh\nexit 0\n")
+    script = f'. "{HERE / "environment.sh"}"; patiently "It works" kill -9 "$$"'
+    around = {"PATH": f"{tmp_path}:{os.environ['PATH']}", "ROOT": str(HERE.parents[1])}
+    with subprocess.Popen(["/bin/sh", "-euc", script], env=around, stderr=subprocess.PIPE) as told:
+        assert told.wait(60) == -9
+        assert told.stderr is not None
+        told.stderr.read()
+
+
+@pytest.mark.parametrize("status", [0, 3])
+def test_what_a_command_says_and_how_it_ends_is_kept(status: int) -> None:
+    told = tell(
+        f'patiently "It works" sh -c "echo out; echo err >&2; exit {status}" || echo "$?"; echo "$said"'
+    )
+    assert told.stdout == ("" if status == 0 else f"{status}\n") + "out\nerr\n"
+
+
+def test_a_folder_whose_name_begins_like_an_option_is_a_folder(tmp_path: Path) -> None:
+    assert tell('echo "$PYTHON_ENV"', TURNDESK_VENV="-rf").stdout == "./-rf\n"
+
+
 def test_an_environment_of_another_place_is_made_anew(shop: Path) -> None:
     place = shop / ".venv" / ".turndesk-place"
     place.write_text(f"{shop} {shop / '.venv'}", encoding="utf-8")

@@ -6,11 +6,15 @@ import errno
 import os
 import signal
 import subprocess
+import traceback
 from collections.abc import Iterator
 from pathlib import Path
 
+import psycopg
 import pytest
 
+from core.sharing import shared_git
+from core.sharing.connection_string import parsed, with_tls
 from core.sharing.git_command import GitCommand
 from core.sharing.shared_database import SharedDatabase
 from core.sharing.shared_git import SharedGit
@@ -224,6 +228,11 @@ def test_a_remote_that_refuses_is_told_in_its_own_words(tmp_path: Path) -> None:
         ("root@shop: Permission denied (publickey,password).", Cause.NO_RIGHT),
         ("fatal: detected dubious ownership in repository at '/srv/shop.git'", Cause.NO_RIGHT),
         ("error: remote unpack failed: unable to create temporary object directory", Cause.NO_RIGHT),
+        (
+            "fatal: unable to access 'https://shop/x/': server certificate verification failed. CAfile: none",
+            Cause.GIT_NOT_TRUSTED,
+        ),
+        ("fatal: Authentication failed for 'https://shop/x/'", Cause.NO_RIGHT),
         ("ssh -oBatchMode=yes: 1: ssh: not found", Cause.NO_SSH),
         ("error: cannot run ssh: No such file or directory", Cause.NO_SSH),
         ("sh: 1: git-upload-pack: not found", Cause.NO_GIT_THERE),
@@ -245,6 +254,40 @@ def test_what_ssh_and_its_server_say_is_told_by_its_cause(
     command = GitCommand(tmp_path / "copy.git", "the repository")
     found, words = cause_of(command.run, ["fetch"])
     assert (found, "@@" in words) == (cause, False)
+
+
+def test_a_token_that_git_repeats_is_not_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    said = "fatal: unable to access 'https://me:secret@shop/x/': Could not resolve host: shop"
+    (tmp_path / "git").write_text(f'#!/bin/sh\ncat >&2 <<"END"\n{said}\nEND\nexit 128\n')
+    (tmp_path / "git").chmod(0o755)
+    monkeypatch.setenv("PATH", str(tmp_path), prepend=os.pathsep)
+    cause, words = cause_of(GitCommand(tmp_path / "copy.git", "the repository").run, ["fetch"])
+    assert (cause, "https://shop/x/" in words) == (Cause.AWAY, True)
+
+
+def test_a_file_longer_than_any_of_ours_is_a_stray_in_git(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest
+) -> None:
+    with rig_of("git", tmp_path, request) as rig:
+        place, one = rig.place(1), published(1)
+        place.begin()
+        place.put([one], state(one))
+        monkeypatch.setattr(shared_git, "LONGEST", 100)
+        assert rig.place(2).look({}).fresh == ()
+
+
+def test_no_address_of_a_repository_can_be_an_option_of_git(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "git").write_text(f'#!/bin/sh\nprintf "%s\\n" "$@" >>{tmp_path}/said\n')
+    (tmp_path / "git").chmod(0o755)
+    monkeypatch.setenv("PATH", str(tmp_path), prepend=os.pathsep)
+    place = SharedGit("--upload-pack=x", tmp_path / "copy.git")
+    cause_of(place.look, {})
+    place._push()
+    words = (tmp_path / "said").read_text().splitlines()
+    for own in ("--upload-pack=x", str(tmp_path / "copy.git")):
+        assert {words[at - 1] for at, word in enumerate(words) if word == own} == {"--"}
 
 
 def test_ctrl_c_ends_git_with_all_that_it_started(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -380,15 +423,118 @@ def test_without_psycopg_one_sentence_says_so(monkeypatch: pytest.MonkeyPatch) -
 
 @pytest.mark.parametrize(
     "conninfo",
-    ["host=h password=secret dbname=d", "postgresql://lathe:secret@h:5432/d?sslpassword=secret"],
+    [
+        "host=h password=secret dbname=d",
+        "host=h password = secret dbname=d",
+        "host=h password = 'top secret' dbname=d",
+        "host=h sslpassword= secret dbname=d",
+        "postgresql://lathe:secret@h:5432/d?sslpassword=secret",
+        "postgresql://lathe@h/d?password=secret",
+        "postgresql://lathe:se/cret@h/d",
+        "host=h password=top secret dbname=d",
+        "host=h passwort=secret",
+        "host=h port=secret",
+    ],
 )
-def test_no_password_stands_in_a_sentence(conninfo: str) -> None:
-    assert "secret" not in SharedDatabase(conninfo).name
+def test_no_password_stands_in_a_sentence_or_a_crash_file(
+    conninfo: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def away(**_values: object) -> None:
+        raise psycopg.OperationalError("no answer")
+
+    monkeypatch.setattr(psycopg, "connect", away)
+    place = SharedDatabase(conninfo)
+    with pytest.raises(SharingError) as refused:
+        place.look({})
+    assert "cret" not in place.name + "".join(traceback.format_exception(refused.value))
+
+
+def test_a_database_is_named_by_what_libpq_reads() -> None:
+    name = SharedDatabase("postgresql://lathe:secret@127.0.0.1:5432/d").name
+    assert name == "the database user=lathe host=127.0.0.1 port=5432 dbname=d"
+
+
+@pytest.mark.parametrize("conninfo", ["host=h passwort=x", "host=h port=x", "postgresql://a:b/c@h/d"])
+def test_what_libpq_cannot_read_is_told_as_such(conninfo: str) -> None:
+    assert cause_of(SharedDatabase(conninfo).look, {})[0] is Cause.UNREADABLE
+
+
+@pytest.mark.parametrize(
+    ("conninfo", "mode"),
+    [
+        ("host=shop-pc", "verify-full"),
+        ("hostaddr=10.0.0.7 host=localhost", "verify-full"),
+        ("host=localhost,shop-pc", "verify-full"),
+        ("service=shop", "verify-full"),
+        ("host=shop-pc sslmode=prefer", "prefer"),
+        ("host=localhost", None),
+        ("host=/run/postgresql", None),
+        ("host=127.0.0.1,::1", None),
+        ("dbname=d", None),
+    ],
+)
+def test_a_server_elsewhere_has_to_prove_who_it_is(
+    conninfo: str, mode: str | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in ("PGHOST", "PGSSLMODE", "PGSSLROOTCERT"):
+        monkeypatch.delenv(name, raising=False)
+    values = with_tls(parsed(conninfo))
+    assert values.get("sslmode") == mode
+    assert ("sslrootcert" in values) is (mode == "verify-full")
+    assert ("TLS not verified" in SharedDatabase(conninfo).name) is (mode == "prefer")
+
+
+_AT = 'connection failed: connection to server at "10.0.0.7", port 5432 failed: '
+
+
+@pytest.mark.parametrize(
+    ("said", "cause", "why"),
+    [
+        (
+            f'{_AT}FATAL:  password authentication failed for user "u"\n{_AT}FATAL:  no pg_hba.conf entry '
+            'for host "10.0.0.7", user "u", database "d", no encryption',
+            Cause.WRONG_PASSWORD,
+            "password authentication failed",
+        ),
+        (f"{_AT}fe_sendauth: no password supplied", Cause.WRONG_PASSWORD, "no password supplied"),
+        (f"{_AT}SSL error: certificate verify failed", Cause.NOT_TRUSTED, "certificate verify failed"),
+        (
+            f'{_AT}server certificate for "shop-pc" does not match host name "10.0.0.7"',
+            Cause.NOT_TRUSTED,
+            "does not match",
+        ),
+        (f'{_AT}root certificate file "/a" does not exist\nEither', Cause.NOT_TRUSTED, "/a"),
+        (f"{_AT}server does not support SSL, but SSL was required", Cause.NO_TLS, "does not support"),
+        (
+            f'{_AT}FATAL:  no pg_hba.conf entry for host "10.0.0.7", user "u", database "d", no encryption',
+            Cause.TLS_ONLY,
+            "no encryption",
+        ),
+        (
+            f'{_AT}FATAL:  no pg_hba.conf entry for host "10.0.0.7", user "u", database "d", SSL encryption',
+            Cause.NO_RIGHT,
+            "no pg_hba.conf entry",
+        ),
+        (f'{_AT}FATAL:  database "d" does not exist', Cause.NOT_THERE, "does not exist"),
+        (f"{_AT}Connection refused\n\tIs the server running?", Cause.AWAY, "Connection refused"),
+    ],
+)
+def test_what_a_server_says_at_the_door_has_its_cause(
+    said: str, cause: Cause, why: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As libpq 17 and a server of version 15 have said it."""
+
+    def refuses(**_values: object) -> None:
+        raise psycopg.OperationalError(said)
+
+    monkeypatch.setattr(psycopg, "connect", refuses)
+    found, words = cause_of(SharedDatabase("host=10.0.0.7 dbname=d").look, {})
+    assert (found, why in words) == (cause, True)
 
 
 def test_nor_does_that_of_a_repository(tmp_path: Path) -> None:
     name = SharedGit("https://lathe:secret@shop-pc/programs.git", tmp_path).name
-    assert name == "the git repository https://lathe@shop-pc/programs.git"
+    assert name == "the git repository https://shop-pc/programs.git"
     assert (
         SharedGit("git@shop-pc:programs.git", tmp_path).name == "the git repository git@shop-pc:programs.git"
     )

@@ -9,10 +9,14 @@ import os
 import shutil
 import signal
 import socket
+import ssl
 import subprocess
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from http.client import HTTPException, InvalidURL
 from http.server import BaseHTTPRequestHandler, HTTPServer
+from itertools import count
 from pathlib import Path
 from queue import SimpleQueue
 from urllib.error import URLError
@@ -24,9 +28,10 @@ from paho.mqtt.enums import CallbackAPIVersion
 from app.shopfloor import mqtt_broker
 from app.shopfloor.announcements import HELD, Announcement, Announcer, happened
 from app.shopfloor.mqtt_broker import MqttBroker
-from app.shopfloor.network_causes import Trouble
+from app.shopfloor.network_causes import Trouble, cause_of
+from app.shopfloor.other_desks import asked
 from app.shopfloor.status_file import Status
-from app.shopfloor.web_hook import WebHook
+from app.shopfloor.web_hook import WebHook, posted
 from core.machine.shop_network_tables import AnnounceTable
 from tests.free_port import free_port
 from tests.texts import text
@@ -178,8 +183,8 @@ def test_a_web_hook_hears_in_order(posts: tuple[str, SimpleQueue[dict[str, objec
 @pytest.mark.parametrize(
     ("path", "values"),
     [
-        ("301", ["301 Moved Permanently", "https://office/hook: ", "[announce] hook"]),
-        ("307", ["307 Temporary Redirect", "https://office/hook: ", "[announce] hook"]),
+        ("301", ["301 Moved Permanently", "https://office: ", "[announce] hook"]),
+        ("307", ["307 Temporary Redirect", "https://office: ", "[announce] hook"]),
         ("404", ["404 Not Found"]),
     ],
 )
@@ -196,7 +201,7 @@ def test_what_a_web_hook_refuses_is_given_up_and_told_once(
     assert [heard.get(timeout=60)["text"] for _ in range(3)] == [f"part {n}" for n in range(3)]
     hook.close()
     ((who, why),) = [values_of(each) for each in caplog.records]
-    assert who == address + path
+    assert who == address.removesuffix("/hook")
     assert all(value in why for value in values)
 
 
@@ -213,7 +218,7 @@ def test_a_host_with_a_fault_is_asked_again_and_told_of_once(
     assert [heard.get(timeout=60)["text"] for _ in range(3)] == ["ALARM"] * 3
     hook.close()
     ((who, why),) = [values_of(each) for each in caplog.records]
-    assert who == address + path
+    assert who == address.removesuffix("/hook")
     assert all(value in why for value in values)
 
 
@@ -232,7 +237,7 @@ def test_a_web_hook_that_was_away_hears_all_of_it_in_order(caplog: pytest.LogCap
     assert [asked.get(timeout=60) for _ in range(5)] == ["first"] * 4 + ["second"]
     hook.close()
     (said,) = [values_of(each) for each in caplog.records]
-    assert said == ("http://shop/hook", text("shopfloor.refused"))
+    assert said == ("http://shop", text("shopfloor.refused"))
 
 
 def test_each_cause_is_told_once_until_somebody_was_told(caplog: pytest.LogCaptureFixture) -> None:
@@ -284,6 +289,106 @@ def test_of_more_than_a_hundred_for_a_dead_hook_the_newest_are_kept() -> None:
     hook.close()
 
 
+class Far:
+    """The other end of one connection after the other, played by ``play`` on a thread."""
+
+    def __init__(self, play: Callable[[socket.socket], object]) -> None:
+        self._play, self._listening = play, socket.create_server(("127.0.0.1", 0))
+        self.port = self._listening.getsockname()[1]
+        self.ended: SimpleQueue[None] = SimpleQueue()  # a connection
+        self._thread = threading.Thread(target=self._serve, daemon=True)
+
+    def _serve(self) -> None:
+        with suppress(OSError):
+            while True:
+                with self._listening.accept()[0] as connection, suppress(OSError):
+                    connection.recv(1000)
+                    self._play(connection)
+                self.ended.put(None)
+
+    def __enter__(self) -> Far:
+        self._thread.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._listening.shutdown(socket.SHUT_RDWR)
+        self._listening.close()
+        self._thread.join()
+
+
+def test_an_answer_that_comes_byte_by_byte_has_a_deadline_as_a_whole() -> None:
+    """Two seconds pass before each byte; a byte comes when the one before was read."""
+    times, reads = count(0.0, 2.0), threading.Semaphore(0)
+
+    def clock() -> float:
+        reads.release()
+        return next(times)
+
+    def drip(connection: socket.socket) -> None:
+        assert reads.acquire(timeout=60)  # of the connection itself
+        for byte in b"HTTP/1.1 204 No Content\r\n\r\n":
+            assert reads.acquire(timeout=60)
+            connection.sendall(bytes([byte]))
+
+    with Far(drip) as far:
+        with pytest.raises(TimeoutError):
+            posted(f"http://127.0.0.1:{far.port}/", b"{}", clock)
+        reads.release(100)
+
+
+def test_an_answer_in_time_is_taken() -> None:
+    with Far(lambda connection: connection.sendall(b"HTTP/1.1 204 No Content\r\n\r\n")) as far:
+        posted(f"http://127.0.0.1:{far.port}/", b"{}", lambda: 0.0)
+
+
+def not_trusted() -> ssl.SSLCertVerificationError:
+    error = ssl.SSLCertVerificationError(1, "[SSL: CERTIFICATE_VERIFY_FAILED] (_ssl.c:1)")
+    error.verify_message = "self-signed certificate"
+    return error
+
+
+@pytest.mark.parametrize(
+    ("answer", "scheme", "why"),
+    [
+        (b"", "http", "shopfloor.no-word"),
+        (b"\x15\x03\x01\x00\x02\x02\x46", "http", "shopfloor.tls-only"),
+        (b"HTTP/1.1 400 Bad Request\r\n\r\n", "https", "shopfloor.no-tls"),
+        (b"SSH-2.0-OpenSSH_9.2\r\n", "http", "shopfloor.no-http"),
+    ],
+)
+def test_what_a_host_answers_is_the_cause(answer: bytes, scheme: str, why: str) -> None:
+    with Far(lambda connection: connection.sendall(answer)) as far:
+        with pytest.raises((OSError, HTTPException)) as raised:
+            posted(f"{scheme}://127.0.0.1:{far.port}/", b"{}")
+        assert asked(f"{scheme}://127.0.0.1:{far.port}/").trouble == text(why)
+    assert cause_of(raised.value) == text(why)
+
+
+def test_a_bad_certificate_is_the_cause() -> None:
+    assert cause_of(URLError(not_trusted())) == text(
+        "shopfloor.bad-certificate", why="self-signed certificate"
+    )
+
+
+@pytest.mark.parametrize(
+    "address", ["https://hooks.shop/services/secret", "http://me:secret@shop:81/?t=secret"]
+)
+def test_the_log_has_no_token_of_an_address(address: str, caplog: pytest.LogCaptureFixture) -> None:
+    tried = threading.Event()
+
+    def post(address: str, _body: bytes) -> None:
+        tried.set()
+        raise InvalidURL(f"URL can't contain control characters. {address!r}")
+
+    hook = WebHook(address, 60.0, post)
+    hook.tell(Announcement("part", "part 1", READY))
+    assert tried.wait(60)
+    hook.close()
+    hook._thread.join(60)
+    assert len(caplog.records) == 1
+    assert "secret" not in caplog.text
+
+
 # --- an MQTT broker ---------------------------------------------------------------------------------
 
 
@@ -311,6 +416,9 @@ class Logged(logging.Handler):
     def emit(self, record: logging.LogRecord) -> None:
         self._said.put(values_of(record))
 
+    def empty(self) -> bool:
+        return self._said.empty()
+
     def why(self, port: int) -> str:
         """Why the broker at this port is not told; one of another test may say its last word yet."""
         while not (said := self._said.get(timeout=60))[0].endswith(f" 127.0.0.1:{port}"):
@@ -334,6 +442,25 @@ def test_a_broker_that_refuses_the_connection_is_told_so(logged: Logged) -> None
         broker = MqttBroker(table(port))
         assert logged.why(port) == text("shopfloor.refused")
         broker.close()
+
+
+@pytest.mark.parametrize(
+    ("connack", "why"),
+    [
+        (b"\x20\x02\x00\x05", "shopfloor.mqtt-not-authorized"),
+        (b"\x20\x02\x00\x04", "shopfloor.mqtt-password"),
+        (b"", "shopfloor.mqtt-no-word"),
+        (b"\x15\x03\x03\x00\x02\x02\x46", "shopfloor.mqtt-no-word"),
+    ],
+)
+def test_what_a_broker_refuses_is_the_only_cause(connack: bytes, why: str, logged: Logged) -> None:
+    with Far(lambda connection: connection.sendall(connack)) as far:
+        broker = MqttBroker(table(far.port))
+        assert logged.why(far.port) == text(why)
+        for _ in range(2):
+            far.ended.get(timeout=60)
+        broker.close()
+    assert logged.empty()
 
 
 @pytest.mark.parametrize(

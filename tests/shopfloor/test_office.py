@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import socket
+import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -23,6 +24,7 @@ from app.compose.machine_answers import check_ports
 from app.compose.machine_files import load_machine, parse_machine
 from app.compose.machine_status import conditions_of_device, device_of
 from app.compose.office import AlarmDrawing, PartPicture
+from app.compose.page_connections import DEADLINE, MOST, MOST_OF_ONE
 from app.compose.page_server import PageServer, listening_at
 from app.programs.preview import Thumbnail
 from app.screen.language import speak_in
@@ -132,6 +134,26 @@ def test_two_desks_of_one_computer_keep_their_tokens_apart() -> None:
     kept = get(page(TOKEN), QUERY_STRING=f"token={TOKEN}")[1]["Set-Cookie"].partition("=")[0]
     other = get(page("another-desk-1"), QUERY_STRING="token=another-desk-1", SERVER_PORT="8318")[1]
     assert (kept, other["Set-Cookie"].partition("=")[0]) == ("turndesk-8317", "turndesk-8318")
+
+
+def test_without_a_token_of_its_own_a_page_sets_no_cookie() -> None:
+    status, headers, _ = get(page(), QUERY_STRING="token=any;Domain=x")
+    assert status == "200 OK"
+    assert "Set-Cookie" not in headers
+
+
+@pytest.mark.parametrize("token", ["", TOKEN])
+@pytest.mark.parametrize(
+    "brought",
+    [
+        {"QUERY_STRING": "token=%ff"},
+        {"QUERY_STRING": "token=%0d%0aX:1"},
+        {"HTTP_AUTHORIZATION": "Bearer \xff"},
+        {"HTTP_COOKIE": 'turndesk-8317="\\012"'},
+    ],
+)
+def test_a_token_of_odd_bytes_is_a_bad_request(brought: dict[str, str], token: str) -> None:
+    assert get(page(token), **brought)[0].startswith("400")
 
 
 def test_a_broken_cookie_is_no_token() -> None:
@@ -293,10 +315,10 @@ def test_of_a_silent_control_nothing_else_is_said() -> None:
 
 
 @contextmanager
-def served(wsgi: StatusPage) -> Iterator[str]:
+def served(wsgi: StatusPage, clock: Callable[[], float] = time.monotonic) -> Iterator[str]:
     """A page on a real socket."""
     listening = listening_at("127.0.0.1", 0)
-    server = PageServer(wsgi, listening, lambda: None)
+    server = PageServer(wsgi, listening, lambda: None, clock)
     server.start()
     try:
         yield f"http://127.0.0.1:{listening.getsockname()[1]}/"
@@ -304,14 +326,65 @@ def served(wsgi: StatusPage) -> Iterator[str]:
         server.close()
 
 
+def connected(address: str, source: str = "127.0.0.1") -> socket.socket:
+    host = urlsplit(address)
+    return socket.create_connection((host.hostname, host.port), 60, source_address=(source, 0))
+
+
 def test_browsers_that_ask_half_a_question_keep_nobody_waiting() -> None:
-    """Forty of them; without a token, as anybody in the network could."""
+    """More than there may be, of one address; without a token, as anybody in the network could."""
     with served(page()) as address, ExitStack() as half:
-        host = urlsplit(address)
-        for _ in range(40):
-            asking = half.enter_context(socket.create_connection((host.hostname, host.port)))
-            asking.sendall(b"GET /?tok")
+        for _ in range(150):
+            half.enter_context(connected(address)).sendall(b"GET /?tok")
         assert asked(address).trouble == ""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="one loopback address only")
+def test_connections_have_a_limit_in_all() -> None:
+    with served(page()) as address, ExitStack() as half:
+        askers = [half.enter_context(connected(address, f"127.0.0.{2 + n // 10}")) for n in range(MOST + 1)]
+        assert askers[0].recv(1) == b""
+        assert asked(address).trouble == ""
+
+
+def test_connections_of_one_address_have_a_limit_and_the_oldest_ends() -> None:
+    with served(page()) as address, ExitStack() as half:
+        askers = [half.enter_context(connected(address)) for _ in range(MOST_OF_ONE + 1)]
+        assert askers[0].recv(1) == b""
+        askers[1].sendall(b"GET /status.json HTTP/1.0\r\n\r\n")
+        assert askers[1].recv(12) == b"HTTP/1.0 200"
+
+
+def test_a_request_has_a_deadline_as_a_whole() -> None:
+    """Bytes that go on coming do not put it off."""
+    now = [100.0]
+    with served(page(), lambda: now[0]) as address, connected(address) as drips:
+        drips.sendall(b"GET /?tok")
+        assert asked(address).trouble == ""
+        now[0] += DEADLINE - 1.0
+        drips.sendall(b"e")
+        assert asked(address).trouble == ""
+        now[0] += 2.0
+        assert drips.recv(1) == b""
+
+
+@pytest.mark.parametrize(
+    "request_bytes",
+    [b"GET http://[ HTTP/1.1\r\n\r\n", b"GET / HTTP/1.1\r\nContent-Length: %s\r\n\r\n" % (b"1" * 5000)],
+)
+def test_bytes_that_are_no_request_get_a_plain_refusal(
+    request_bytes: bytes, caplog: pytest.LogCaptureFixture
+) -> None:
+    with served(page()) as address, connected(address) as odd:
+        odd.sendall(request_bytes)
+        assert odd.recv(12) == b"HTTP/1.0 400"
+    assert caplog.records == []
+
+
+def test_a_request_without_end_is_refused() -> None:
+    with served(page()) as address, connected(address) as odd:
+        odd.sendall(b"GET /?" + b"a" * 20_000)
+        assert odd.recv(12) == b"HTTP/1.0 431"
 
 
 def test_browsers_that_wait_for_each_other_are_not_told_to_the_log(caplog: pytest.LogCaptureFixture) -> None:
