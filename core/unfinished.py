@@ -19,7 +19,7 @@ from pathlib import Path
 from core.file_lock import lock
 
 _ENDING = ".unfinished"
-_JOURNAL = "-journal"  # SQLite's, beside a copy of a store
+_BESIDE = ("-journal", "-wal", "-shm")  # SQLite's, of a copy of a store
 
 
 @contextmanager
@@ -60,9 +60,10 @@ def forget_killed(folder: Path) -> None:
         for leftover in folder.glob(f".*{_ENDING}"):
             if not _is_held(leftover):
                 _remove(leftover)
-        for journal in folder.glob(f".*{_ENDING}{_JOURNAL}"):
-            if not journal.with_name(journal.name.removesuffix(_JOURNAL)).exists():
-                _remove(journal)
+        for ending in _BESIDE:
+            for beside in folder.glob(f".*{_ENDING}{ending}"):
+                if not beside.with_name(beside.name.removesuffix(ending)).exists():
+                    _remove(beside)
 
 
 def _opened(path: Path) -> int:

@@ -8,18 +8,21 @@ from __future__ import annotations
 
 import argparse
 import getpass
+import os
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from contextlib import AbstractContextManager
 from typing import TYPE_CHECKING
 
 from app.desk.command_errors import CommandError
 from core.access.access_table import Act, Level, level_for
+from core.coded_error import error_code
 
 if TYPE_CHECKING:
     from core.store.people import People, PersonRow
     from core.store.store import Store
+    from core.store.store_errors import StoreError
 
 COMMAND_LINE = "command line"  # in the history, where there are no levels and nobody is named
 _WRONG = "wrong PINs"  # the setting that the desk keeps too
@@ -66,16 +69,20 @@ def _needs(act: Act) -> str:
 
 
 def _remedy(people: People, needed: Level) -> str:
-    able = [row.name for row in people.rows if row.level >= needed]
+    able = [row.name for row in people.rows if row.level >= needed and row.has_pin]
     if not able:
-        return "nobody has it any more, 'turndesk access reset' at the machine switches levels off"
+        return "nobody with a PIN has it, 'turndesk access reset' at the machine switches levels off"
     return f"give --as one of {', '.join(able)}"
 
 
 def _demand_pin(store: Store, row: PersonRow) -> None:
     """Raises CommandError for a wrong one, which is logged, and lets the next wait."""
-    from core.access.pins import Hashed, is_pin, wait_after
+    from core.access.pins import Hashed, hashed, is_outdated, is_pin, wait_after
+    from core.store.people import keep_person
 
+    if not row.has_pin:
+        remedy = _remedy(store.people(), Level.SERVICE)
+        raise CommandError(f"no PIN is stored for {row.name}; {remedy}", "no-pin")
     kept = store.setting(_WRONG)
     wrong = kept if isinstance(kept, int) else 0
     if pause := wait_after(wrong):
@@ -83,7 +90,11 @@ def _demand_pin(store: Store, row: PersonRow) -> None:
         time.sleep(pause)
     pin = asked_pin(f"PIN of {row.name}: ")
     store.set_setting(_WRONG, wrong + 1).result()  # before it is looked at: who ends us then is counted too
-    if is_pin(pin, Hashed(row.salt, row.hash)):
+    stored = Hashed(row.salt, row.hash)
+    if is_pin(pin, stored):
+        if is_outdated(stored):
+            renewed = row._replace(**hashed(pin)._asdict())
+            store.write(lambda c: keep_person(c, renewed)).result()
         store.set_setting(_WRONG, None).result()
         return
     told = f"wrong PIN for {row.name}, {wrong + 1} in a row, on the command line"
@@ -108,8 +119,8 @@ def who_may(opened: Opened, args: argparse.Namespace, *acts: Act) -> str:
     """Who does what needs no store of its own; empty where there are no levels and nobody is named.
 
     Raises CommandError as ``who_changes`` does. It can be done beside a desk that runs where there are no
-    levels: only a PIN has to be written down. A store that cannot be read has no levels that anybody could
-    ask for, or damage would be a lock.
+    levels: only a PIN has to be written down. Nobody may do it where the store cannot be read, for its levels
+    are unknown; only a restore is allowed then, after a service reset at the machine's own keyboard.
     """
     from app.desk.data_folder import data_folder
     from core.store.store import Store
@@ -118,12 +129,41 @@ def who_may(opened: Opened, args: argparse.Namespace, *acts: Act) -> str:
     try:
         with Store.open(data_folder(), read_only=True) as store:
             on = store.people().on
-    except StoreError:
-        return args.as_name or ""
+    except StoreError as error:
+        if error_code(error) != "older-version":
+            return _by_service_reset(error, acts)
+        on = True  # opening it to write brings it up to date
     if not on and not args.as_name:
         return ""
     with opened() as store:
         return who_changes(store, args, *acts)
+
+
+RESET = "RESET"
+
+
+def _by_service_reset(error: StoreError, acts: Collection[Act]) -> str:
+    """The name for the log. Raises CommandError unless this is a restore that is confirmed at the machine."""
+    if Act.RESTORE not in acts:
+        raise CommandError(f"who may change this cannot be read: {error}", error_code(error)) from error
+    sys.stderr.write(f"turndesk: {error}\n")
+    demand_own_keyboard(
+        "The people and their PINs cannot be read. A restore takes all of them away, which is logged. "
+        f"Type {RESET} to do it: "
+    )
+    return f"{getpass.getuser()} (service reset at the keyboard)"
+
+
+def demand_own_keyboard(question: str) -> None:
+    """Raises CommandError unless somebody sits at a terminal of this machine and confirms the question."""
+    if not sys.stdin.isatty() or os.environ.get("SSH_CONNECTION"):
+        raise CommandError(
+            "the service reset is typed at the machine's own keyboard, in a terminal there", "not-a-terminal"
+        )
+    sys.stdout.write(question)
+    sys.stdout.flush()
+    if sys.stdin.readline().strip() != RESET:
+        raise CommandError("nothing was changed", "not-confirmed")
 
 
 def note_change(opened: Opened, who: str, text: str) -> None:

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import contextlib
+import io
 import logging
 import logging.handlers
 import queue
 import sys
 import time
+from pathlib import Path
 
 from app.desk.data_folder import data_folder
+from core.private_files import NEW_FILE
 
 _SIZE = 1_000_000  # bytes, three files of it
 _AGAIN = 2.0  # s between two tries to write again
@@ -71,6 +74,10 @@ class _File(logging.handlers.RotatingFileHandler):
     """A file whose disk may fail: that is told, and no traceback goes to the console."""
 
     trouble = ""
+
+    def _open(self) -> io.TextIOWrapper:
+        Path(self.baseFilename).touch(NEW_FILE)
+        return super()._open()
 
     def emit(self, record: logging.LogRecord) -> None:
         """Write it; one that can be written again ends the trouble."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import threading
 from collections import deque
 from collections.abc import Callable, Collection, Mapping
@@ -27,6 +28,7 @@ from core.store.store_file import FILE_NAME, has_store
 from core.store.store_rows import EventRow, Kind, RunRow, ToolRow, VersionRow
 from core.store.store_writer import Backlog
 
+_log = logging.getLogger(__name__)
 HELD = 10_000  # events that are kept back while there is no store
 UNDER_WAY = "under_way"  # setting: what a power cut would leave interrupted
 AGAIN = 5.0  # s between two tries to open a store
@@ -134,6 +136,7 @@ class Journal(Persistence):
         rows = self._rows_of_other() if store is None else None
         if rows is not None:
             book.show(rows)
+        book.unread = store is None and rows is None and has_store(self._folder)
         self._know(book, store)
         return book
 
@@ -216,12 +219,18 @@ class Journal(Persistence):
             self._post(lambda store: store.log_event("change", text, who=who or now))
 
     def note_access(self, text: str, who: str) -> None:
-        """Post a line of the log."""
+        """Post a line of the log; without a store it goes to the log of failures."""
+        if self._store is None:
+            _log.warning("access: %s (%s)", text, who)
         self._post(lambda store: store.log_event("access", text, who=who))
 
     def people(self) -> People:
-        """Who works at the machine. Raises StoreError while no store is open."""
-        return self.opened().people()
+        """Who works at the machine, also by a store that another process writes. Raises StoreError."""
+        store = self._store
+        if store is not None:
+            return store.people()
+        with Store.open(self._folder, read_only=True) as other:
+            return other.people()
 
     def keep_person(self, row: PersonRow) -> None:
         """Back when it is on the disk. Raises StoreError."""

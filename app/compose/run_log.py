@@ -13,6 +13,7 @@ from typing import NamedTuple, TextIO
 from app.desk.command_errors import CommandError
 from app.desk.data_folder import data_folder
 from core.executor.snapshot import Event
+from core.private_files import NEW_FILE
 
 MOST = 500  # files of runs and failures
 MOST_BYTES = 64_000_000  # of them together
@@ -44,7 +45,8 @@ class EventLog:
         path = folder / f"{stamp}-{Path(program).stem}.jsonl"
         try:
             folder.mkdir(parents=True, exist_ok=True)
-            file = path.open("x", encoding="utf-8")
+            path.touch(NEW_FILE, exist_ok=False)
+            file = path.open("w", encoding="utf-8")
         except OSError as error:
             raise CommandError(
                 f"{path}: the event log cannot be written: {error.strerror}", "cannot-write"

@@ -32,7 +32,7 @@ from app.desk.command_errors import CommandError
 from app.desk.data_folder import data_folder
 from core.coded_error import error_code
 from core.file_placing import make_folder, put_in_place, write_in_place
-from core.store import backup
+from core.store import backup, people
 from core.store.store import Store
 from core.store.store_errors import StoreError
 from core.store.store_file import FILE_NAME
@@ -76,13 +76,14 @@ def save_setup(target: Path, machine_file: str | None) -> SetupTold:
 
 
 def _copy_of_store(folder: Path, beside: Path) -> Path:
-    """Whole, and without the interrupted job: that is a matter of one machine."""
+    """Whole, and without the interrupted job and the people: those are a matter of one machine."""
     home = beside / "home"
     home.mkdir()
     try:
         backup.backup(folder, home / FILE_NAME)
         with Store.open(home) as store:
             store.set_setting(UNDER_WAY, None).result()
+            store.write(people.remove_all).result()
         backup.backup(home, beside / STORE)
     except StoreError as error:
         raise CommandError(str(error), error_code(error)) from error

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import partial
 
@@ -14,7 +15,7 @@ from app.desk.latest import Latest
 from app.desk.persistence import Persistence
 from app.desk.translation import data, tr
 from core.access.access_table import Act, Level, level_for
-from core.access.pins import Hashed, WrongPins, is_pin
+from core.access.pins import Hashed, WrongPins, hashed, is_outdated, is_pin
 from core.executor.snapshot import Snapshot
 from core.store.people import People, PersonRow
 from core.store.store_errors import StoreError
@@ -43,12 +44,18 @@ class Access:
     pending: str = ""  # a service reset that is under way, for the header
     reset_look: Callable[[Snapshot], None] = lambda _snapshot: None  # of that reset
     _unread: float | None = None  # when people were tried last, where they could not be read
+    _lifted: bool = False  # whether a service reset has ended levels that cannot be read
     _used: float = 0.0
     _warned: bool = False
 
     def __post_init__(self) -> None:
         self.reload()
         self.persistence.who = lambda: self.who if self.people.on else ""
+
+    @property
+    def is_unread(self) -> bool:
+        """Whether the people could not be read, so that nobody knows who they are."""
+        return self._unread is not None
 
     # --- who and what --------------------------------------------------------------------------------
 
@@ -84,12 +91,24 @@ class Access:
             self.say(
                 tr("TOO MANY WRONG PINS: THE NEXT IS TAKEN IN {seconds} S").format(seconds=f"{left:.0f}")
             )
+        elif not row.has_pin:
+            self.say(tr("{name} HAS NO PIN: SERVICE LEVEL ENTERS ONE").format(name=data(row.name)))
         elif not self.worker.busy:
-            kept = Hashed(row.salt, row.hash)
-            self.worker.queue(lambda: is_pin(pin, kept), partial(self._tried, row), self.say)
+            self.say(tr("CHECKING THE PIN OF {name}").format(name=data(row.name)))
+            self.worker.queue(partial(self._try, row, pin), partial(self._tried, row), self.say)
+
+    def _try(self, row: PersonRow, pin: str) -> bool:
+        """On the worker: whether it is the PIN. One that was stored at a lower cost is stored again."""
+        kept = Hashed(row.salt, row.hash)
+        right = is_pin(pin, kept)
+        if right and is_outdated(kept):
+            with suppress(StoreError):  # the next time that a PIN is entered it is tried again
+                self.persistence.keep_person(PersonRow(row.name, row.level, *hashed(pin)))
+        return right
 
     def _tried(self, row: PersonRow, right: bool) -> None:
         if right:
+            self.reload()  # a hash may be new
             self.wrong.right()
             self.name, self.level = row.name, Level(row.level)
             self.used()
@@ -150,6 +169,8 @@ class Access:
             minutes, wrong = self.persistence.setting(_MINUTES), self.persistence.setting(_WRONG)
         except StoreError:
             self._unread = self.clock()
+            if not self._lifted:
+                self.people = self.people._replace(damaged=True)  # unknown: the strictest level is in force
             return  # the desk says by itself that nothing can be read
         self._unread = None
         self.minutes = minutes if isinstance(minutes, int) and minutes in MINUTES else _USUAL
@@ -158,6 +179,11 @@ class Access:
         row = self.people.named(self.name)
         if self.name and (row is None or row.level < self.level):
             self.sign_out()
+
+    def lift(self) -> None:
+        """End the levels after a service reset; also levels that cannot be read, until TurnDesk ends."""
+        self._lifted, self.people = True, People()
+        self.reload()
 
     def note(self, text: str) -> None:
         """A line of the log, with the name of whoever is signed in."""

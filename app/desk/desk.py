@@ -469,7 +469,7 @@ class Desk:
         """Whether the control may be left; where something would be lost by it Y does ``close``."""
         waiting = self.waiting()
         if waiting:
-            words = tr("NOT KEPT, AND LOST BY CLOSING: {what}; MAKE ROOM, OR PRESS Y TO CLOSE, N TO STAY")
+            words = tr("NOT KEPT, AND LOST BY CLOSING: {what}; PRESS Y TO CLOSE, N TO STAY")
             self.ask(words.format(what=waiting), close)
         return not waiting
 

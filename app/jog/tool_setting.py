@@ -130,7 +130,7 @@ class ToolSetting:
             return self.history.last_in_words
         mode, name, row = self.history.mode, TOUCHES.get(self.asked, self.asked), self.row
         touched, title = self.asked in TOUCHES, heading(name, mode)
-        was = shown_value(name, getattr(row, name), mode) if row else not_set()
+        was = shown_value(name, getattr(row, name), mode) if row else not_set(unread=self.book.unread)
         try:
             value = self.touching.place(self.text, mode) if touched else value_typed(name, self.text, mode)
             ends = _wear_that_ends(row, f"wear_{name}", mode) if touched else ""

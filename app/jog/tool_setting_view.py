@@ -96,7 +96,9 @@ class ToolPanel(Panel):
         painter.write(QRectF(room.x(), room.y(), room.width(), 2.0 * u), self.tip_words, 1.5, "soft")
         high = (room.height() - 2.0 * u) / 2
         if self._tip is None:
-            painter.write(room.adjusted(0, 2 * u, 0, 0), not_set(), 2.8, "soft")
+            painter.write(
+                room.adjusted(0, 2 * u, 0, 0), not_set(unread=self._model.tool.book.unread), 2.8, "soft"
+            )
             return
         x, z = self._tip
         figures = (

@@ -14,7 +14,7 @@ from app.desk.sheet import edited, refused
 from app.desk.translation import tr
 from app.offsets.offset_history import LETTERS, refusal
 from app.offsets.offset_table import OffsetTable
-from app.offsets.offset_values import cell_text, out_of_range, signed_zero_offset
+from app.offsets.offset_values import UNKNOWN, cell_text, out_of_range, signed_zero_offset
 from core.executor.snapshot import Snapshot, State
 from core.store.offset_fields import Field, Sort
 from core.store.store_rows import FIELDS, Row, Value
@@ -65,8 +65,10 @@ class CellTable(OffsetTable):
         return FIELDS[self.kind][name]
 
     def value_at(self, number: int, name: str) -> Value:
-        """A cell as it is saved; that of a row that was never set."""
+        """A cell as it is saved; that of a row that was never set, or cannot be read."""
         row = self.book.of(self.kind).get(number)
+        if self.book.unread:
+            return UNKNOWN
         empty: Value = "" if self.field_of(name).sort is Sort.TEXT else 0.0
         return empty if row is None else getattr(row, name)
 

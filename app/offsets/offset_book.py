@@ -77,6 +77,7 @@ class OffsetBook:
     presets: dict[int, PresetRow] = field(default_factory=dict)
     preset: int = 0  # the one in force on a mill; 0: that of the machine file
     access: Access = field(default_factory=Access)  # who changes, and whether he may
+    unread: bool = False  # whether there are offsets that cannot be read
     at: int = 1  # the tool that the pages of tools stand at
     changes: int = 0  # how many were saved
     _saving: Future[Any] | None = None
@@ -218,7 +219,7 @@ class OffsetBook:
             self.changes += 1
         if rows is not None:
             self.show(rows)
-        self.store = store
+        self.store, self.unread = store, self.unread and store is None and rows is None
         self.locked = "" if store is not None else f"OFFSETS CANNOT BE KEPT: {trouble}"
         return self._read_or_why()
 

@@ -47,9 +47,12 @@ class Mode:
         return "mm" if self.metric else "in"
 
 
-def not_set() -> str:
-    """What stands for an offset that nobody has entered."""
-    return tr("not set")
+UNKNOWN = "?"  # in the place of a figure that could not be read
+
+
+def not_set(*, unread: bool = False) -> str:
+    """Return the word for an offset without values: it was never entered, or it could not be read."""
+    return tr("cannot be read") if unread else tr("not set")
 
 
 def signed(mm: float, metric: bool) -> str:

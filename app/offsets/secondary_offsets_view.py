@@ -12,7 +12,7 @@ from app.desk.formats import length
 from app.desk.machine_status import MachineStatus
 from app.desk.program_loading import Loaded
 from app.desk.translation import tr
-from app.offsets.offset_values import Mode, signed
+from app.offsets.offset_values import UNKNOWN, Mode, signed
 from app.offsets.offsets_view import OffsetPage
 from app.offsets.secondary_offsets import SecondaryOffsets
 from app.screen import page_table
@@ -41,6 +41,7 @@ class SecondaryTable(Panel):
     _number = Shown(0)
     _marked: Shown[frozenset[int]] = Shown(frozenset())
     _mode = Shown(Mode())
+    unread = Shown(False)  # whether there are offsets that cannot be read
 
     def __init__(self, look: Look, choose: Callable[[int], None], parent: QWidget) -> None:
         super().__init__(look, parent)
@@ -110,7 +111,8 @@ class SecondaryTable(Panel):
             ("R:", length(r, metric), _Z, 1.0),
         )
         u = self.look.u
-        for letter, figure, left, right in cells:
+        for letter, value, left, right in cells:
+            figure = UNKNOWN if self.unread else value
             at = QRectF(box.x() + left * wide, box.y(), (right - left) * wide - 1.2 * u, box.height())
             self._cell(painter, at, letter, figure, size, bold)
 
@@ -160,4 +162,5 @@ class SecondaryOffsetsPage(OffsetPage):
         super().refresh(snapshot, status, loaded)
         model = self.model
         marked = {change.number for change in model.history.last}
+        self.table.unread = model.book.unread
         self.table.show_offsets(model.book.secondary, model.number, marked, model.mode)

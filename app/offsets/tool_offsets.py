@@ -81,7 +81,9 @@ class ToolOffsets(ToolEntry):
     @property
     def value_before(self) -> str:
         """The cell as it is, without what is typed."""
-        return self.cell(self.number, self.name) or (not_set() if self.tool is None else "")
+        return self.cell(self.number, self.name) or (
+            not_set(unread=self.book.unread) if self.tool is None else ""
+        )
 
     @property
     def foot(self) -> str:

@@ -133,7 +133,9 @@ class ToolTable(Panel):
             self.place(spot, partial(self.choose, number, at))
         if unset and number != model.fields.new.number:
             empty = QRectF(columns["x"][0] + u, row.y(), 14 * u, row.height())
-            painter.write(empty, not_set(), 1.9 * self._scale(row), "soft", bold=False)
+            painter.write(
+                empty, not_set(unread=model.book.unread), 1.9 * self._scale(row), "soft", bold=False
+            )
 
     def _scale(self, row: QRectF) -> float:
         """Of the letters, by the height of the row."""

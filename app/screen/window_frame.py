@@ -374,7 +374,9 @@ class Frame(QWidget):
             rows.append(offered_job)
         if desk.not_kept():
             held = desk.waiting()
-            waits = tr("IN MEMORY UNTIL THE STORE CAN BE WRITTEN: {what}").format(what=held) if held else ""
+            waits = (
+                tr("ONLY IN MEMORY, AND LOST IF TURNDESK ENDS NOW: {what}").format(what=held) if held else ""
+            )
             rows.append(NoticeRow(tr("NOT KEPT: {why}").format(why=desk.not_kept()), waits))
         return tuple(rows)
 

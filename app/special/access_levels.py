@@ -294,10 +294,14 @@ class AccessLevels(SpecialFunction):
         self.desk.ask(question, self.service_reset.begin)
 
     def _reset_now(self) -> None:
-        said = tr("ALL PINS ARE TAKEN AWAY: LEVELS ARE OFF")
+        """Also where no store can be read: until TurnDesk ends its levels are off then."""
+
+        def remove() -> None:
+            if not self.access.is_unread:
+                self.persistence.remove_people()
 
         def done(_none: None) -> None:
-            self.access.reload()
-            self.desk.done(said)
+            self.access.lift()
+            self.desk.done(tr("ALL PINS ARE TAKEN AWAY: LEVELS ARE OFF"))
 
-        self.access.worker.queue(self.persistence.remove_people, done, self.desk.refuse)
+        self.access.worker.queue(remove, done, self.desk.refuse)

@@ -199,13 +199,9 @@ class BackupAndRestore(SpecialFunction):
         self.busy = ""
         self.desk.restoring = False
         where = kept.name if kept else "—"
-        before, who = self.desk.access.people.on, self.desk.access.who
         self.persistence.note_change(f"restored; what was there before is {where}")  # by whom is known still
         self.restored()
         said = tr("RESTORED; WHAT WAS THERE BEFORE IS KEPT AS {name}").format(name=where)
-        if before and not self.desk.access.people.on:
-            self.persistence.note_access("levels are off: nobody is entered in what was restored", who)
-            said = f"{said}; {tr('NOBODY IS ENTERED IN IT: LEVELS ARE OFF')}"
         self.desk.done(said)
         self.look()
 

@@ -1,6 +1,7 @@
-"""PINs: never kept as they are, and slower with every wrong one.
+"""PINs: stored only as slow hashes, and slower with every wrong one.
 
-Kept is scrypt (RFC 7914) of the PIN with a salt of its own: N 2¹⁴, r 8, p 1, some 50 ms and 16 MiB.
+TurnDesk stores scrypt (RFC 7914) of the PIN with its own salt. One try takes at least 0.5 s and 64 MiB, so
+that all PINs of four digits take more than an hour, also for a reader of the file.
 """
 
 from __future__ import annotations
@@ -15,7 +16,19 @@ from core.coded_error import CodedError
 
 SHORTEST, LONGEST = 4, 12
 _SALT, _LENGTH = 16, 32  # bytes
-_N, _R, _P = 2**14, 8, 1
+_MOST_MEMORY = 2**28  # bytes
+
+
+class Cost(NamedTuple):
+    """The parameters of scrypt: the base-2 logarithm of N, r and p, each one byte in front of the hash."""
+
+    log2_n: int
+    r: int
+    p: int
+
+
+COST = Cost(16, 8, 8)  # of new hashes
+_FIRST_COST = Cost(14, 8, 1)  # of hashes without these bytes, from older versions
 
 
 class PinError(CodedError):
@@ -40,14 +53,34 @@ def check_pin(pin: str) -> None:
 
 
 def hashed(pin: str, salt: bytes | None = None) -> Hashed:
-    """The PIN as it is kept, with a new salt where none is given. Takes its time: on a worker."""
+    """Hash the PIN at today's cost, with a new salt where none is given. Takes its time: on a worker."""
     salt = salt if salt is not None else secrets.token_bytes(_SALT)
-    return Hashed(salt, hashlib.scrypt(pin.encode(), salt=salt, n=_N, r=_R, p=_P, dklen=_LENGTH))
+    return Hashed(salt, bytes(COST) + _scrypt(pin, salt, COST))
 
 
 def is_pin(pin: str, kept: Hashed) -> bool:
-    """Whether this is the PIN. Takes its time: on a worker."""
-    return hmac.compare_digest(hashed(pin, kept.salt).hash, kept.hash)
+    """Return whether this is the PIN; an empty hash has none. Takes its time: on a worker."""
+    cost = _cost_of(kept)
+    digest = kept.hash[-_LENGTH:]
+    return cost is not None and hmac.compare_digest(_scrypt(pin, kept.salt, cost), digest)
+
+
+def is_outdated(kept: Hashed) -> bool:
+    """Return whether the hash was made at another cost than today's."""
+    return _cost_of(kept) != COST
+
+
+def _cost_of(kept: Hashed) -> Cost | None:
+    head = kept.hash[:-_LENGTH]
+    if len(kept.hash) == _LENGTH:
+        return _FIRST_COST
+    return Cost(*head) if len(head) == len(COST) else None
+
+
+def _scrypt(pin: str, salt: bytes, cost: Cost) -> bytes:
+    return hashlib.scrypt(
+        pin.encode(), salt=salt, n=1 << cost.log2_n, r=cost.r, p=cost.p, dklen=_LENGTH, maxmem=_MOST_MEMORY
+    )
 
 
 FREE = 2  # wrong ones after which the next is taken at once

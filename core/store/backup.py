@@ -7,13 +7,15 @@ import sqlite3
 from collections.abc import Callable
 from contextlib import closing, suppress
 from datetime import UTC, datetime
+from functools import partial
 from pathlib import Path
 
 from core.file_placing import put_in_place
-from core.store import damaged_rows, database, program_records, row_sums
+from core.store import damaged_rows, database, people, program_records, row_sums
 from core.store.database import WriterLock, make_folder
+from core.store.people import PersonRow
 from core.store.store_errors import Cause, StoreError, cause_of, said, why
-from core.store.store_file import FILE_NAME, has_store
+from core.store.store_file import FILE_NAME, has_store, real_path
 from core.unfinished import unfinished_file
 
 
@@ -60,12 +62,14 @@ def _found(connection: sqlite3.Connection) -> tuple[str, ...]:
 def backup(folder: Path, target: Path) -> None:
     """Copies the store of ``folder`` as it is at this moment, also while it is being written.
 
+    The copy has names and levels of the people, but no PINs: whoever has it could try all PINs undisturbed.
     Raises StoreError when there is no good store, or ``target`` is a file that is no backup of ours.
     """
     path = folder / FILE_NAME
     if not has_store(folder):
         raise StoreError(f"there is no store in {folder} yet, so there is nothing to back up", "no-store")
     if _is_there(target):
+        database.check_kind(target)
         if target.samefile(path):
             raise StoreError(
                 f"{target} is the store itself; name another file for the backup", "store-itself"
@@ -76,13 +80,15 @@ def backup(folder: Path, target: Path) -> None:
         raise StoreError(
             f"{path}: {found[0]}; a backup of it would be no use. Restore an older backup", "damaged"
         )
-    _copy(path, target)
+    _copy(path, target, people.forget_pins)
 
 
 def restore(folder: Path, source: Path) -> Path | None:
     """Puts a backup in the store's place; answers where the replaced store is kept, None: there was none.
 
-    The backup is checked through first. Raises StoreError when it is no good or the store is in use.
+    The backup is checked through first. People and PINs of this machine stay. A machine without a store gets
+    the people of the backup. A store that cannot be read leaves nobody: ask for a service reset before.
+    Raises StoreError when it is no good or the store is in use.
     """
     found = problems(source)
     if found:
@@ -93,18 +99,39 @@ def restore(folder: Path, source: Path) -> Path | None:
     make_folder(folder)
     path = folder / FILE_NAME
     with closing(WriterLock(folder)):
-        if path.exists() and path.samefile(source):
+        there = has_store(folder)
+        if there:
+            database.check_kind(path)
+        if there and path.samefile(source):
             raise StoreError(f"{source} is the store itself; name a backup", "store-itself")
-        kept = _keep(path) if path.exists() else None
+        here = _people_of(path) if there else None
+        kept = _keep(path) if there else None
         for leftover in database.companions(path):
             leftover.unlink(missing_ok=True)
-        _copy(source, path)
+        _copy(source, real_path(path), partial(_put_people, here))
         return kept
+
+
+def _people_of(path: Path) -> tuple[PersonRow, ...]:
+    """Return the people of the store that is about to be replaced; none where they cannot be read."""
+    try:
+        database.check_header(path)
+        with closing(database.connect(path, read_only=True)) as connection:
+            return people.people(connection).rows
+    except (StoreError, sqlite3.Error):
+        return ()
+
+
+def _put_people(rows: tuple[PersonRow, ...] | None, copy: sqlite3.Connection) -> None:
+    """None: there was no store, and the copy has the people of the backup."""
+    if rows or (rows is not None and row_sums.columns(copy, "people")):
+        database.migrate(copy, database.migrations())
+        people.replace_all(copy, rows)
 
 
 def _is_there(target: Path) -> bool:
     try:
-        return target.exists()
+        return target.exists() or target.is_symlink()
     except OSError as error:  # in a folder that this user may not look into
         raise _unwritable(target, error) from error
 
@@ -139,16 +166,20 @@ def _empty_log(path: Path) -> None:
         )
 
 
-def _copy(source: Path, target: Path) -> None:
-    """A whole copy by SQLite's own means; ``target`` is the old file or the new one, never a mixture."""
+def _copy(source: Path, target: Path, change: Callable[[sqlite3.Connection], None]) -> None:
+    """A whole copy by SQLite's own means; ``target`` is the old file or the new one, never a mixture.
+
+    ``change`` changes the copy before it gets its name.
+    """
     try:
         with unfinished_file(target) as unfinished:
             with (
                 closing(database.connect(source, read_only=True)) as reading,
-                closing(sqlite3.connect(unfinished)) as writing,
+                closing(sqlite3.connect(unfinished, isolation_level=None)) as writing,
             ):
                 reading.backup(writing)
                 writing.execute("PRAGMA journal_mode = DELETE")
+                change(writing)
             put_in_place(unfinished, target)
     except (OSError, sqlite3.Error) as error:
         raise _unwritable(target, error) from error

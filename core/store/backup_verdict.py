@@ -22,7 +22,6 @@ _NAMES = {
     "part_counts": "part counts",
     "settings": "settings",
     "jobs": "jobs",
-    "people": "people",
 }
 _SUMS = "SELECT tbl, key, sha256 FROM row_sums"
 _NEWEST = (

@@ -96,8 +96,7 @@ def damaged_histories(connection: sqlite3.Connection) -> tuple[str, ...]:
     """The same of what grows for years, and of the tables as they were made: ``verify`` asks for it."""
     tables = () if row_sums.schema_is_whole(connection) else (TABLES_CHANGED,)
     return tables + tuple(
-        f"{named(table, key)} is not as it was saved, and is not used"
-        for table, key in _broken(connection, HISTORIES)
+        f"{named(table, key)} is not as it was saved" for table, key in _broken(connection, HISTORIES)
     )
 
 

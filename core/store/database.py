@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import re
 import sqlite3
+import stat
 import time
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack, closing, suppress
@@ -12,12 +13,14 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 
+from core import file_placing
 from core.file_lock import is_locked, lock, mark_locked
 from core.file_placing import put_in_place, write_in_place
+from core.private_files import NEW_FILE, restrict, restrict_folder
 from core.store import row_sums
 from core.store.log_damage import lost_changes
 from core.store.store_errors import Cause, StoreError, cause_of, why
-from core.store.store_file import FILE_NAME, has_store
+from core.store.store_file import FILE_NAME, has_store, real_path
 from core.unfinished import forget_killed, unfinished_file
 
 APPLICATION_ID = 0x5475724E  # "TurN": tells a store of ours from any other SQLite file
@@ -27,6 +30,7 @@ _BUSY_SECONDS = 5.0
 _LOCK = "turndesk.lock"
 _TRIES, _BETWEEN = 10, 0.01  # tries of a writer for the lock, s between two
 _WRITTEN_HERE = set[Path]()  # folders whose store this process writes
+_PRIVATE = ("logs", "backups")  # folders within the store's that only its owner may read
 _NO_ROOM = frozenset({Cause.FULL, Cause.FORBIDDEN})
 
 
@@ -47,6 +51,7 @@ def check_header(path: Path) -> None:
     """
     if path.name == FILE_NAME and path.parent.resolve() in _WRITTEN_HERE:
         return
+    check_kind(path)
     try:
         with path.open("rb") as file:
             header = file.read(100)
@@ -61,6 +66,24 @@ def check_header(path: Path) -> None:
         raise StoreError(
             f"{path} is a database of another program; it is left as it is. Name another file",
             "foreign-database",
+        )
+
+
+def check_kind(path: Path) -> None:
+    """Raises StoreError unless ``path`` is a file or a link to one; a pipe is not opened, for that waits."""
+    try:
+        mode = path.stat().st_mode
+    except OSError as error:
+        if not (isinstance(error, FileNotFoundError) and path.is_symlink()):
+            raise why(path, error) from error
+        raise StoreError(
+            f"{path} is a link to {path.readlink()}, which is not there; mount its disk, then try again",
+            "link-without-target",
+        ) from error
+    if not stat.S_ISREG(mode):
+        raise StoreError(
+            f"{path} is a folder, a pipe or a device, not a file; it is left as it is. Move it away",
+            "not-a-file",
         )
 
 
@@ -220,6 +243,7 @@ def create(path: Path) -> None:
     try:
         for leftover in (unfinished, *companions(unfinished)):
             leftover.unlink(missing_ok=True)
+        unfinished.touch(NEW_FILE)
         with closing(sqlite3.connect(unfinished, isolation_level=None)) as connection:
             configured(connection)
             # Nobody sees this file before it is whole and on the disk, so no step of its own has to be.
@@ -241,7 +265,8 @@ def empty() -> sqlite3.Connection:
 
 
 def companions(path: Path) -> tuple[Path, Path]:
-    """SQLite's write-ahead log and its index beside a database."""
+    """SQLite's write-ahead log and its index beside a database, or beside the one that a link leads to."""
+    path = real_path(path)
     return path.with_name(path.name + "-wal"), path.with_name(path.name + "-shm")
 
 
@@ -258,7 +283,7 @@ class WriterLock:
     def __init__(self, folder: Path, pause: Callable[[float], object] = time.sleep) -> None:
         self._path = folder / _LOCK
         try:
-            self._file = os.open(self._path, os.O_RDWR | os.O_CREAT, 0o644)
+            self._file = os.open(self._path, os.O_RDWR | os.O_CREAT, NEW_FILE)
         except OSError as error:
             raise why(self._path, error) from error
         try:
@@ -403,6 +428,7 @@ def _put_damaged_log_aside(path: Path) -> tuple[str, ...]:
     kept = path.with_name(f"{path.stem}-damaged-log-{datetime.now(UTC):%Y%m%dT%H%M%SZ}")
     try:
         write_in_place(kept, log.read_bytes())
+        restrict(kept)
     except OSError as error:
         raise why(kept, error) from error
     with closing(connect(path, read_only=False)) as writer:
@@ -433,9 +459,12 @@ def _changes(count: int) -> str:
 
 
 def make_folder(folder: Path) -> None:
-    """The store's folder. Raises StoreError where it cannot be made."""
+    """Make the store's folder on the disk; close it, its logs and its backups to other users.
+
+    Raises StoreError where it cannot be made.
+    """
     try:
-        folder.mkdir(parents=True, exist_ok=True)
+        file_placing.make_folder(folder)
     except OSError as error:
         if cause_of(folder, error) is Cause.FULL:
             raise why(folder, error) from error
@@ -443,6 +472,8 @@ def make_folder(folder: Path) -> None:
             f"the folder {folder} cannot be made ({error.strerror}); set TURNDESK_HOME to a folder of yours",
             "cannot-make-folder",
         ) from error
+    for each in (folder, *(folder / name for name in _PRIVATE)):
+        restrict_folder(each)
 
 
 def _refuse_lost_file(path: Path) -> None:

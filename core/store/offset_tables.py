@@ -264,7 +264,7 @@ def apply(
 ) -> tuple[Change, ...]:
     """Writes offsets and their history as one step; answers what it is in the history."""
     table, log = _TABLES[kind], _TABLES[kind].log
-    step, at, columns = _next_step(connection, log), utc_now(), _columns(kind)
+    step, at, columns = _next_step(connection), utc_now(), _columns(kind)
     # All go before any comes: there is never more than one master.
     connection.executemany(f"DELETE FROM {table.name} WHERE {log.key} = ?", [(number,) for number in changes])
     _insert(
@@ -306,32 +306,39 @@ def undo(connection: sqlite3.Connection, reason: Reason, kind: Kind | None = Non
 
 def undo_any(connection: sqlite3.Connection, reason: Reason) -> tuple[Change, ...]:
     """The same for the youngest step of all tables."""
-    log = max(_LOGS, key=lambda each: _last_step(connection, each, None)[1])
+    last = {log: _last_step(connection, log, None) or 0 for log in _LOGS}
+    log = max(_LOGS, key=lambda each: last[each] if isinstance(last[each], int) else _MOST_STEPS)
     return _undo(connection, reason, log, None)
 
 
-def _next_step(connection: sqlite3.Connection, log: _Log) -> int:
-    """Behind every step that is a number; what else was put there by nobody of ours."""
+def _next_step(connection: sqlite3.Connection) -> int:
+    """Behind the steps of all histories: they tell the order of changes, whatever the clock was set to."""
+    return 1 + max(_newest_step(connection, log) for log in _LOGS)
+
+
+def _newest_step(connection: sqlite3.Connection, log: _Log) -> int:
+    """The last step that is a number; what else was put there by nobody of ours."""
     asked = f"SELECT coalesce(max(step), 0) FROM {log.name}"
     (last,) = connection.execute(asked).fetchone()
     if not isinstance(last, int) or last >= _MOST_STEPS:
         only = "WHERE typeof(step) = 'integer' AND step < ?"  # looks through all of them: only then
         (last,) = connection.execute(f"{asked} {only}", (_MOST_STEPS,)).fetchone()
-    return int(last) + 1
+    return int(last)
 
 
 def _last_step(
     connection: sqlite3.Connection, log: _Log, kind: Kind | None, number: int | None = None
-) -> tuple[int | None, str]:
-    """Return the last step that is not undone yet and its time; None without one. ``number``: of this row."""
-    step, at = connection.execute(
-        f"SELECT max(step), max(at) FROM {log.name}"
+) -> int | None:
+    """Return the last step that is not undone yet; None without one. ``number``: of this row."""
+    step: int | None
+    (step,) = connection.execute(
+        f"SELECT max(step) FROM {log.name}"
         f" WHERE undoes IS NULL AND {log.kind} = coalesce(?, {log.kind})"
         f" AND {log.key} = coalesce(?, {log.key})"
         f" AND step NOT IN (SELECT undoes FROM {log.name} WHERE undoes IS NOT NULL)",
         (kind.value if kind else None, number),
     ).fetchone()
-    return step, at or ""
+    return step
 
 
 def _undo(connection: sqlite3.Connection, reason: Reason, log: _Log, kind: Kind | None) -> tuple[Change, ...]:
@@ -344,7 +351,7 @@ def _undo(connection: sqlite3.Connection, reason: Reason, log: _Log, kind: Kind 
 def _step_to_undo(
     connection: sqlite3.Connection, log: _Log, kind: Kind | None, number: int | None = None
 ) -> tuple[Change, ...]:
-    step = _last_step(connection, log, kind, number)[0]
+    step = _last_step(connection, log, kind, number)
     rows = _select(connection, log, "WHERE step = ? ORDER BY id", (step,)) if step is not None else ()
     first = rows[0].id if rows else 0
     for entry in row_sums.broken(connection, log.name, first):  # of this step, or a later one that it hides
@@ -377,7 +384,7 @@ def history_any(connection: sqlite3.Connection, limit: int) -> tuple[Change, ...
     """The last changes of all tables, newest first; a limit below nought, as SQLite has it, is none."""
     tail = "ORDER BY id DESC LIMIT ?"
     found = [each for log in _LOGS for each in _select(connection, log, tail, (limit,))]
-    return tuple(sorted(found, key=lambda each: each.at, reverse=True)[: limit if limit >= 0 else None])
+    return tuple(sorted(found, key=lambda each: each.step, reverse=True)[: limit if limit >= 0 else None])
 
 
 def as_of(connection: sqlite3.Connection, kind: Kind, moment: str) -> dict[int, Row]:
@@ -415,6 +422,13 @@ _OTHERS = {
     "part_features": "the measured feature",
     "part_readings": "the reading",
     "insert_changes": "the change of an insert",
+    "events": "the event",
+    "programs": "the program entry",
+    "program_versions": "the version entry",
+    "part_cycles": "the part cycle",
+    "production_stops": "the production stop",
+    "shared_versions": "the shared version",
+    "shared_here": "the shared program",
 }
 
 

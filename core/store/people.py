@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sqlite3
+from collections.abc import Iterable
 from typing import NamedTuple
 
 from core.store import row_sums
@@ -18,6 +19,11 @@ class PersonRow(NamedTuple):
     level: int
     salt: bytes
     hash: bytes
+
+    @property
+    def has_pin(self) -> bool:
+        """Whether a PIN was entered; a backup has none of them."""
+        return bool(self.hash)
 
 
 class People(NamedTuple):
@@ -73,6 +79,21 @@ def remove_person(connection: sqlite3.Connection, name: str) -> None:
 def remove_all(connection: sqlite3.Connection) -> int:
     """Nobody is entered any more, and there are no levels; answers how many there were."""
     return connection.execute("DELETE FROM people").rowcount
+
+
+def replace_all(connection: sqlite3.Connection, rows: Iterable[PersonRow]) -> None:
+    """These people and no others are entered."""
+    connection.execute("DELETE FROM people")
+    connection.executemany("INSERT INTO people VALUES (?, ?, ?, ?)", rows)
+
+
+def forget_pins(connection: sqlite3.Connection) -> None:
+    """Leave names and levels without PINs in a copy of the store, also in its free space."""
+    rows = people(connection).rows if row_sums.columns(connection, "people") else ()
+    if rows:
+        row_sums.watch(connection)
+        replace_all(connection, [row._replace(salt=b"", hash=b"") for row in rows])
+        connection.execute("VACUUM")
 
 
 def _demand_service(connection: sqlite3.Connection) -> None:

@@ -1,7 +1,8 @@
 """A sum beside every offset, setting, count, life and job: a row that is not as it was saved is not believed.
 
-Entries of the histories have one too, for an undo takes its figures from there. A connection that writes
-makes the sums by triggers of its own, so no place that writes can forget to. A reader compares.
+Entries of the histories have one too, for an undo takes its figures from there, and so have events and
+versions. A connection that writes makes the sums by triggers of its own, so no place that writes can forget
+to. A reader compares.
 """
 
 from __future__ import annotations
@@ -40,14 +41,33 @@ HISTORIES = {
     "datum_preset_changes": "id",
     "insert_changes": "id",
     "part_readings": "id",
+    "events": "id",
+    "programs": "id",
+    "program_versions": "id",
+    "part_cycles": "id",
+    "production_stops": "id",
+    "shared_versions": "id",
+    "shared_here": "program",
 }
 """What grows for years: looked at entry by entry when it is read, and as a whole by ``verify``."""
 
 SUMMED = KEYS | HISTORIES
-SINCE, HISTORIES_SINCE = 11, 15
-"""The versions that brought sums, and those of the histories, of runs and of measured features."""
+SINCE = 11
+"""The version that brought sums."""
 
-_LATER = frozenset({*HISTORIES, "runs", "part_features"})
+_SINCE = dict.fromkeys(("runs", "part_features", *HISTORIES), 15) | dict.fromkeys(
+    (
+        "events",
+        "programs",
+        "program_versions",
+        "part_cycles",
+        "production_stops",
+        "shared_versions",
+        "shared_here",
+    ),
+    16,
+)  # tables that got theirs later
+_LEFT_OUT = {"program_versions": "text"}  # it is long, and the row has its SHA-256
 
 
 class Text(bytes):
@@ -99,9 +119,7 @@ def seal_all(connection: sqlite3.Connection, damaged: frozenset[tuple[str, Key]]
 
 def sealed_before(version: int) -> frozenset[str]:
     """The tables that had sums in a store of this version."""
-    if version < SINCE:
-        return frozenset()
-    return frozenset(SUMMED) - (_LATER if version < HISTORIES_SINCE else frozenset())
+    return frozenset(table for table in SUMMED if _SINCE.get(table, SINCE) <= version)
 
 
 def all_broken(
@@ -140,11 +158,12 @@ def whole_row(connection: sqlite3.Connection, table: str, key: Key) -> Row | Non
 
 
 def row(connection: sqlite3.Connection, table: str, key: Key) -> Row | None:
-    """All columns of a row, its texts as bytes; None: it is not there.
+    """The columns of a row that its sum is made of, texts as bytes; None: it is not there.
 
     By the table alone: an index that is damaged has other keys than its rows.
     """
-    found = raw(connection, f"SELECT * FROM {table} NOT INDEXED WHERE {SUMMED[table]} = ?", (key,))
+    named = ", ".join(columns(connection, table))
+    found = raw(connection, f"SELECT {named} FROM {table} NOT INDEXED WHERE {SUMMED[table]} = ?", (key,))
     return found[0] if found else None
 
 
@@ -156,7 +175,8 @@ def saved_sum(connection: sqlite3.Connection, table: str, key: Key) -> str:
 
 def columns(connection: sqlite3.Connection, table: str) -> tuple[str, ...]:
     """The columns of a table, in the order in which their sum is made."""
-    return tuple(each[1] for each in connection.execute(f"PRAGMA table_info({table})"))
+    names = (each[1] for each in connection.execute(f"PRAGMA table_info({table})"))
+    return tuple(name for name in names if name != _LEFT_OUT.get(table))
 
 
 def raw(connection: sqlite3.Connection, query: str, values: tuple[Value, ...] = ()) -> list[Row]:
@@ -203,10 +223,11 @@ def _keep(connection: sqlite3.Connection, table: str, key: Key, digest: str) -> 
 
 
 def _rows(connection: sqlite3.Connection, table: str, since: int | None = None) -> dict[Key, Row]:
-    if not columns(connection, table):
+    named = ", ".join((SUMMED[table], *columns(connection, table)))
+    if named == SUMMED[table]:
         return {}  # a store of a version that had no such table yet
-    every = f"SELECT {SUMMED[table]}, * FROM {table} NOT INDEXED"
-    later = f"SELECT {SUMMED[table]}, * FROM {table} WHERE {SUMMED[table]} >= ?"
+    every = f"SELECT {named} FROM {table} NOT INDEXED"
+    later = f"SELECT {named} FROM {table} WHERE {SUMMED[table]} >= ?"
     found = raw(connection, every) if since is None else raw(connection, later, (since,))
     return {_key(key): tuple(values) for key, *values in found}
 

@@ -5585,6 +5585,11 @@
     </message>
     <message>
       <location filename="app/desk/access.py" />
+      <source>CHECKING THE PIN OF {name}</source>
+      <translation>COMPROBANDO EL PIN DE {name}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/access.py" />
       <source>NOT KEPT: {why}</source>
       <translation>SIN GUARDAR: {why}</translation>
     </message>
@@ -5622,6 +5627,11 @@
       <location filename="app/desk/access.py" />
       <source>wrong PINs</source>
       <translation>wrong PINs</translation>
+    </message>
+    <message>
+      <location filename="app/desk/access.py" />
+      <source>{name} HAS NO PIN: SERVICE LEVEL ENTERS ONE</source>
+      <translation>{name} NO TIENE PIN: LO INTRODUCE EL NIVEL SERVICIO</translation>
     </message>
     <message>
       <location filename="app/desk/access.py" />
@@ -5795,8 +5805,8 @@
     </message>
     <message>
       <location filename="app/desk/desk.py" />
-      <source>NOT KEPT, AND LOST BY CLOSING: {what}; MAKE ROOM, OR PRESS Y TO CLOSE, N TO STAY</source>
-      <translation>SIN GUARDAR, Y SE PIERDE AL CERRAR: {what}; HAGA ESPACIO, U PULSE Y PARA CERRAR, N PARA SEGUIR</translation>
+      <source>NOT KEPT, AND LOST BY CLOSING: {what}; PRESS Y TO CLOSE, N TO STAY</source>
+      <translation>NO GUARDADO, Y SE PIERDE AL CERRAR: {what}; PULSE Y PARA CERRAR, N PARA QUEDARSE</translation>
     </message>
     <message>
       <location filename="app/desk/desk.py" />
@@ -9537,6 +9547,11 @@
       <location filename="app/offsets/offset_values.py" />
       <source>Z</source>
       <translation>Z</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_values.py" />
+      <source>cannot be read</source>
+      <translation>no se puede leer</translation>
     </message>
     <message>
       <location filename="app/offsets/offset_values.py" />
@@ -13330,11 +13345,6 @@
     </message>
     <message>
       <location filename="app/screen/window_frame.py" />
-      <source>IN MEMORY UNTIL THE STORE CAN BE WRITTEN: {what}</source>
-      <translation>EN MEMORIA HASTA QUE SE PUEDA ESCRIBIR EN EL ALMACÉN: {what}</translation>
-    </message>
-    <message>
-      <location filename="app/screen/window_frame.py" />
       <source>LAST</source>
       <translation>ÚLTIMO</translation>
     </message>
@@ -13347,6 +13357,11 @@
       <location filename="app/screen/window_frame.py" />
       <source>NOTHING WAS RECORDED BEFORE THIS ONE: ALARMS AND E-STOPS HAVE A RECORD</source>
       <translation>ANTES DE ÉSTE NO SE REGISTRÓ NADA: LAS ALARMAS Y LOS PAROS DE EMERGENCIA TIENEN REGISTRO</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window_frame.py" />
+      <source>ONLY IN MEMORY, AND LOST IF TURNDESK ENDS NOW: {what}</source>
+      <translation>SOLO EN MEMORIA, Y SE PIERDE SI TURNDESK TERMINA AHORA: {what}</translation>
     </message>
     <message>
       <location filename="app/screen/window_frame.py" />
@@ -14450,11 +14465,6 @@
     </message>
     <message>
       <location filename="app/special/backup_and_restore.py" />
-      <source>NOBODY IS ENTERED IN IT: LEVELS ARE OFF</source>
-      <translation>NO HAY NADIE DADO DE ALTA EN ÉL: LOS NIVELES ESTÁN DESACTIVADOS</translation>
-    </message>
-    <message>
-      <location filename="app/special/backup_and_restore.py" />
       <source>NOTHING: IT IS DAMAGED</source>
       <translation>NADA: ESTÁ DAÑADA</translation>
     </message>
@@ -14502,11 +14512,6 @@
       <location filename="app/special/backup_and_restore.py" />
       <source>What a restore replaces is kept beside it.</source>
       <translation>Lo que una restauración reemplaza se guarda al lado.</translation>
-    </message>
-    <message>
-      <location filename="app/special/backup_and_restore.py" />
-      <source>levels are off: nobody is entered in what was restored</source>
-      <translation>los niveles están desactivados: no hay nadie dado de alta en lo restaurado</translation>
     </message>
     <message>
       <location filename="app/special/backup_and_restore.py" />
@@ -33080,8 +33085,8 @@
     </message>
     <message>
       <location filename="core/store/damaged_rows.py" />
-      <source>%1 is not as it was saved, and is not used</source>
-      <translation>%1 no está como se guardó y no se usa</translation>
+      <source>%1 is not as it was saved</source>
+      <translation>%1 no está como se guardó</translation>
     </message>
     <message>
       <location filename="core/store/damaged_rows.py" />
@@ -33147,6 +33152,16 @@
       <location filename="core/store/database.py" />
       <source>%1 is a database of another program; it is left as it is. Name another file</source>
       <translation>%1 es una base de datos de otro programa; se deja como está. Indique otro archivo</translation>
+    </message>
+    <message>
+      <location filename="core/store/database.py" />
+      <source>%1 is a folder, a pipe or a device, not a file; it is left as it is. Move it away</source>
+      <translation>%1 es una carpeta, una tubería o un dispositivo, no un archivo; se deja como está. Muévalo a otro sitio</translation>
+    </message>
+    <message>
+      <location filename="core/store/database.py" />
+      <source>%1 is a link to %2, which is not there; mount its disk, then try again</source>
+      <translation>%1 es un enlace a %2, que no está; monte su disco e inténtelo de nuevo</translation>
     </message>
     <message>
       <location filename="core/store/database.py" />
@@ -33355,6 +33370,11 @@
     </message>
     <message>
       <location filename="core/store/offset_tables.py" />
+      <source>the event</source>
+      <translation>el evento</translation>
+    </message>
+    <message>
+      <location filename="core/store/offset_tables.py" />
       <source>the job</source>
       <translation>el trabajo</translation>
     </message>
@@ -33375,6 +33395,21 @@
     </message>
     <message>
       <location filename="core/store/offset_tables.py" />
+      <source>the part cycle</source>
+      <translation>el ciclo de pieza</translation>
+    </message>
+    <message>
+      <location filename="core/store/offset_tables.py" />
+      <source>the production stop</source>
+      <translation>la parada de producción</translation>
+    </message>
+    <message>
+      <location filename="core/store/offset_tables.py" />
+      <source>the program entry</source>
+      <translation>la entrada de programa</translation>
+    </message>
+    <message>
+      <location filename="core/store/offset_tables.py" />
       <source>the reading</source>
       <translation>la lectura</translation>
     </message>
@@ -33387,6 +33422,21 @@
       <location filename="core/store/offset_tables.py" />
       <source>the setting</source>
       <translation>el ajuste</translation>
+    </message>
+    <message>
+      <location filename="core/store/offset_tables.py" />
+      <source>the shared program</source>
+      <translation>el programa compartido</translation>
+    </message>
+    <message>
+      <location filename="core/store/offset_tables.py" />
+      <source>the shared version</source>
+      <translation>la versión compartida</translation>
+    </message>
+    <message>
+      <location filename="core/store/offset_tables.py" />
+      <source>the version entry</source>
+      <translation>la entrada de versión</translation>
     </message>
     <message>
       <location filename="core/store/offset_tables.py" />

@@ -5,14 +5,18 @@ from __future__ import annotations
 import argparse
 import io
 import json
+import sqlite3
 import time
+import zipfile
 from collections.abc import Callable, Iterator
+from contextlib import closing
 from pathlib import Path
 
 import pytest
 
 import resources
 from app.cli.main import build_parser, main
+from core.access import pins
 from core.coded_error import CodedError
 from core.store.store import Store
 
@@ -242,8 +246,105 @@ def test_a_store_that_cannot_be_read_can_be_replaced(
 ) -> None:
     assert say("store", "backup", tmp_path / "b.db")[0] == 0
     (home / "turndesk.db").write_bytes(b"no store any more")
+    assert say("store", "restore", tmp_path / "b.db", typed="RESET", terminal=True)[0] == 0
+    assert say("access", "list")[1].startswith("levels are off")
+    with Store.open(home) as store:
+        assert store.events("restored from")[0].who == "shop (service reset at the keyboard)"
+
+
+@pytest.mark.parametrize(("typed", "terminal", "code"), [
+    ("", False, "not-a-terminal"), ("RESET", False, "not-a-terminal"), ("yes", True, "not-confirmed"),
+    ("", True, "not-confirmed"),
+])  # fmt: skip
+@pytest.mark.parametrize("left", [0, 50, 100, 4000])
+def test_a_store_that_cannot_be_read_lets_nobody_restore(
+    left: int, typed: str, terminal: bool, code: str, say: Say, people: None, home: Path, tmp_path: Path,
+    refusals: list[CodedError],
+) -> None:  # fmt: skip
+    """Cut to 50 bytes it let everybody restore without a PIN."""
+    assert say("store", "backup", tmp_path / "b.db")[0] == 0
+    file = home / "turndesk.db"
+    cut = file.read_bytes()[:left]
+    file.write_bytes(cut)
+    for command in (("store", "restore"), ("setup", "load")):
+        status, _ = say(*command, tmp_path / "b.db", typed=typed, terminal=terminal)
+        assert (status, codes(refusals)) == (2, [code])
+    assert file.read_bytes() == cut
+
+
+def test_nothing_of_a_level_is_done_where_the_people_cannot_be_read(
+    say: Say, people: None, home: Path, tmp_path: Path, refusals: list[CodedError]
+) -> None:
+    (home / "turndesk.db").write_bytes(b"no store any more")
+    words = ("shapes", tmp_path / "b.toml", "--out", tmp_path / "new.nc")
+    assert say(*words, typed="RESET", terminal=True)[0] == 2
+    assert codes(refusals) == ["not-a-database"]
+
+
+def damage_people(home: Path, change: str) -> None:
+    with closing(sqlite3.connect(home / "turndesk.db")) as connection, connection:
+        connection.execute(change)
+
+
+def test_a_row_of_people_that_is_missing_is_no_way_out(
+    say: Say, people: None, home: Path, tmp_path: Path, refusals: list[CodedError]
+) -> None:
+    """The list said that levels are off."""
+    assert say("store", "backup", tmp_path / "b.db")[0] == 0
+    damage_people(home, "DELETE FROM people")
+    listed = json.loads(say("access", "list", "--json")[1])
+    assert listed == {"on": True, "damaged": True, "people": []}
+    assert not say("access", "list")[1].startswith("levels are off")
+    assert say("store", "restore", tmp_path / "b.db", "--as", "anna", typed="4711")[0] == 2
+    assert codes(refusals) == ["unknown-person"]
+
+
+# --- backups ---------------------------------------------------------------------------------------------
+
+
+def hashes(path: Path) -> list[bytes]:
+    with closing(sqlite3.connect(path)) as connection:
+        return [bytes(row[0]) for row in connection.execute("SELECT hash FROM people WHERE hash <> x''")]
+
+
+def test_no_backup_has_hashes_and_a_restore_leaves_the_people(
+    say: Say, people: None, home: Path, tmp_path: Path
+) -> None:
+    stored, copy = hashes(home / "turndesk.db"), tmp_path / "b.db"
+    assert len(stored) == 2
+    assert say("store", "backup", copy)[0] == 0
+    assert say("setup", "save", tmp_path / "s.zip")[0] == 0
+    with zipfile.ZipFile(tmp_path / "s.zip") as setup:
+        taken = setup.read("store.db")
+    for each in stored:
+        assert each not in copy.read_bytes()
+        assert each not in taken
+    with closing(sqlite3.connect(copy)) as connection:
+        assert [row[0] for row in connection.execute("SELECT name FROM people")] == ["ANNA", "BEN"]
+    assert say("access", "remove", "ben", "--as", "anna", typed="4711")[0] == 0
+    assert say("store", "restore", copy, "--as", "anna", typed="4711")[0] == 0
+    assert hashes(home / "turndesk.db") == stored[:1]
+    assert say("store", "verify")[0] == 0
+
+
+def test_a_new_machine_has_the_names_of_a_backup_and_no_pin(
+    say: Say, people: None, home: Path, tmp_path: Path, refusals: list[CodedError]
+) -> None:
+    assert say("store", "backup", tmp_path / "b.db")[0] == 0
+    home.rename(tmp_path / "before")
     assert say("store", "restore", tmp_path / "b.db")[0] == 0
     assert json.loads(say("access", "list", "--json")[1])["on"]
+    assert say("offsets", "clear", "T", "--as", "anna", typed="4711")[0] == 2
+    assert codes(refusals) == ["no-pin"]
+    assert say("access", "reset", typed="RESET", terminal=True)[0] == 0
+
+
+def test_an_old_hash_is_made_anew_on_the_command_line(
+    say: Say, people: None, home: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(pins, "COST", pins.Cost(5, 8, 1))
+    assert say("offsets", "set", "G54", "z=-1", "--as", "ben", typed="2580")[0] == 0
+    assert [each[0] for each in hashes(home / "turndesk.db")] == [4, 5]
 
 
 def test_jobs_are_the_operators_and_have_the_name(say: Say, people: None, home: Path) -> None:

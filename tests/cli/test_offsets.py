@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+import sys
 from importlib.resources import files
 from pathlib import Path
 
@@ -389,3 +390,14 @@ def test_a_refused_shape_leaves_the_offset_as_it_was(capsys: Captured) -> None:
     before = shown(capsys)
     assert refused(capsys, "set", "T3", "x=1.01", "point=999").code == "out-of-range"
     assert shown(capsys) == before
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="links of POSIX")
+@pytest.mark.parametrize("words", [("show",), ("set", "T3", "x=1", "z=-1"), ("history",), ("undo",)])
+def test_a_link_whose_disk_is_not_mounted_is_no_empty_store(
+    words: tuple[str, ...], capsys: Captured, home: Path
+) -> None:
+    home.mkdir(exist_ok=True)
+    (home / "turndesk.db").symlink_to("/nowhere/turndesk.db")
+    assert refused(capsys, *words).code == "link-without-target"
+    assert (home / "turndesk.db").is_symlink()

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import os
+import sys
 import time
 from pathlib import Path
 
 import pytest
 
 from app.compose import run_log
+from app.compose.error_log import Log
 from app.compose.run_log import EventLog
 from core.executor.snapshot import Event
 
@@ -36,6 +38,19 @@ def test_files_of_more_than_a_year_go(home: Path) -> None:
     a_file(home / "logs", "crash-old.txt", 367.0)
     a_file(home / "logs", "young.jsonl", 365.0)
     assert begun(home) == {"young.jsonl"}
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows keeps its own rights")
+def test_logs_are_their_owners_alone(home: Path) -> None:
+    before = os.umask(0)
+    try:
+        failures = Log()
+        with EventLog.new("PIN.nc") as log:
+            modes = {path.name: path.stat().st_mode & 0o777 for path in (home / "logs").iterdir()}
+        failures.close()
+    finally:
+        os.umask(before)
+    assert modes == {log.path.name: 0o600, "turndesk.log": 0o600}
 
 
 def test_no_more_files_are_kept_than_may_be(home: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import NoReturn
@@ -10,10 +11,12 @@ import pytest
 
 from app.compose.journal import UNDER_WAY, Journal
 from app.desk.persistence import Persistence
+from app.offsets.offset_values import not_set
 from core.executor.interrupted_job import plain
 from core.executor.snapshot import Event
 from core.store.store import Store
 from core.store.store_errors import Cause, StoreError
+from core.store.store_file import FILE_NAME
 from core.store.store_rows import Kind
 from tests.interrupted import broken_off
 from tests.texts import begins, pattern, shows
@@ -227,6 +230,40 @@ def test_a_store_too_damaged_to_be_read_is_left_to_a_restore(
     assert not journal.waiting  # no try will read it
     Store.open(tmp_path / "home").close()  # the command that restores finds it free
     journal.close()
+
+
+def test_offsets_that_cannot_be_read_are_unknown_and_not_unset(tmp_path: Path) -> None:
+    """Every tool was shown as not set."""
+    home = tmp_path / "home"
+    Store.open(home).close()
+    whole = (home / FILE_NAME).read_bytes()
+    (home / FILE_NAME).write_bytes(whole[:50])
+    journal = Journal(home)
+    book = journal.book()
+    assert (book.unread, book.tools) == (True, {})
+    assert not_set(unread=book.unread) != not_set()
+    (home / FILE_NAME).write_bytes(whole)
+    journal._open_again()
+    book.poll()
+    assert not book.unread
+    journal.close()
+
+
+def test_offsets_of_a_machine_without_a_store_are_unset(tmp_path: Path) -> None:
+    (tmp_path / "home").write_bytes(b"no folder")
+    journal = Journal(tmp_path / "home")
+    assert not journal.book().unread
+    journal.close()
+
+
+def test_what_a_second_instance_cannot_keep_names_the_first(tmp_path: Path) -> None:
+    """It said that there was no room."""
+    first = Journal(tmp_path / "home")
+    second = Journal(tmp_path / "home")
+    assert f"process {os.getpid()}" in second.trouble
+    assert (second.waiting, second.held) == (False, "")
+    second.close()
+    first.close()
 
 
 def test_a_second_instance_shows_the_offsets_of_the_first(tmp_path: Path) -> None:

@@ -276,8 +276,8 @@ def test_the_list_tells_what_a_backup_is_worth(hands: Hands, journal: Journal) -
     assert store.tools()[3].x == 2.0
 
 
-def test_a_restore_that_switches_levels_off_says_so_and_by_whom(hands: Hands, journal: Journal) -> None:
-    """A backup of the time before levels: who has put it there stands in its log."""
+def test_a_restore_leaves_the_levels_on(hands: Hands, journal: Journal) -> None:
+    """A backup of the time before levels switched them off."""
     page = open_function(hands, 6)
     hands.sees(lambda: len(page.table.sheet.rows) >= 1)
     backups = page.model.current
@@ -299,11 +299,12 @@ def test_a_restore_that_switches_levels_off_says_so_and_by_whom(hands: Hands, jo
     hands.sees(lambda: access.name == "ANNA")
     hands.key(Key.Key_Return)
     yes(hands.window)
-    hands.sees(lambda: shows(hands.desk.notice, "screen.nobody-entered"))
-    hands.sees(lambda: len(journal.opened().events(kinds={"access"})) > 0)
-    told = {(row.text, row.who) for row in journal.opened().events(kinds={"access", "change"})}
-    assert (wording("log.restored-levels-off"), "ANNA") in told
-    assert any(text.startswith("restored; ") and who == "ANNA" for text, who in told)
+    hands.sees(lambda: shows(hands.desk.notice, "screen.restored"))
+    access.reload()
+    assert [row.name for row in access.people.rows] == ["ANNA"]
+    hands.sees(lambda: len(journal.opened().events(kinds={"change"})) > 0)
+    [row] = journal.opened().events(kinds={"change"})
+    assert (row.who, row.text.startswith("restored; ")) == ("ANNA", True)
 
 
 def test_nothing_is_restored_under_way(hands: Hands) -> None:

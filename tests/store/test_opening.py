@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 
+from core import file_placing
 from core.store import backup, database
 from core.store.database import WriterLock, in_use
 from core.store.store import Store, StoreError
@@ -184,6 +185,14 @@ def test_closed_store_refuses_questions(store: Store) -> None:
     store.close()
     with raises_code(StoreError, "closed"):
         store.tools()
+
+
+def test_a_new_folder_is_on_the_disk_under_its_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A power cut took the folder, and the store in it, that had been acknowledged."""
+    brought = list[Path]()
+    monkeypatch.setattr(file_placing, "folder_to_disk", brought.append)
+    Store.open(tmp_path / "shop" / "home").close()
+    assert {tmp_path, tmp_path / "shop", tmp_path / "shop" / "home"} <= set(brought)
 
 
 def test_folder_that_cannot_be_made(tmp_path: Path) -> None:

@@ -9,10 +9,11 @@ from pathlib import Path
 
 import pytest
 
-from core.store import backup, database, job_queue, measured_parts, row_sums
+from core.store import backup, database, job_queue, measured_parts, row_sums, shared_versions
 from core.store.damaged_rows import TABLES_CHANGED
 from core.store.measured_parts import FeatureRow, ReadingRow
 from core.store.offset_tables import named
+from core.store.shared_versions import SharedVersion
 from core.store.store import Store
 from core.store.store_errors import StoreError
 from core.store.store_file import FILE_NAME
@@ -221,6 +222,68 @@ def test_two_rows_that_changed_places_with_their_sums_are_none(kept: Path) -> No
     with Store.open(kept) as store:
         assert store.tools() == {}
         assert store.repaired == ()
+
+
+# --- events, programs and versions -------------------------------------------------------------------------
+
+
+@pytest.fixture
+def told_of(kept: Path) -> Path:
+    """A row in each table of what only grows."""
+    version = SharedVersion("a" * 64, "pin.nc", "b" * 64, 4, (), "LATHE 1", "2026-11-29T10:00:00Z", "saved")
+    cycle = "INSERT INTO part_cycles (key, program, started, offset_change) VALUES ('k', 'pin.nc', 'now', 0)"
+    stop = "INSERT INTO production_stops VALUES (1, 'k', '', 'pin.nc', 'now', 3.0, 'hold', 7)"
+    with Store.open(kept) as store:
+        store.log_event("alarm", "X OVERTRAVEL", 12, who="ANNA").result()
+        store.save_program("pin.nc", b"M30\n", "written", who="ANNA").result()
+        store.write(lambda c: shared_versions.add(c, [version])).result()
+        store.write(lambda c: shared_versions.set_here(c, "pin.nc", version.id)).result()
+        store.write(lambda c: c.execute(cycle)).result()
+        store.write(lambda c: c.execute(stop)).result()
+    assert backup.all_problems(kept / FILE_NAME) == ()
+    return kept
+
+
+@pytest.mark.parametrize(
+    ("table", "damage"),
+    [
+        ("events", "text = 'X OVERTRAVEM'"),
+        ("events", "line = 13"),
+        ("events", "at = '2025-11-29'"),
+        ("events", "who = 'ANNB'"),
+        ("programs", "name = 'pin.nb'"),
+        ("programs", "created = '1926'"),
+        ("program_versions", "saved = '1926'"),
+        ("program_versions", "why = 'writtem'"),
+        ("program_versions", "number = 9"),
+        ("program_versions", "who = ''"),
+        ("part_cycles", "seconds = 2.0"),
+        ("production_stops", "reason = 'holf'"),
+        ("shared_versions", "desk = 'LATHE 3'"),
+        ("shared_versions", "published = 1"),
+    ],
+)
+def test_what_verify_calls_whole_is_whole(told_of: Path, table: str, damage: str) -> None:
+    """Texts of events and rows of versions were looked at by nobody."""
+    spoil(told_of, f"UPDATE {table} SET {damage} WHERE rowid = (SELECT max(rowid) FROM {table})")
+    with closing(sqlite3.connect(told_of / FILE_NAME)) as connection:
+        key = connection.execute(f"SELECT max({row_sums.SUMMED[table]}) FROM {table}").fetchone()[0]
+    assert backup.problems(told_of / FILE_NAME) == ()  # it makes no backup worthless
+    [told] = backup.all_problems(told_of / FILE_NAME)
+    assert told.startswith(named(table, key))
+
+
+@pytest.mark.parametrize("table", ["events", "programs", "part_cycles", "shared_here"])
+def test_a_row_that_has_gone_is_missed(told_of: Path, table: str) -> None:
+    spoil(told_of, f"DELETE FROM {table} WHERE rowid = (SELECT max(rowid) FROM {table})")
+    assert backup.all_problems(told_of / FILE_NAME)
+
+
+def test_every_table_has_sums(folder: Path) -> None:
+    """A new table comes to the list of them."""
+    with Store.open(folder) as store, store.read() as connection:
+        tables = connection.execute("SELECT name FROM sqlite_master WHERE type = 'table'").fetchall()
+    assert {name for (name,) in tables} - {"row_sums", "sqlite_sequence"} == set(row_sums.SUMMED)
 
 
 # --- tables as they are made, and stores of before ---------------------------------------------------------

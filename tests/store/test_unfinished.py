@@ -24,7 +24,8 @@ from core.unfinished import {how}
 with {how}(Path(sys.argv[1])) as place:
     (place / "half.nc" if place.is_dir() else place).write_bytes(b"half")
     if not place.is_dir():
-        place.with_name(place.name + "-journal").write_bytes(b"SQLite's")
+        for ending in ("-journal", "-wal", "-shm"):
+            place.with_name(place.name + ending).write_bytes(b"SQLite's")
     os.kill(os.getpid(), signal.SIGKILL)
 """
 
@@ -104,12 +105,14 @@ def test_a_killed_copy_of_the_older_version_has_no_name(
 def test_what_another_process_writes_stays(tmp_path: Path) -> None:
     with unfinished_file(tmp_path / "a.db") as file, unfinished_folder(tmp_path / "b.nc") as folder:
         file.write_bytes(b"half")
-        file.with_name(f"{file.name}-journal").write_bytes(b"SQLite's")
+        for ending in ("-journal", "-wal", "-shm"):
+            file.with_name(f"{file.name}{ending}").write_bytes(b"SQLite's")
         (folder / "b.nc").write_bytes(b"half")
         forget_killed(tmp_path)
         assert (file.read_bytes(), (folder / "b.nc").read_bytes()) == (b"half", b"half")
-        assert len(names(tmp_path)) == 3
-        file.with_name(f"{file.name}-journal").unlink()
+        assert len(names(tmp_path)) == 5
+        for ending in ("-journal", "-wal", "-shm"):
+            file.with_name(f"{file.name}{ending}").unlink()
     assert names(tmp_path) == []
 
 

@@ -1,0 +1,68 @@
+"""The order of changes is that in which they were made, whatever the clock says."""
+
+from __future__ import annotations
+
+import sqlite3
+from collections.abc import Iterator
+from contextlib import closing
+from pathlib import Path
+
+import pytest
+
+from core.store import backup, database, offset_tables
+from core.store.store import Store, StoreError
+from core.store.store_file import FILE_NAME
+from core.store.store_rows import Kind
+from tests.coded import raises_code
+
+
+def clock(monkeypatch: pytest.MonkeyPatch, *hours: int) -> None:
+    times: Iterator[str] = iter(f"2026-11-29T{hour:02}:00:00.000000Z" for hour in hours)
+    monkeypatch.setattr(offset_tables, "utc_now", lambda: next(times))
+
+
+def test_the_newest_change_is_first_and_is_taken_back_first(
+    store: Store, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The clock is set back between a tool and a zero offset: the tool was taken for the newer one."""
+    clock(monkeypatch, 9, 12, 11, 10, 8)
+    store.set_tool(3, "touched", x=1.0).result()
+    store.set_tool(3, "worn", wear_x=0.1).result()
+    store.set_offset(Kind.ZERO, 54, "set", {"z": -1.0}).result()
+    assert [row.kind for row in store.history_of_all()] == [Kind.ZERO, Kind.TOOL, Kind.TOOL]
+    [undone] = store.undo_last().result()
+    assert (undone.kind, undone.new) == (Kind.ZERO, None)
+    assert [row.number for row in store.undo_last().result()] == [3]
+    assert [row.number for row in store.history_of_all(2)] == [3, 54]
+
+
+def older(folder: Path) -> None:
+    """As the version before numbered steps: each history by itself."""
+    with closing(sqlite3.connect(folder / FILE_NAME)) as connection:
+        for table in ("zero_offset_changes", "tool_shape_changes"):
+            connection.execute(f"UPDATE {table} SET step = step - (SELECT min(step) FROM {table}) + 1")
+        connection.execute("DELETE FROM row_sums WHERE tbl IN ('zero_offset_changes', 'events')")
+        connection.execute("PRAGMA user_version = 14")  # histories have no sums then
+        connection.commit()
+
+
+def test_an_older_store_is_numbered_by_its_times(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    clock(monkeypatch, 8, 9, 10, 11, 12, 7, 7, 7, 7)
+    with Store.open(folder) as store:
+        store.set_tool(3, "touched", x=1.0).result()
+        store.set_offset(Kind.ZERO, 54, "set", {"z": -1.0}).result()
+        store.set_tool(3, "worn", wear_x=0.1).result()
+        store.undo_offset(kind=Kind.TOOL).result()
+        store.set_offset(Kind.ZERO, 55, "set", {"z": -2.0}).result()
+        before = [(row.kind, row.number, row.new) for row in store.history_of_all()]
+    older(folder)
+    with Store.open(folder) as store:
+        assert [(row.kind, row.number, row.new) for row in store.history_of_all()] == before
+        assert [row.step for row in store.history_of_all()] == [5, 4, 3, 2, 1]
+        assert [row.number for row in store.undo_last().result()] == [55]
+        with raises_code(StoreError, "nothing-to-undo"):
+            for _ in range(3):
+                store.undo_offset(kind=Kind.TOOL).result()
+        assert store.tools() == {}
+    assert backup.all_problems(folder / FILE_NAME) == ()
+    assert database.check_file(folder / FILE_NAME, thorough=True) == len(database.migrations())
