@@ -38,6 +38,7 @@ class Unit(StrEnum):
     TURNS_PER_MINUTE_SECOND = "rpm/s of C"
     DEGREES_PER_MINUTE = "deg/min"
     DEGREES_PER_SECOND_SQUARED = "deg/s²"
+    KILOWATTS = "kW"
 
 
 # A division where there is one, so that 300 in/min gives the very number that an F300 word gives.
@@ -47,7 +48,7 @@ _DIVISOR = {
     Unit.MILLISECONDS: 1000.0,
     Unit.PERCENT: 100.0,
 }
-_MULTIPLIER = {Unit.TURNS_PER_MINUTE: 6.0, Unit.TURNS_PER_MINUTE_SECOND: 6.0}
+_MULTIPLIER = {Unit.TURNS_PER_MINUTE: 6.0, Unit.TURNS_PER_MINUTE_SECOND: 6.0, Unit.KILOWATTS: 1000.0}
 LENGTHS = frozenset((Unit.LENGTH, Unit.FEED, Unit.ACCEL))
 
 

@@ -79,12 +79,13 @@ class Findings(NamedTuple):
 
 def findings(job: ProofJob, source: Source, progress: Callable[[float], None] | None = None) -> Findings:
     """Prove one program, compare and report on it, as far as that is wanted."""
-    from core.proving.part_proof import prove_with_part
+    from core.proving.part_proof import prove_with_part, refusing_missing_offsets
 
     record = _record(job)
     see = record.see if record is not None else None
     around = (job.setup, job.machine, job.setting)
     report, part = prove_with_part(source, *around, progress, ideal=job.ideal, seen=see)
+    report = refusing_missing_offsets(report, job.setup)
     compare: Json | None = None
     if job.other is not None:
         from app.cli.compare_figures import compared

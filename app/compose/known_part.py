@@ -10,6 +10,7 @@ from core.interpreter.job_setup import ToolOffset
 from core.machine.machine_model import Machine
 from core.part.clamping import Clamping
 from core.part.tool_shape import ToolShape
+from core.proving.cutting_checks import LIVE
 from core.proving.part_setting import PartSetting
 from core.proving.thread_checks import Drives
 
@@ -29,6 +30,7 @@ def known_part(
         clamping=_clamping(machine, stick_out),
         drives=Drives(machine.axes[1].amax, machine.spindle.decel),
         gang={n: (tool.z, tool.x) for n, tool in tools.items()} if machine.tooling == "gang" else {},
+        live_codes=any(on and name.startswith(LIVE) for name, on in machine.m_codes.values()),
         silenced=dict.fromkeys(machine.silenced, OF_MACHINE),
         travel=_travel(machine),
     )

@@ -54,6 +54,7 @@ def shop_of(machine: Machine, tools: Mapping[int, ToolShape]) -> Shop:
     z, c = by_name.get("Z"), by_name.get("C")
     return Shop(
         max_rpm=machine.spindle.rpm_max,
+        power=machine.spindle.power or Shop().power,
         slide_accel=z.amax if z is not None else 0.0,
         c_rpm=c.vmax / 6.0 if c is not None and c.vmax else Shop().c_rpm,
         live=_live(machine),

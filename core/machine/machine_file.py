@@ -49,6 +49,7 @@ _SPINDLE_KEYS = {
     "at_speed": "at_speed_pct",
     "at_speed_time": "at_speed_s",
     "timeout": "timeout_s",
+    "power": "power_kw",
 }
 _TIMING_KEYS = {name: f"{name}_ms" for name in ("commit", "lookahead", "low_water", "lease", "setpoint")}
 

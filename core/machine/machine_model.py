@@ -47,7 +47,7 @@ class Axis:
 
 @dataclass(frozen=True, slots=True)
 class SpindleModel:
-    """The main spindle, rpm and rpm/s."""
+    """The main spindle, rpm, rpm/s and W."""
 
     rpm_min: float
     rpm_max: float
@@ -61,6 +61,7 @@ class SpindleModel:
     controlled: bool = True  # false: one speed, rpm_max, and no S
     oriented: bool = False  # its drive stops it at an angle, to which it turns at
     orient_rpm: float = 60.0
+    power: float = 0.0  # at the highest speed; 0: not stated
 
 
 @dataclass(frozen=True, slots=True)

@@ -116,6 +116,7 @@ _SPINDLE = (
     Field("controlled", _FLAG, default=True),  # false: it has one speed, and S none to set
     Field("oriented", _FLAG, default=False),  # its drive stops it at an angle, for M19, SPOS and back boring
     Field("orient_rpm", _NUMBER, Unit.RPM, 1.0, 1000.0, default=60.0),  # at which it turns to that
+    Field("power_kw", _NUMBER, Unit.KILOWATTS, 50.0, 100000.0, default=0.0),  # at the highest speed
 )
 COLLET = (
     Field("open_s", _NUMBER, Unit.SECONDS, 0.01, 10.0, default=0.5),

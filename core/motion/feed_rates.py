@@ -34,7 +34,7 @@ def constant_rates(table: BlockTable) -> FloatArray:
     _refuse(
         table,
         endless,
-        "the spindle speed on the axis has no upper limit; give G77 or rpm_max",
+        "the spindle speed on the axis has no upper limit: program one, or give rpm_max",
         "no-speed-limit",
     )
     rate = np.where(table.per_rev, table.feed * rpm / 60.0, table.feed)

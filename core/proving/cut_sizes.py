@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
@@ -19,6 +20,8 @@ from core.tool_edges import edge_name
 # geometries: Widia, "Selection of insert", the column -LM of its table of effective lengths.
 USUAL: Mapping[str, float] = {"S": 0.5, "C": 0.5, "W": 0.4, "T": 0.3, "D": 0.3, "V": 0.2, "R": 0.3}
 _OTHER_SHAPE = 0.5
+# The largest share that makers allow for roughing geometries.
+LARGEST: Mapping[str, float] = {"S": 2 / 3, "C": 2 / 3, "W": 0.5, "T": 0.5, "D": 0.5, "V": 0.25, "R": 0.4}
 _OF_BAR = 0.5  # of a boring bar's diameter
 _USUAL = insert_of("C", 12.7, 0.8)  # CNMG432, the largest that a small lathe usually has
 
@@ -26,7 +29,9 @@ _COARSE = 0.8  # of the nose radius: the usual limit of a turned face
 _OF_WIDTH = 0.12  # of a grooving edge; Ingersoll's catalog of 2011 has .075
 _OF_DRILL = 0.04  # of the diameter of a drill: twice the usual .02
 _OF_REAMER = 0.1
-_BREAKS = 5.0  # times one of these
+_BREAKS = 5.0  # times one of these; drills and blades are made for feeds that differ by so much
+_BREAKS_INSERT = 2.5
+_NEVER_BREAKS = 0.15  # mm of feed of an insert, however sharp its nose
 _TURNS_WIDE = 0.8  # of the width, by a grooving edge along Z: the same catalog
 _BLADE_FINISH = 0.25  # mm along Z that a parting blade may take off
 
@@ -54,6 +59,7 @@ def _feed(move: TipMove, shape: ToolShape, tool: int, *, held: bool) -> Iterator
         return
     name, text = edge_name(tool), move.modal.length_text
     shown, limit, words = move.modal.feed_text(feed, per_rev=True), 0.0, ""
+    breaks, least = _BREAKS, 0.0
     if shape.kind in _DRILLS and held:
         limit = (_OF_REAMER if shape.kind is ToolKind.REAMER else _OF_DRILL) * shape.diameter
         words = f"{name} feeds {shown} with a diameter of {text(shape.diameter)}."
@@ -61,9 +67,9 @@ def _feed(move: TipMove, shape: ToolShape, tool: int, *, held: bool) -> Iterator
         limit = _OF_WIDTH * shape.width
         words = f"{name} feeds {shown} with an edge {text(shape.width)} wide."
     elif shape.kind in INSERTS:
-        limit = _COARSE * shape.nose_radius
+        limit, breaks, least = _COARSE * shape.nose_radius, _BREAKS_INSERT, _NEVER_BREAKS
         words = f"{name} feeds {shown} with a nose radius of {text(shape.nose_radius)}."
-    if feed > _BREAKS * limit > 0.0:
+    if feed > max(breaks * limit, least) and limit:
         yield Found("feed-breaks-tool", words)
     elif feed > limit > 0.0:
         yield Found("chip-load", words)
@@ -98,7 +104,8 @@ def _depth(
     """Depth of a cut against the length of the edge, and against the bar of a boring tool.
 
     It is the mean depth: a finishing pass that ends in a shoulder shaves all of it for a moment. Across it is
-    the mean of Z. A pass that is deeper anywhere than its edge is long is an error.
+    the mean of Z. A pass that is deeper anywhere than its edge is long is an error, and so is one that is
+    deeper on the average than any insert of this shape, or the bar of a boring tool, can take.
     """
     along, text = _is_along(move), move.modal.length_text
     deep = _mean(met, along=along)
@@ -106,10 +113,15 @@ def _depth(
         words = f"{edge_name(tool)} cuts {text(met.depth)} deep; its edge is {text(cutter.height)} long."
         yield Found("feed-into-holder", words)
         return
-    usual = depth_limit(shape if cutter.held else replace(shape, insert=""))
-    if shape.kind is ToolKind.BORING and shape.diameter:
-        usual = min(usual, _OF_BAR * shape.diameter)
-    if stock_given and deep > usual:
+    if not stock_given:
+        return
+    if not cutter.held:  # the insert is assumed with its holder
+        shape = replace(shape, insert="", diameter=0.0)
+    largest, usual = _largest(shape), depth_limit(shape)
+    if deep > largest and move.rpm:  # a spindle that is switched by hand may stand
+        words = f"{edge_name(tool)} cuts {text(deep)} deep in one pass; it can take {text(largest)}."
+        yield Found("depth-breaks-tool", words)
+    elif deep > usual:
         words = f"{edge_name(tool)} cuts {text(deep)} deep in one pass; {text(usual)} is usual at most."
         yield Found("depth-of-cut", words)
 
@@ -121,12 +133,23 @@ def _mean(met: Cut, *, along: bool) -> float:
     return min(met.width, met.area / met.depth)
 
 
-def depth_limit(shape: ToolShape) -> float:
+def _largest(shape: ToolShape) -> float:
+    """Return the depth of cut, mm, at which the tool breaks; what is not stated of it has no limit."""
+    bar = _OF_BAR * shape.diameter if shape.kind is ToolKind.BORING and shape.diameter else math.inf
+    return min(bar, depth_limit(shape, LARGEST) if shape.insert.strip() else math.inf)
+
+
+def depth_limit(shape: ToolShape, shares: Mapping[str, float] = USUAL) -> float:
     """Return the largest usual depth of cut, mm: a share of the straight edge or of a round insert."""
     insert = _insert(shape)
-    share = USUAL.get(insert.shape, _OTHER_SHAPE)
+    share = shares.get(insert.shape, _OTHER_SHAPE)
     edge = insert.edges[0] - insert.nose_radius if insert.edges else insert.inscribed_circle
     return share * edge
+
+
+def is_round(shape: ToolShape) -> bool:
+    """Return whether a tool has a round insert."""
+    return not _insert(shape).edges
 
 
 def _insert(shape: ToolShape) -> Insert:

@@ -76,7 +76,7 @@ class CuttingChecks:
                 self._like = None
                 self._act(block)
                 continue
-            if own and block.css is not None and cuts(block):
+            if block.css is not None and cuts(block):
                 self._surface_speed(block)
             if (block.modal, block.kind) != self._like:
                 if own and not self.placed:
@@ -142,9 +142,12 @@ class CuttingChecks:
         if speed > _FASTEST and slowest > 2.0 * most:
             text = f"The surface speed asks for {slowest:.0f} rpm here; the spindle has {most:.0f}."
             self._report(block, Severity.ERROR, "surface-speed", text, "Correct S, or write G97 for rpm.")
-        if modal.css_max is None and fastest > most:
+        limited = abs(block.x) <= abs(block.x0) and abs(block.rpm) < most  # as G26 does
+        if modal.css_max is None and fastest > most and not limited:
             text = f"G96 has no limit: here the spindle goes to its highest speed, {most:.0f} rpm."
             hint = "Write G77S with the highest speed for this chuck and bar."
+            if self.dialect is Dialect.SINUMERIK:
+                hint = "Write LIMS= with the highest speed for this chuck and bar."
             self._report(block, Severity.WARNING, "no-speed-limit", text, hint)
 
     def _cut_elsewhere(self, block: Block) -> None:

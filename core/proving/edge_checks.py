@@ -15,7 +15,7 @@ from core.part.stock import Stock
 from core.part.swept_edge import Point
 from core.part.tool_shape import Hand, ToolKind, ToolShape
 from core.part.turned_part import NOTHING, Cut, TurnedPart
-from core.proving.cut_sizes import INSERTS, size_faults
+from core.proving.cut_sizes import INSERTS, is_round, size_faults
 from core.proving.thread_checks import Found
 from core.proving.tip_moves import TipMove
 from core.tool_edges import edge_name
@@ -32,6 +32,10 @@ _BEYOND_CUT = 0.2  # mm
 _ENTERS = 1.0  # mm; less is a chamfer or a face
 _BREAKS_THROUGH = 2.54  # mm that a tool may go beyond the stock
 _OFF_AXIS = 0.1  # mm; less is a correction by a work shift
+_LOOP = 200.0  # degrees; an insert with a corner gets around less than 180
+_QUARTER = (80.0, 100.0)  # degrees
+_EDGE = 3.0  # mm of radius with which an edge is rounded at most
+_AT_FACE = 0.05  # mm
 _NEAR = 1e-6
 _DRILLS = frozenset({ToolKind.DRILL, ToolKind.CENTRE_DRILL, ToolKind.REAMER, ToolKind.TAP})
 
@@ -70,9 +74,15 @@ class EdgeChecks:
         """Yield the faults of a feed that has just cut; ``cuts``: what each piece of it has met."""
         if shape is None or not met:
             return
+        if cutter.held and shape.kind in INSERTS and _turning(move) > _LOOP and not is_round(shape):
+            around = f"{_turning(move):.0f}°"
+            yield Found("arc-loop", f"{edge_name(tool)} is fed around {around} of an arc through the part.")
+            return
+        yield from _hollow_at_edge(move, shape, cutter, part, tool)
         yield from size_faults(move, met, shape, cutter, tool, stock_given=self.stock_given)
         yield from self._spindle(move, shape, cutter, tool)
         yield from _off_axis(move, shape, tool)
+        yield from _without_limit(move, shape, tool)
         if self._solid > _ENTERS and met.width > _ENTERS:
             words = f"{edge_name(tool)} is fed {move.modal.length_text(self._solid)} into solid material."
             yield Found("no-bore", words)
@@ -91,19 +101,13 @@ class EdgeChecks:
         if shape.kind in _DRILLS:
             needed = {Hand.RIGHT: 1.0, Hand.LEFT: -1.0}.get(shape.hand, 0.0)
             if move.rpm * needed < 0.0:
-                code = "M04" if move.rpm < 0.0 else "M03"
-                words = (
-                    f"{edge_name(tool)}, which is {shape.hand}-hand, cuts while the spindle turns by {code}."
-                )
-                yield Found("wrong-spindle-direction", words)
+                yield Found("wrong-spindle-direction", _turns_wrongly(move, shape, tool))
             return
         if shape.turns_itself:
             return
         if cutter.held and _turns_backwards(shape, move.rpm) and tool not in self._told:
             self._told.add(tool)
-            code = "M04" if move.rpm < 0.0 else "M03"
-            words = f"{edge_name(tool)}, a {shape.hand}-hand tool in front of the axis, cuts with {code}."
-            yield Found("wrong-spindle-direction", words)
+            yield Found("wrong-spindle-direction", _turns_wrongly(move, shape, tool))
             return
         radii = [r for _, r in move.points]
         if min(radii) < _NEAR and max(radii) > -_NEAR:
@@ -173,6 +177,12 @@ class EdgeChecks:
             )
 
 
+def _turns_wrongly(move: TipMove, shape: ToolShape, tool: int) -> str:
+    if move.rpm < 0.0:
+        return f"{edge_name(tool)}, a {shape.hand}-hand tool, cuts while the spindle turns in reverse."
+    return f"{edge_name(tool)}, a {shape.hand}-hand tool, cuts while the spindle turns forward."
+
+
 def _turns_backwards(shape: ToolShape, rpm: float) -> bool:
     """Whether the spindle turns against the rake of a tool in front, which lies face up.
 
@@ -188,6 +198,44 @@ def _off_axis(move: TipMove, shape: ToolShape, tool: int) -> Iterator[Found]:
     if shape.kind in _DRILLS and move.rpm and off > _OFF_AXIS:
         words = f"{edge_name(tool)} cuts {move.modal.length_text(off)} off the spindle axis."
         yield Found("drill-off-axis", words)
+
+
+def _without_limit(move: TipMove, shape: ToolShape, tool: int) -> Iterator[Found]:
+    """A round tool under constant surface speed: on the axis that asks for any speed."""
+    off = min(abs(r) for _, r in move.points)
+    if shape.kind in _DRILLS and move.modal.css and move.modal.css_max is None and off < _OFF_AXIS:
+        words = f"{edge_name(tool)} cuts on the axis under G96: the spindle runs at its highest speed."
+        yield Found("drill-without-limit", words)
+
+
+def _turning(move: TipMove) -> float:
+    """By how many degrees the path of an arc turns; 0 of another move."""
+    if move.kind is not Kind.ARC or len(move.points) < 3:
+        return 0.0
+    headings = np.unwrap(np.arctan2(*np.diff(np.array(move.points), axis=0).T[::-1]))
+    chords = len(headings)
+    return math.degrees(abs(float(headings[-1] - headings[0]))) * chords / (chords - 1)
+
+
+def _hollow_at_edge(
+    move: TipMove, shape: ToolShape, cutter: Cutter, part: TurnedPart, tool: int
+) -> Iterator[Found]:
+    """A small quarter circle that begins along Z at the face, and so is hollow."""
+    if not (cutter.held and shape.kind is ToolKind.TURNING and cutter.side is Side.OUTSIDE):
+        return
+    if not _QUARTER[0] < _turning(move) < _QUARTER[1] or shape.direction[0] >= 0:
+        return
+    points = np.array(move.points) * [1.0, cutter.across]
+    (z_in, r_in), (z_out, r_out) = np.diff(points, axis=0)[[0, -1]]
+    radius = math.dist(points[0], points[-1]) / math.sqrt(2.0)
+    faces = np.flatnonzero(part.outermost > 0.0)
+    front = part.columns.first + part.columns.step * float(faces[-1]) if len(faces) else -math.inf
+    along, away = -z_in > 5.0 * abs(r_in), r_out > 5.0 * abs(z_out)
+    if along and away and radius < _EDGE and abs(points[0][0] - front) < _AT_FACE:
+        words = (
+            f"{edge_name(tool)} hollows out the edge of the face, radius {move.modal.length_text(radius)}."
+        )
+        yield Found("hollow-at-edge", words)
 
 
 def part_depth(move: TipMove, stock: Stock | None) -> float:

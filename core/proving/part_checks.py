@@ -32,7 +32,7 @@ CHECKS: Mapping[str, Check] = {
         _ERROR,
         "A rapid, or a feed of 100 in/min and more, takes off metal.",
         "The edge meets more than .001 in of metal in r and in Z.",
-        "Stop short of the metal and feed in: look for a G00 left on, and for a sign or a decimal point.",
+        "Stop short of the metal and feed in: look for a rapid left on, and for a sign or a decimal point.",
     ),
     "feed-into-holder": Check(
         _ERROR,
@@ -49,7 +49,8 @@ CHECKS: Mapping[str, Check] = {
     "into-chuck": Check(
         _ERROR,
         "A tool, or its holder, runs into chuck, jaws or collet.",
-        "An outline comes into the contour that the machine file gives under [clamping].",
+        "An outline comes into the contour that the machine file gives under [clamping], or within .001 in "
+        "of it.",
         "Let the part stick out further, or stop earlier.",
         (TOOL,),
     ),
@@ -85,14 +86,30 @@ CHECKS: Mapping[str, Check] = {
         _ERROR,
         "The spindle turns faster than chuck or collet may.",
         "A commanded speed over max_rpm under [clamping] of the machine file.",
-        "Lower S, or limit G96 by G77.",
+        "Lower S, or limit the speed under G96.",
         (),
+    ),
+    "drill-without-limit": Check(
+        _ERROR,
+        "A drill works on the axis under constant surface speed.",
+        "A drill, centre drill, reamer or tap cuts under G96 with no limit in force: the spindle runs at its "
+        "highest speed.",
+        "Program the speed of a drill in rpm.",
+        (TOOL,),
+    ),
+    "cut-standing": Check(
+        _ERROR,
+        "A tool is fed into the part while neither tool nor spindle turns.",
+        "A drill, reamer, mill, turning tool or parting blade meets more than .001 in of material while no "
+        "live tool is on and the spindle, which has turned before, is stopped or held as C. Not where the "
+        "machine file has no M code for a live tool.",
+        "Start the spindle, or the live tool, before this move.",
     ),
     "stock-whips": Check(
         _WARNING,
         "The spindle turns so fast that the stock may whirl.",
         "More than half of the first critical speed of what sticks out, as a bar of brass held at one end.",
-        "Lower S, limit G96 by G77, let the part stick out less, or support it.",
+        "Lower S, limit the speed under G96, let the part stick out less, or support it.",
     ),
     "larger-than-stock": Check(
         _ERROR,
@@ -172,13 +189,25 @@ CHECKS: Mapping[str, Check] = {
         "The spindle turns against the cutting edge.",
         "M04 with a right-hand drill, reamer or tap, M03 with a left-hand one; M04 with a turning or boring "
         "tool in front of the axis that is mounted upright; or one edge is made to cut both ways.",
-        "Change M03 and M04, or the hand that the tool's shape says.",
+        "Reverse the spindle, or correct the hand in the shape of the tool.",
     ),
     "wrong-side": Check(
         _WARNING,
         "An insert cuts with its back.",
         "Fed backwards over .02 in and two nose radii deep, or into a wall that is steeper than its back.",
         "Use a tool of the other hand, a slimmer insert, or cut from the other side.",
+    ),
+    "arc-loop": Check(
+        _ERROR,
+        "An insert is fed around a loop through the part.",
+        "An arc through more than 200° meets material; not of a round insert.",
+        "Check the direction of the arc, and the signs of its center.",
+    ),
+    "hollow-at-edge": Check(
+        _WARNING,
+        "An arc hollows out the front edge of the part, where an edge is usually rounded.",
+        "A quarter circle, radius up to .118 in, begins along Z at the face and ends away from the axis.",
+        "Check the direction of the arc: the other one rounds the edge.",
     ),
     "over-axis": Check(
         _ERROR,
@@ -207,11 +236,18 @@ CHECKS: Mapping[str, Check] = {
     ),
     "depth-of-cut": Check(
         _WARNING,
-        "One pass is deeper than usual for its insert or its boring bar.",
+        "One pass is deeper than usual for its insert.",
         "With a stated stock, the mean depth: over .5 of the cutting edge of a C or S insert, .4 of W, .3 of "
         "T and D, .2 of V (Widia's limits for medium geometries, nose radius left off; CNMG432 where no "
-        "insert is stated), or over half the diameter of a boring bar. The material is not known: soft metal "
-        "may allow more.",
+        "insert is stated). The material is not known: soft metal may allow more.",
+        "Take it off in several passes: look for a lost or exchanged digit in X.",
+    ),
+    "depth-breaks-tool": Check(
+        _ERROR,
+        "One pass is deeper than its insert or its boring bar can take.",
+        "With a stated stock and a spindle that turns, the mean depth: over 2/3 of the cutting edge of a "
+        "stated C or S insert, half of W, T and D, a quarter of V, .4 of a round one, or over half the "
+        "diameter of a boring bar.",
         "Take it off in several passes: look for a lost or exchanged digit in X.",
     ),
     "blade-turns": Check(
@@ -230,7 +266,8 @@ CHECKS: Mapping[str, Check] = {
     "feed-breaks-tool": Check(
         _ERROR,
         "The feed per revolution is far over what the edge can cut.",
-        "More than five times the limit of chip-load.",
+        "An insert: more than twice its nose radius, and more than .006 in. A drill, a reamer or a blade: "
+        "more than five times the limit of chip-load.",
         "Lower F: look for a lost decimal point, or for millimeters in a program in inches.",
     ),
     "thread-run-up": Check(
@@ -238,13 +275,19 @@ CHECKS: Mapping[str, Check] = {
         "A thread begins before the slide has the speed of its lead, or ends while it brakes.",
         "The metal begins nearer to the start of the pass than v²/2a of the slide; or the pass stops in "
         "metal and v²/2a is more than a lead.",
-        "Start farther away, lower S, end in a groove, or pull out with P.",
+        "Start farther away, lower S, end in a groove, or pull out while the slide moves along Z.",
     ),
     "thread-in-air": Check(
         _WARNING,
         "The first passes of a thread cut nothing.",
         "With a stated stock, three passes and more stay outside the metal.",
         "Begin at the diameter of the first pass: check X where the thread starts.",
+    ),
+    "thread-cuts-nothing": Check(
+        _ERROR,
+        "A thread is cut beside the part.",
+        "With a stated stock, no pass of one lead between the same two places in Z meets any material.",
+        "Check X and Z of the thread, and whether X is a diameter.",
     ),
     "thread-form": Check(
         _WARNING,

@@ -43,6 +43,7 @@ _STUB = (0.05, 1.0)  # mm of radius that a part-off leaves
 _SQUARE = 0.02  # mm of Z
 _LONG = 2.54  # mm of Z
 _CLEARANCE = 0.25  # mm of Z before the chuck
+_TOUCHES = 0.045  # mm of Z: .001 in and what bodies may overlap without a finding
 _SAFE = 0.5  # of the speed at which a bar begins to whirl
 
 
@@ -154,7 +155,9 @@ class PartFindings:
             text = f"{edge_name(tool)} runs into the chuck, {_depth(met, move)}."
             certain = self._chuck is not None and self._chuck.contains(move.points, RAPID)
             self._add("into-chuck", move, text, certain=certain)
-        elif _reached(self._chuck, _deeper_in_z(move), cutter):
+        elif _reached(self._chuck, _deeper_in_z(move, _TOUCHES), cutter):
+            self._add("into-chuck", move, f"{edge_name(tool)} touches the chuck.")
+        elif _reached(self._chuck, _deeper_in_z(move, _CLEARANCE), cutter):
             self._add("near-chuck", move, f"{edge_name(tool)} nearly touches the chuck.")
         if met := _reached(self._tailstock, move, cutter):
             self.into_clamping["into-tailstock", move.line] = met
@@ -206,6 +209,9 @@ class PartFindings:
     def finish(self) -> None:
         """The program has ended."""
         self._tell_left()
+        for check, text, at in self.threads.finish():
+            if at is not None:
+                self._add(check, at, text)
         for one, other in self.neighbours.in_one_place if self.neighbours is not None else ():
             words = (
                 f"{edge_name(one)} and {edge_name(other)} have the same offset; "
@@ -216,6 +222,10 @@ class PartFindings:
             self._tell(
                 "unmade-cut", line, n, f"The live tool {edge_name(tool)} is fed, and never meets metal."
             )
+
+    def standing(self, line: int, n: int, tool: int) -> None:
+        """A tool has met material while nothing turns."""
+        self._tell("cut-standing", line, n, f"{edge_name(tool)} cuts while neither tool nor spindle turns.")
 
     def nothing_cut(self, line: int, n: int, text: str) -> None:
         """What the moves of a tool, or of a whole program, should have cut."""
@@ -311,9 +321,9 @@ def _reached(body: TurnedPart | None, move: TipMove, cutter: Cutter) -> Cut:
     return met
 
 
-def _deeper_in_z(move: TipMove) -> TipMove:
-    """The same move nearer to the chuck, by the clearance that it should have."""
-    return move._replace(points=tuple((z - _CLEARANCE, r) for z, r in move.points))
+def _deeper_in_z(move: TipMove, by: float) -> TipMove:
+    """The same move nearer to the chuck, by a clearance that it should have, mm."""
+    return move._replace(points=tuple((z - by, r) for z, r in move.points))
 
 
 def _executed(move: TipMove, cutter: Cutter, part: TurnedPart) -> tuple[list[Cut], Cut]:

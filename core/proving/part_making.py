@@ -9,13 +9,16 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from core.interpreter.actions import AskInput, Collet, Output, ProgramStop, ToolChange, WaitInput
+from core.interpreter.modal_state import Modal
 from core.part.cutter import Cutter
 from core.part.neighbours import Neighbours
 from core.part.polar_field import NOTHING
 from core.part.stock import Stock
+from core.part.tool_shape import ToolKind, ToolShape
 from core.part.turned_part import Piece, TurnedPart
+from core.proving.cutting_checks import LIVE
 from core.proving.part_checks import HOLES, KIND, STOCK, TOOL
-from core.proving.part_findings import PartFindings
+from core.proving.part_findings import RAPID, PartFindings
 from core.proving.part_report import PartReport
 from core.proving.part_setting import PartSetting
 from core.proving.program_tools import ProgramTools
@@ -27,6 +30,18 @@ from core.tool_edges import edge_name
 if TYPE_CHECKING:
     from core.proving.mill_moves import MillMove
     from core.proving.milling import Milling
+
+
+_TURN = frozenset(
+    {
+        ToolKind.DRILL,
+        ToolKind.CENTRE_DRILL,
+        ToolKind.REAMER,
+        ToolKind.END_MILL,
+        ToolKind.TURNING,
+        ToolKind.PARTING,
+    }
+)
 
 
 class PartMaking:
@@ -57,6 +72,7 @@ class PartMaking:
         self._unchecked = unchecked(tools.uses, setting.shapes, setting.clamping, setting.gang)
         self.milling: Milling | None = None  # from the first cut of a live tool on
         self.milled_last = NOTHING  # by the last block of a live tool
+        self._live_codes = setting.live_codes
         self._turned = False  # the spindle has
         self._in_cut = False  # of a spindle that stands
         self._standing: dict[int, int] = {}  # by T: the first line that cuts while it stands again
@@ -154,6 +170,8 @@ class PartMaking:
         self._milled = True
         milling = self.milling
         self.milled_last = milling.cut(move, shape)
+        if self.milled_last.depth > RAPID and self._is_still(step.block.modal, shape):
+            self.findings.standing(step.block.line, step.block.n, self._tool)
         modal, touches = step.block.modal, partial(milling.touches, move, shape)
         self.findings.milled(move, self.milled_last, shape, modal, self._tool, touches=touches)
 
@@ -191,14 +209,28 @@ class PartMaking:
         """
         behind, self._in_cut = self._in_cut, False
         shape = self._tools.shape(self._tool)
-        if not self._turned or move.rpm or (shape is not None and shape.turns_itself):
+        if not self._turned or move.rpm or shape is None:
             return False
-        if move.quick:
+        round_tool = shape.turns_itself
+        if move.quick or (round_tool and shape.kind is ToolKind.TAP):
             return behind
-        self._in_cut = any(cutter.meets(part, start, end) for start, end in pairwise(move.points))
+        met = [cutter.meets(part, start, end) for start, end in pairwise(move.points)]
+        if max(each.depth for each in met) > RAPID and self._is_still(move.modal, shape):
+            self.findings.standing(move.line, move.n, self._tool)
+        if round_tool:
+            return False
+        self._in_cut = any(met)
         if self._in_cut:
             self._standing.setdefault(self._tool, move.line)
         return self._in_cut
+
+    def _is_still(self, modal: Modal, shape: ToolShape) -> bool:
+        """Whether a tool that has to turn, or needs a part that turns, does neither.
+
+        Other tools may be broaches; a live tool of a machine without a code for it is switched by hand.
+        """
+        live = any(name.startswith(LIVE) for name in modal.outputs)
+        return shape.kind in _TURN and self._live_codes and not live and not modal.spindle
 
     def _finish(self) -> None:
         part = self.part

@@ -10,6 +10,7 @@ from dataclasses import replace
 
 from core.interpreter.dialects import ReadProgram
 from core.interpreter.job_setup import Setup
+from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Source
 from core.machine.machine_model import Machine
 from core.part.stock_spec import StockSpec
@@ -54,8 +55,49 @@ def prove_with_part(
     report = prove(program, setup, machine, progress, ideal=ideal, seen=see)
     part = gathered.report(watch)
     known = {(each.line, each.code) for each in report.diagnostics}  # of reading, which knows no stock
-    found = (each for each in part.findings if (each.line, each.code) not in known)
-    return replace(report, diagnostics=in_order((*report.diagnostics, *found))), part
+    found = [each for each in part.findings if (each.line, each.code) not in known]
+    left = _without_weaker(report.diagnostics, found)
+    return replace(report, diagnostics=in_order((*left, *found))), part
+
+
+def refusing_missing_offsets(report: Report, setup: Setup) -> Report:
+    """Return the report of ``prove``: where offsets are known, a tool without one is an error.
+
+    The machine would not start. The operator screen and ``run`` refuse such a start themselves.
+    """
+    if not setup.tools:
+        return report
+    found = (
+        replace(each, severity=Severity.ERROR) if each.code == "tool-offset-missing" else each
+        for each in report.diagnostics
+    )
+    return replace(report, diagnostics=tuple(found))
+
+
+_WEAKER = {
+    "cut-standing": {"spindle-off", "live-tool-off"},
+    "drill-without-limit": {"no-speed-limit"},
+    "arc-loop": {"arc-over-half"},
+}
+"""By check of the part: the warnings, found without the stock, that say the same with less certainty."""
+
+
+def _without_weaker(report: Iterable[Diagnostic], found: Iterable[Diagnostic]) -> list[Diagnostic]:
+    """Leave out each warning that an error of the part on its line, or after it, says for certain."""
+    left = list(report)
+    for error in found:
+        if error.severity is not Severity.ERROR or error.code not in _WEAKER:
+            continue
+        weaker = [
+            each
+            for each in left
+            if each.code in _WEAKER[error.code]
+            and each.severity is Severity.WARNING
+            and (each.line == error.line or 0 < each.n <= error.n)
+        ]
+        if weaker:
+            left.remove(max(weaker, key=lambda each: each.n))
+    return left
 
 
 def _not_made(moves: int) -> PartReport:

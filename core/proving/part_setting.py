@@ -25,6 +25,7 @@ class PartSetting:
     gang: Mapping[int, Point] = field(default_factory=dict)  # Z and X of the tools that ride one plate
     tips: Mapping[int, Place] = field(default_factory=dict)  # as ``Steps`` has them
     drives: Drives = UNKNOWN
+    live_codes: bool = False  # the machine has M codes that switch live tools
     step: float = STEP  # width of a column of the part, mm
     silenced: Mapping[str, str] = field(default_factory=dict)  # why, by check
     travel: tuple[Point, Point] | None = None  # of X and of Z, from home, mm

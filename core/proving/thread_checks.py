@@ -27,6 +27,7 @@ _IN_HOLE = 0.05  # mm
 _NEAR = 1e-6  # mm
 _MOST_STARTS = 24
 _IDLE = 3  # passes
+_SAME_END = 1.0  # mm of Z between passes of one thread
 
 
 class Found(NamedTuple):
@@ -62,6 +63,8 @@ class ThreadChecks:
     _fed: TipMove | None = None  # the last feed of a tap into its hole
     _entry: float = 0.0  # Z of the metal that it has met first
     _idle: int = 0  # passes one after the other that stay outside the metal
+    _uncut: tuple[int, TipMove] | None = None  # T and first pass of a thread that has met no metal yet
+    _begun: TipMove | None = None  # the last pass of the thread that is being cut
 
     def before_cut(self, move: TipMove, part: TurnedPart) -> None:
         """The radii of the metal, before the first pass of a thread is cut into it."""
@@ -99,7 +102,26 @@ class ThreadChecks:
             yield from self._thread(move, met, part, shape, tool)
             self._pass = move, met
 
+    def finish(self) -> Iterator[Found]:
+        """Yield what is wrong with the last thread of a program, or of a tool."""
+        uncut, self._uncut, self._begun = self._uncut, None, None
+        if uncut is not None and self.stock_given:
+            tool, move = uncut
+            yield Found(
+                "thread-cuts-nothing", f"No pass of this thread of {edge_name(tool)} meets the part.", move
+            )
+
     # --- threads that are cut
+
+    def _counted(self, move: TipMove, tool: int, *, cuts: bool) -> Iterator[Found]:
+        """Note a pass; a thread with another lead or at another place is another one."""
+        before = self._begun
+        if before is None or not _of_one_thread(before, move):
+            yield from self.finish()
+            self._uncut = tool, move
+        self._begun = move
+        if cuts:
+            self._uncut = None
 
     def _thread(
         self, move: TipMove, met: Cut, part: TurnedPart, shape: ToolShape | None, tool: int
@@ -107,6 +129,7 @@ class ThreadChecks:
         text = move.modal.length_text
         deep, angle = self._depth(move, part), _POINT
         self._idle = 0 if met or deep else self._idle + 1
+        yield from self._counted(move, tool, cuts=bool(met) or deep > 0.0)
         if self._idle == _IDLE and self.stock_given:
             yield Found("thread-in-air", f"The first {_IDLE} passes of this thread meet no metal.")
         if shape is not None and shape.kind is ToolKind.THREADING and shape.point:
@@ -236,6 +259,13 @@ class ThreadChecks:
         if turns * into > _GIVES:
             words = f"{edge_name(tool)} goes on for {text(turns * into)} until the spindle stands"
             yield Found("tap-reversal", f"{words}: more than a holder gives.")
+
+
+def _of_one_thread(before: TipMove, move: TipMove) -> bool:
+    """Whether two passes have one lead and go between the same two places in Z."""
+    ends = (before.points[0], before.points[-1]), (move.points[0], move.points[-1])
+    apart = max(abs(a[0] - b[0]) for a, b in zip(*ends, strict=True))
+    return apart < _SAME_END + move.per_rev and math.isclose(before.per_rev, move.per_rev, rel_tol=1e-3)
 
 
 def _per_turn(move: TipMove) -> float:

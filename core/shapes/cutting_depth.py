@@ -6,8 +6,8 @@ All depths are per side. A proposal is the smallest of three values, rounded dow
 - by insert: a quarter of the most that its cutting edge takes. Makers of inserts limit the depth to a share
   of the edge, which is smaller for a sharper corner: 1/2 from 75°, 1/3 from 55°, 1/5 below;
 - by machine: the depth whose cutting force the spindle can turn at the diameter of the stock. Drives of
-  these lathes have a constant torque. A machine file does not state it, so 1.5 kW at the highest speed is
-  assumed, which is a small drive.
+  these lathes have a constant torque. A machine file may state the power at the highest speed,
+  ``[spindle] power_kw``; otherwise 1.5 kW is assumed, which is a small drive.
 
 Boring bars get half of it, because they bend. Without an insert in the tool's sheet, that of a small holder
 is assumed, CCMT 0602. Proposals are to be changed by who knows the job; only the most is enforced.
@@ -25,7 +25,6 @@ _OF_EDGE = ((75.0, 1 / 2), (55.0, 1 / 3), (0.0, 1 / 5))  # by corner angle, of t
 _OF_ROUND = 1 / 4  # of the diameter of a round insert
 _PROPOSED = 1 / 4  # of the most
 _SMALL = insert_of("C", 6.35, 0.4)
-_POWER = 1500.0  # W at the highest speed
 _BAR = 1 / 2
 _STEP = {False: 0.005, True: 0.1}  # by metric: depths are rounded down to these
 _LEAVE = {False: 0.01, True: 0.25}  # by metric: for finishing
@@ -60,7 +59,7 @@ def finish_depth(setting: Setting, rough: float) -> float:
 
 def _turned(setting: Setting, tool: float, across: float) -> float:
     """Depth at which the cutting force has the torque of the spindle: force x depth x feed x radius."""
-    torque = _POWER / (setting.shop.max_rpm * math.pi / 30.0)  # N m
+    torque = setting.shop.power / (setting.shop.max_rpm * math.pi / 30.0)  # N m
     radius, mm = across * setting.mm / 2000.0, setting.mm
     if radius <= 0.0:
         return math.inf

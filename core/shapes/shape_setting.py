@@ -17,6 +17,7 @@ class Shop:
     """What the machine and its tool store say: rpm, live tool, tools by T (mm)."""
 
     max_rpm: float = 3500.0
+    power: float = 1500.0  # W at the highest speed; where the machine file does not state it, a small drive
     slide_accel: float = 0.0  # mm/s²; 0: not known
     c_rpm: float = 200.0
     live: tuple[int, int] = (15, 16)  # M codes of the live tool: on, off

@@ -29605,8 +29605,8 @@
     </message>
     <message>
       <location filename="core/motion/feed_rates.py" />
-      <source>the spindle speed on the axis has no upper limit; give G77 or rpm_max</source>
-      <translation>la velocidad del husillo sobre el eje no tiene tope; dé G77 o rpm_max</translation>
+      <source>the spindle speed on the axis has no upper limit: program one, or give rpm_max</source>
+      <translation>la velocidad del husillo sobre el eje no tiene tope: programe uno o dé rpm_max</translation>
     </message>
     <message>
       <location filename="core/motion/motion_path.py" />
@@ -30050,6 +30050,11 @@
     </message>
     <message>
       <location filename="core/proving/cut_sizes.py" />
+      <source>%1 cuts %2 deep in one pass; it can take %3.</source>
+      <translation>%1 corta %2 de profundidad en una pasada; admite %3.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/cut_sizes.py" />
       <source>%1 cuts %2 deep; its edge is %3 long.</source>
       <translation>%1 corta con %2 de profundidad; su filo mide %3.</translation>
     </message>
@@ -30190,6 +30195,11 @@
     </message>
     <message>
       <location filename="core/proving/cutting_checks.py" />
+      <source>Write LIMS= with the highest speed for this chuck and bar.</source>
+      <translation>Escriba LIMS= con la velocidad máxima para este plato y esta barra.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/cutting_checks.py" />
       <source>Write M12 at its end or its start.</source>
       <translation>Escriba M12 a su final o a su inicio.</translation>
     </message>
@@ -30235,6 +30245,11 @@
     </message>
     <message>
       <location filename="core/proving/edge_checks.py" />
+      <source>%1 cuts on the axis under G96: the spindle runs at its highest speed.</source>
+      <translation>%1 corta en el eje bajo G96: el husillo gira a su velocidad máxima.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/edge_checks.py" />
       <source>%1 cuts with the spindle turning the other way than where it has cut before.</source>
       <translation>%1 corta con el husillo girando al revés que donde ha cortado antes.</translation>
     </message>
@@ -30250,8 +30265,18 @@
     </message>
     <message>
       <location filename="core/proving/edge_checks.py" />
+      <source>%1 hollows out the edge of the face, radius %2.</source>
+      <translation>%1 ahueca el canto de la cara, radio %2.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/edge_checks.py" />
       <source>%1 is fed %2 into solid material.</source>
       <translation>%1 avanza %2 en material macizo.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/edge_checks.py" />
+      <source>%1 is fed around %2 of an arc through the part.</source>
+      <translation>%1 avanza por un arco de %2 a través de la pieza.</translation>
     </message>
     <message>
       <location filename="core/proving/edge_checks.py" />
@@ -30260,13 +30285,13 @@
     </message>
     <message>
       <location filename="core/proving/edge_checks.py" />
-      <source>%1, a %2-hand tool in front of the axis, cuts with %3.</source>
-      <translation>%1, una herramienta de mano %2 delante del eje, corta con %3.</translation>
+      <source>%1, a %2-hand tool, cuts while the spindle turns forward.</source>
+      <translation>%1, una herramienta de mano %2, corta mientras el husillo gira hacia delante.</translation>
     </message>
     <message>
       <location filename="core/proving/edge_checks.py" />
-      <source>%1, which is %2-hand, cuts while the spindle turns by %3.</source>
-      <translation>%1, que es de mano %2, corta mientras el husillo gira con %3.</translation>
+      <source>%1, a %2-hand tool, cuts while the spindle turns in reverse.</source>
+      <translation>%1, una herramienta de mano %2, corta mientras el husillo gira en sentido inverso.</translation>
     </message>
     <message>
       <location filename="core/proving/machine_checks.py" />
@@ -30360,8 +30385,23 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
+      <source>A drill works on the axis under constant surface speed.</source>
+      <translation>Una broca trabaja en el eje con velocidad de corte constante.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>A drill, centre drill, reamer or tap cuts under G96 with no limit in force: the spindle runs at its highest speed.</source>
+      <translation>Una broca, una broca de centrar, un escariador o un macho corta bajo G96 sin límite vigente: el husillo gira a su velocidad máxima.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
       <source>A drill, reamer or tap cuts beside the spindle axis.</source>
       <translation>Una broca, un escariador o un macho corta fuera del eje del husillo.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>A drill, reamer, mill, turning tool or parting blade meets more than .001 in of material while no live tool is on and the spindle, which has turned before, is stopped or held as C. Not where the machine file has no M code for a live tool.</source>
+      <translation>Una broca, un escariador, una fresa, una herramienta de torneado o una cuchilla de tronzar encuentra más de .001 in de material mientras no hay herramienta motorizada encendida y el husillo, que antes ha girado, está parado o sujeto como C. No donde el archivo de máquina no tiene un código M para una herramienta motorizada.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -30415,6 +30455,11 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
+      <source>A quarter circle, radius up to .118 in, begins along Z at the face and ends away from the axis.</source>
+      <translation>Un cuarto de círculo, de radio hasta .118 in, empieza a lo largo de Z en la cara y termina alejándose del eje.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
       <source>A rapid right behind a cut takes off metal at a smaller radius than the cut.</source>
       <translation>Un rápido justo después de un corte arranca metal a un radio menor que el corte.</translation>
     </message>
@@ -30450,6 +30495,11 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
+      <source>A thread is cut beside the part.</source>
+      <translation>Se rosca fuera de la pieza.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
       <source>A thread is not cut by the pitch of its insert.</source>
       <translation>Una rosca no se corta con el paso de su plaquita.</translation>
     </message>
@@ -30457,6 +30507,11 @@
       <location filename="core/proving/part_checks.py" />
       <source>A tool is fed beyond the far end of the stock.</source>
       <translation>Una herramienta avanza más allá del extremo del material.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>A tool is fed into the part while neither tool nor spindle turns.</source>
+      <translation>Una herramienta avanza en la pieza mientras no giran ni la herramienta ni el husillo.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -30480,8 +30535,18 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
+      <source>An arc hollows out the front edge of the part, where an edge is usually rounded.</source>
+      <translation>Un arco ahueca el canto delantero de la pieza, donde un canto suele redondearse.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
       <source>An arc of the contour is not on the part.</source>
       <translation>Un arco del contorno no está en la pieza.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>An arc through more than 200° meets material; not of a round insert.</source>
+      <translation>Un arco de más de 200° encuentra material; no con una plaquita redonda.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -30495,13 +30560,23 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
+      <source>An insert is fed around a loop through the part.</source>
+      <translation>Una plaquita avanza por un bucle a través de la pieza.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>An insert: more than twice its nose radius, and more than .006 in. A drill, a reamer or a blade: more than five times the limit of chip-load.</source>
+      <translation>Una plaquita: más del doble de su radio de punta, y más de .006 in. Una broca, un escariador o una cuchilla: más de cinco veces el límite de chip-load.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
       <source>An outline comes into the contour of quill and centre that the machine file gives under [clamping].</source>
       <translation>Un contorno entra en el de la caña y el punto que el archivo de máquina da en [clamping].</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>An outline comes into the contour that the machine file gives under [clamping].</source>
-      <translation>Un perfil entra en el contorno que el archivo de máquina da en [clamping].</translation>
+      <source>An outline comes into the contour that the machine file gives under [clamping], or within .001 in of it.</source>
+      <translation>Un contorno entra en el contorno que da el archivo de máquina en [clamping], o se acerca a menos de .001 in de él.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -30545,11 +30620,6 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>Change M03 and M04, or the hand that the tool's shape says.</source>
-      <translation>Cambie M03 y M04, o la mano que dice la forma de la herramienta.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/part_checks.py" />
       <source>Check K and the insert. Leave the pitch of a partial-profile insert out of its shape.</source>
       <translation>Compruebe K y la plaquita. Deje el paso de una plaquita de perfil parcial fuera de su forma.</translation>
     </message>
@@ -30560,6 +30630,11 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
+      <source>Check X and Z of the thread, and whether X is a diameter.</source>
+      <translation>Compruebe X y Z de la rosca, y si X es un diámetro.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
       <source>Check Z, the length of the stock and how far it sticks out of the chuck.</source>
       <translation>Compruebe Z, la longitud del material y cuánto sobresale del plato.</translation>
     </message>
@@ -30567,6 +30642,16 @@
       <location filename="core/proving/part_checks.py" />
       <source>Check the Z of the part-off: the part would lack what is behind it.</source>
       <translation>Compruebe la Z del tronzado: a la pieza le faltaría lo que queda detrás.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>Check the direction of the arc, and the signs of its center.</source>
+      <translation>Compruebe el sentido del arco y los signos de su centro.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>Check the direction of the arc: the other one rounds the edge.</source>
+      <translation>Compruebe el sentido del arco: el otro redondea el canto.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -30715,13 +30800,13 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>Lower S, limit G96 by G77, let the part stick out less, or support it.</source>
-      <translation>Baje S, limite G96 con G77, deje que la pieza sobresalga menos o apóyela.</translation>
+      <source>Lower S, limit the speed under G96, let the part stick out less, or support it.</source>
+      <translation>Baje S, limite la velocidad bajo G96, deje que la pieza sobresalga menos o apóyela.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>Lower S, or limit G96 by G77.</source>
-      <translation>Baje S, o limite G96 con G77.</translation>
+      <source>Lower S, or limit the speed under G96.</source>
+      <translation>Baje S, o limite la velocidad bajo G96.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -30745,11 +30830,6 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>More than five times the limit of chip-load.</source>
-      <translation>Más de cinco veces el límite de chip-load.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/part_checks.py" />
       <source>More than half of the first critical speed of what sticks out, as a bar of brass held at one end.</source>
       <translation>Más de la mitad de la primera velocidad crítica de lo que sobresale, como barra de latón sujeta por un extremo.</translation>
     </message>
@@ -30765,8 +30845,13 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>One pass is deeper than usual for its insert or its boring bar.</source>
-      <translation>Una pasada es más profunda de lo usual para su plaquita o su barra de mandrinar.</translation>
+      <source>One pass is deeper than its insert or its boring bar can take.</source>
+      <translation>Una pasada es más profunda de lo que admite su plaquita o su barra de mandrinar.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>One pass is deeper than usual for its insert.</source>
+      <translation>Una pasada es más profunda de lo habitual para su plaquita.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -30780,6 +30865,11 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
+      <source>Program the speed of a drill in rpm.</source>
+      <translation>Programe la velocidad de una broca en rpm.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
       <source>Remove the offset of the tool that is not mounted.</source>
       <translation>Borre el corrector de la herramienta que no está montada.</translation>
     </message>
@@ -30790,13 +30880,18 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
+      <source>Reverse the spindle, or correct the hand in the shape of the tool.</source>
+      <translation>Invierta el giro del husillo, o corrija la mano en la forma de la herramienta.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
       <source>S under G96 is over 1000 m/min (3280 ft/min), and asks for twice the spindle's speed.</source>
       <translation>S con G96 supera 1000 m/min (3280 ft/min), y pide el doble de la velocidad del husillo.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>Start farther away, lower S, end in a groove, or pull out with P.</source>
-      <translation>Empiece más lejos, baje S, termine en una ranura o salga con P.</translation>
+      <source>Start farther away, lower S, end in a groove, or pull out while the slide moves along Z.</source>
+      <translation>Empiece más lejos, baje S, termine en una ranura o salga mientras el carro avanza en Z.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -30805,8 +30900,13 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>Stop short of the metal and feed in: look for a G00 left on, and for a sign or a decimal point.</source>
-      <translation>Pare antes del metal y entre en avance: busque un G00 que sigue activo, un signo o un punto decimal.</translation>
+      <source>Start the spindle, or the live tool, before this move.</source>
+      <translation>Arranque el husillo, o la herramienta motorizada, antes de este movimiento.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>Stop short of the metal and feed in: look for a rapid left on, and for a sign or a decimal point.</source>
+      <translation>Pare antes del metal y entre en avance: busque un rápido que sigue activo, un signo o un punto decimal.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -30960,8 +31060,18 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>With a stated stock, the mean depth: over .5 of the cutting edge of a C or S insert, .4 of W, .3 of T and D, .2 of V (Widia's limits for medium geometries, nose radius left off; CNMG432 where no insert is stated), or over half the diameter of a boring bar. The material is not known: soft metal may allow more.</source>
-      <translation>Con un material indicado, la profundidad media: más de .5 del filo de una plaquita C o S, .4 de W, .3 de T y D, .2 de V (límites de Widia para geometrías medias, sin el radio de punta; CNMG432 donde no se indica plaquita), o más de la mitad del diámetro de una barra de mandrinar. La clase de metal no se conoce: un metal blando puede admitir más.</translation>
+      <source>With a stated stock and a spindle that turns, the mean depth: over 2/3 of the cutting edge of a stated C or S insert, half of W, T and D, a quarter of V, .4 of a round one, or over half the diameter of a boring bar.</source>
+      <translation>Con un material de partida indicado y un husillo que gira, la profundidad media: más de 2/3 del filo de una plaquita C o S indicada, la mitad de W, T y D, un cuarto de V, .4 de una redonda, o más de la mitad del diámetro de una barra de mandrinar.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>With a stated stock, no pass of one lead between the same two places in Z meets any material.</source>
+      <translation>Con un material de partida indicado, ninguna pasada del mismo paso entre los mismos dos puntos de Z encuentra material.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>With a stated stock, the mean depth: over .5 of the cutting edge of a C or S insert, .4 of W, .3 of T and D, .2 of V (Widia's limits for medium geometries, nose radius left off; CNMG432 where no insert is stated). The material is not known: soft metal may allow more.</source>
+      <translation>Con un material de partida indicado, la profundidad media: más de .5 del filo de una plaquita C o S, .4 de W, .3 de T y D, .2 de V (límites de Widia para geometrías medias, sin el radio de punta; CNMG432 donde no se indica la plaquita). El material no se conoce: un metal blando puede admitir más.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -31005,6 +31115,11 @@
     </message>
     <message>
       <location filename="core/proving/part_findings.py" />
+      <source>%1 cuts while neither tool nor spindle turns.</source>
+      <translation>%1 corta mientras no giran ni la herramienta ni el husillo.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_findings.py" />
       <source>%1 deep at Z %2 … %3</source>
       <translation>%1 de profundidad en Z %2 … %3</translation>
     </message>
@@ -31037,6 +31152,11 @@
       <location filename="core/proving/part_findings.py" />
       <source>%1 runs into the tailstock, %2.</source>
       <translation>%1 choca con el contrapunto, %2.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_findings.py" />
+      <source>%1 touches the chuck.</source>
+      <translation>%1 toca el plato.</translation>
     </message>
     <message>
       <location filename="core/proving/part_findings.py" />
@@ -31227,6 +31347,11 @@
       <location filename="core/proving/thread_checks.py" />
       <source>%1: more than a holder gives.</source>
       <translation>%1: más de lo que cede un portamachos.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/thread_checks.py" />
+      <source>No pass of this thread of %1 meets the part.</source>
+      <translation>Ninguna pasada de esta rosca de %1 encuentra la pieza.</translation>
     </message>
     <message>
       <location filename="core/proving/thread_checks.py" />

@@ -18,7 +18,7 @@ STOCK = "bar:1.0:3.0"
 
 ERRORS = {
     "bore-without-drill": [(5, "drill-off-axis"), (6, "drill-off-axis")],
-    "arc-wrong-way": [], "behind-the-bar": [(7, "past-stock")], "dwell-4000": [],
+    "arc-wrong-way": [(7, "arc-loop")], "behind-the-bar": [(7, "past-stock")], "dwell-4000": [],
     "fanuc-g71": [(5, "other-control")], "fanuc-g92-thread": [], "flat-drill": [], "fresa": [],
     "g04-fanuc": [(4, "other-control"), (5, "other-control"), (6, "other-control")],
     "g33-from-x0-slow": [(5, "thread-passes")], "g33-i9999": [(5, "thread-depth")],
@@ -31,7 +31,7 @@ ERRORS = {
     "tap-comment": [], "thread-retract-through-bar": [(6, "through-part")], "two-tools-one-place": [],
 }  # fmt: skip
 WARNINGS = {
-    "arc-wrong-way": {"wrong-side"}, "fanuc-g92-thread": {"preset-thread"}, "no-m03": {"spindle-off"},
+    "fanuc-g92-thread": {"preset-thread"}, "no-m03": {"spindle-off"},
     "plunge-behind-head": {"wrong-side"},
 }  # fmt: skip
 

@@ -121,3 +121,17 @@ def test_what_has_no_safe_default_is_refused(line: str, path: str) -> None:
 def test_the_shipped_lathe_leaves_nothing_to_a_default() -> None:
     machine = load_machine(None)
     assert (machine.timing.collet_open, machine.spindle.decel) == (0.25, 2500)
+
+
+@pytest.mark.parametrize(("stated", "power"), [("", 0.0), ("power_kw = 2.2\n", 2200.0)])
+def test_the_power_of_the_spindle_is_stated_in_kilowatts(stated: str, power: float) -> None:
+    text = without().replace("[spindle]\n", f"[spindle]\n{stated}", 1)
+    assert parse_machine(text, "t").spindle.power == pytest.approx(power)
+
+
+@pytest.mark.parametrize("wrong", ["0", "-1.5", "1500", '"1.5"', "true", "nan"])
+def test_a_power_that_no_spindle_has_is_refused(wrong: str) -> None:
+    """0.05 kW to 100 kW; 1500 are watts."""
+    text = without().replace("[spindle]\n", f"[spindle]\npower_kw = {wrong}\n", 1)
+    (found,) = findings(text)
+    assert found.path == "spindle.power_kw"

@@ -38,8 +38,13 @@ def test_the_depth_that_is_usual_for_an_edge(insert: str, usual: float) -> None:
 
 @pytest.mark.parametrize(
     ("r", "expected"),
-    [(".25", [("depth-of-cut", 6)]), (".27", []), (".15", [("depth-of-cut", 6)])],
-    # .25 in = 6.35 mm over 6.05; .23 in = 5.84 mm; .35 in = 8.89 mm
+    [
+        (".25", [("depth-of-cut", 6)]),
+        (".27", []),
+        (".15", [("depth-breaks-tool", 6)]),
+        (".19", [("depth-of-cut", 6)]),
+    ],
+    # .25 in = 6.35 mm over 6.05; .23 in = 5.84 mm; .35 in = 8.89 mm over 8.07 (2/3 of 12.1); .31 in = 7.87 mm
 )
 @pytest.mark.parametrize(("metric", "diameter"), WAYS)
 def test_a_pass_of_a_cnmg432(r: str, expected: list[tuple[str, int]], metric: bool, diameter: bool) -> None:
@@ -60,7 +65,7 @@ def test_an_assumed_stock_says_nothing_of_the_depth() -> None:
     assert assumed_part_of(program).findings == ()
 
 
-@pytest.mark.parametrize(("r", "expected"), [(".52", [("depth-of-cut", 6)]), (".5", [])])
+@pytest.mark.parametrize(("r", "expected"), [(".52", [("depth-breaks-tool", 6)]), (".5", [])])
 def test_a_boring_bar_cuts_half_its_diameter_at_most(r: str, expected: list[tuple[str, int]]) -> None:
     """A bore of r 10 mm and a bar of 6 mm: .52 in are 3.21 mm deep, .5 in 2.7 mm."""
     program = text(f"T1\nX[.35]Z[.1]\nX[{r}]\nG95F[.003]Z[-.4]\nX[.35]\nG94F[300]Z[1]")
@@ -105,8 +110,14 @@ def test_a_blade_may_chamfer() -> None:
 
 @pytest.mark.parametrize(
     ("z", "expected"),
-    [("-1.57", {"near-chuck"}), ("-1.56", set()), ("-1.58", {"into-chuck"})],
-    # the chuck's face is 40 mm or 1.5748 in behind Z0: .005 in and .015 in before it
+    [
+        ("-1.57", {"near-chuck"}),
+        ("-1.56", set()),
+        ("-1.58", {"into-chuck"}),
+        ("-1.5745", {"into-chuck"}),
+        ("-1.5725", {"near-chuck"}),
+    ],
+    # the chuck's face is 40 mm or 1.5748 in behind Z0: .005 in, .015 in, .0003 in and .0023 in before it
 )
 def test_a_blade_beside_the_chuck(z: str, expected: set[str]) -> None:
     program = text(f"T1\nX[1.5]Z[.1]\nZ[{z}]\nX[.6]\nG95F[.002]X[.4]\nX[.6]\nG94F[300]X[1.5]\nZ[1]")

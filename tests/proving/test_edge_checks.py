@@ -62,7 +62,7 @@ REAR = "M05\nM04S900\nT7\nX[-.6]Z[-.4]\nG95F[.004]X[-.4]\nX[{x}]"
 SHAFT = "T1\nX[.6]Z[.05]\nX[.4]\nG95F[.004]Z[{z}]\nX[.6]\nG94F[300]Z[.1]\n"
 SHAFT += "T2\nZ[-.9]X[.6]\nG95F[.002]X[{r}]\nG94F[300]X[.6]"
 GROOVE = "T2\nX[.6]Z[{z}]\nG95F[.004]X[.4]\nG94F[300]X[.6]"
-THREAD = "M05\nM03S600\nT8\nX[.3]Z[.2]\nG34Z[{z}]I[.01]K[.05]\nX[.4]"
+THREAD = "M05\nM03S600\nT8\nX[.24]Z[.2]\nG34Z[{z}]I[.01]K[.05]\nX[.4]"
 FACE_MILL = "T9\nX[-.3]Z[.1]\nM05\nM19S60\nG04F3\nM27\nG94F[20]\nZ[{z}]\n"
 FACE_MILL += "(~PLXC)\n(X[.2]Y0)\n(X[-.2]Y0)\n(END)\nM28\nM05"
 LONG = bar(25.4, 0.0, -80.0)
@@ -98,12 +98,18 @@ CASES = {
     "chip-load by time": (
         "T1\nX[.6]Z[.05]\nX[.4]\nF[20]Z[-.5]\nX[.6]", "T1\nX[.6]Z[.05]\nX[.4]\nF[18]Z[-.5]\nX[.6]", ROD, 6,
     ),
-    # five times .0126 is .063 in a revolution
-    "feed-breaks-tool": (PASS.format(r=".4", f=".064"), PASS.format(r=".4", f=".012"), ROD, 6),
+    # twice a nose of 0.4 mm is .0315 in a revolution
+    "feed-breaks-tool": (PASS.format(r=".4", f=".032"), PASS.format(r=".4", f=".012"), ROD, 6),
     # DCMT11T304: edge 11.6 mm, less the nose .4; .3 of it is 3.37 mm or .1325 in, .5 is .221 in
     "depth-of-cut": (PASS.format(r=".36", f=".004"), PASS.format(r=".38", f=".004"), ROD, 6),
-    "depth-of-cut along Z": (PASS.format(r=".27", f=".004"), PASS.format(r=".38", f=".004"), ROD, 6),
+    # .23 in are 5.84 mm, over half of 11.2 mm
+    "depth-breaks-tool": (PASS.format(r=".27", f=".004"), PASS.format(r=".38", f=".004"), ROD, 6),
     # a face .14 in deep, and one of .09
+    # 300 ft/min on the axis is any speed; G77 limits it
+    "drill-without-limit": (
+        "G96S300\n" + HOLE.format(m="M03", t=3, f=".004").replace("S900", ""),
+        "G96S300\nG77S2000\n" + HOLE.format(m="M03", t=3, f=".004").replace("S900", ""), ROD, 8,
+    ),
     "depth-of-cut of a face": (FACE.format(z="-.14"), FACE.format(z="-.09"), ROD, 6),
     # DCMT070204: .3 of 7.75 - .4 is 2.2 mm; from r 10 to .49 in are 2.45 mm, to .47 in 1.94 mm
     "depth-of-cut in a bore": (BORE.format(r=".49"), BORE.format(r=".47"), PIPE, 6),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import pytest
 
@@ -143,9 +144,19 @@ LOOP = "T1\nX[.6]Z[.1]\nX[.3]\nG95F[.004]Z[-.3]\nG03X[.45]Z[-.45]I[.3]K[-.45]\nX
 
 
 def test_an_arc_is_examined_piece_by_piece() -> None:
-    """The arc begins square to the axis, into .3 in of material; the back of a CNMG clears 5°."""
+    """The arc begins square to the axis, into .15 in of material; the back of a CNMG clears 5°."""
+    hollow = "T1\nX.6Z.1\nX.45\nG95F.004Z-.3\n{g}X.45Z-.6R.15\nX.6\nG94F300Z1"
+    found = [codes(f"G90G94F300G73\nM03S1500\n{hollow.format(g=g)}\nM30\n") for g in ("G02", "G03")]
+    assert {"wrong-side"} in found
+
+
+@pytest.mark.parametrize(("insert", "expected"), [("CNMG120408", True), ("RCMT0803M0", False)])
+def test_an_insert_with_a_corner_gets_around_no_loop(insert: str, expected: bool) -> None:
+    """From square to the axis at Z-.3 around to parallel to it: 270°; the same arc the short way is 90°."""
     program = "G90G94F300G73\nM03S1500\n" + LOOP.replace("[", "").replace("]", "") + "\nM30\n"
-    assert codes(program) == {"depth-of-cut", "wrong-side"}
+    shapes = {1: replace(TURNING, insert=insert, nose_radius=4.0 if insert[0] == "R" else 0.8)}
+    assert (("arc-loop", "error") in found(program, ROD, shapes)) is expected
+    assert ("arc-loop", "error") not in found(program.replace("G03", "G02"), ROD, shapes)
 
 
 def test_what_rests_on_something_assumed_is_a_warning() -> None:
@@ -162,3 +173,20 @@ def test_two_tools_with_one_offset_are_one_note_and_not_neighbours() -> None:
     gang = {1: (0.0, -25.4), 4: (0.0, -25.4)}
     both = part_of(text(TURNED.format(t=1, z="-.5")), ROD, {1: TURNING, 4: LEFT}, gang=gang)
     assert [(each.check, str(each.severity)) for each in both.findings] == [("tools-in-one-place", "note")]
+
+
+EDGE = "T1\nX[.6]Z[0]\nG95F[.004]X[-.02]\nG94F[300]Z[.05]\nX[{x}]\nG95F[.004]Z[{z}]\n{arc}\nZ[-.5]\nX[.6]"
+
+
+@pytest.mark.parametrize(
+    ("x", "z", "arc", "expected"),
+    [
+        (".4", "0", "G03X.44Z-.04R.04", True),  # hollow: along Z at the face, and then away from the axis
+        (".4", "0", "G02X.44Z-.04R.04", False),  # the edge is rounded
+        (".4", "-.2", "G03X.44Z-.24R.04", False),  # the fillet of a shoulder
+        (".3", "0", "G03X.45Z-.15R.15", False),  # too large for the rounding of an edge
+    ],
+)  # fmt: skip
+def test_a_hollow_at_the_edge_of_the_face(x: str, z: str, arc: str, expected: bool) -> None:
+    program = text(EDGE.format(x=x, z=z, arc=arc))
+    assert (("hollow-at-edge", "warning") in found(program)) is expected

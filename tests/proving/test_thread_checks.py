@@ -73,6 +73,11 @@ CASES = {
     "thread-form": (CUT.replace("X[.222]", "X[.2]"), CUT, ROD, 8),
     # I = .01: passes start at X.3, .2959, .2927, all outside a bar of .25
     "thread-in-air": (CUT.replace("X[.247]", "X[.3]"), CUT, ROD, 8),
+    # I = .01: passes from X.3 to X.26, all outside a bar of .25; the last of the twin cuts to .24
+    "thread-cuts-nothing": (
+        CUT.replace("X[.247]\n", "X[.3]\n").replace("X[.222]", "X[.26]"),
+        CUT.replace("X[.222]", "X[.24]"), ROD, 8,
+    ),
     "thread-pitch": (CUT.replace("K[.05]", "K[.075]"), CUT, ROD, 8),
 }  # fmt: skip
 

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
+import resources
+from app.compose.machine_files import parse_machine
+from app.compose.shapes_desk import shop_of
 from app.shapes.drawing_plan import Asked
 from core.language.source import Dialect
 from core.part.tool_shape import ToolKind, ToolShape
@@ -91,6 +95,21 @@ def test_a_depth_by_material_insert_and_machine(
     material: str, tool: ToolShape, across: float, rpm: float, depth: float
 ) -> None:
     assert rough_depth(setting(material, {1: tool}, rpm), 1, across) == pytest.approx(depth)
+
+
+@pytest.mark.parametrize(
+    ("stated", "depth"),
+    [
+        # 4.093 N m of 1.5 kW give 0.488 mm or .0192 in on 2 in steel; 3 kW give .0384 in, .75 kW .0096 in
+        ("", 0.015), ("power_kw = 1.5", 0.015), ("power_kw = 3", 0.035), ("power_kw = 0.75", 0.005),
+        ("power_kw = 30", 0.04),  # the material allows no more
+    ],
+)  # fmt: skip
+def test_a_depth_by_the_power_of_the_machine_file(stated: str, depth: float) -> None:
+    text = resources.machine_file("gt75.toml").replace("[spindle]\n", f"[spindle]\n{stated}\n", 1)
+    shop = shop_of(parse_machine(text, "t"), {1: CNMG})
+    now = replace(setting("STEEL"), shop=shop)
+    assert rough_depth(now, 1, 2.0) == pytest.approx(depth)
 
 
 def test_metric_facing_boring_and_finishing() -> None:

@@ -304,6 +304,9 @@ class Far:
                 with self._listening.accept()[0] as connection, suppress(OSError):
                     connection.recv(1000)
                     self._play(connection)
+                    connection.shutdown(socket.SHUT_WR)
+                    while connection.recv(4096):  # closing with unread bytes would reset it
+                        pass
                 self.ended.put(None)
 
     def __enter__(self) -> Far:
