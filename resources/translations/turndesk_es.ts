@@ -4670,6 +4670,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>it ended the connection without an MQTT answer; is this its port without TLS?</source>
+      <translation>cerró la conexión sin respuesta MQTT; ¿es este su puerto sin TLS?</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>it ended the connection without an answer</source>
       <translation>cerró la conexión sin responder</translation>
     </message>
@@ -4687,6 +4692,16 @@
       <location filename="" />
       <source>it is written by a mask of the newer controls, whose digits differ from edition to edition; write the groove with CYCLE93</source>
       <translation>lo escribe una máscara de los controles nuevos, cuyas cifras cambian de una edición a otra; escriba la ranura con CYCLE93</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>it refuses the user or the password of [announce]</source>
+      <translation>rechaza el usuario o la contraseña de [announce]</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>it refuses the user or the password of [announce] (Not authorized)</source>
+      <translation>rechaza el usuario o la contraseña de [announce] (Not authorized)</translation>
     </message>
     <message>
       <location filename="" />
