@@ -20,6 +20,27 @@ from core.geometry.lines_and_arcs import Element, Point
 _PIXELS = 96.0  # an inch, by CSS
 _ROOT = re.compile(rb"<svg\b[^>]*>", re.IGNORECASE | re.DOTALL)
 _SIZE = re.compile(rb"\swidth\s*=\s*[\"']\s*[\d.]+(?:[eE][-+]?\d+)?\s*(mm|cm|in|pt|pc|Q)\s*[\"']")
+_DIMENSIONS = frozenset(
+    {
+        "d",
+        "points",
+        "x",
+        "y",
+        "x1",
+        "y1",
+        "x2",
+        "y2",
+        "cx",
+        "cy",
+        "r",
+        "rx",
+        "ry",
+        "width",
+        "height",
+        "transform",
+    }
+)
+_NO_NUMBER = re.compile(r"(?<![a-z])(nan|inf|infinity)(?![a-z])", re.IGNORECASE)
 _HREF = "{http://www.w3.org/1999/xlink}href"
 _INKSCAPE = "{http://www.inkscape.org/namespaces/inkscape}label"
 
@@ -54,7 +75,7 @@ def _shapes(name: str, data: bytes) -> Any:
         raise DrawingError(
             f"{name} has entities of its own, which are not read: save it as plain SVG.", "own-entities"
         )
-    _check_uses(name, data)
+    _check_elements(name, data)
     root = SVG.parse(io.BytesIO(data), reify=True, ppi=_PIXELS)
     if not isinstance(root, SVG):
         words = f"{name} is no SVG, its first element is of another namespace: save the drawing anew."
@@ -62,13 +83,17 @@ def _shapes(name: str, data: bytes) -> Any:
     return root
 
 
-def _check_uses(name: str, text: bytes) -> None:
-    """Refuse reused groups (``<use>``) that come to too many elements. Raises DrawingError, ParseError."""
+def _check_elements(name: str, text: bytes) -> None:
+    """Refuse dimensions that are not numbers, and reused groups (``<use>``) of too many elements.
+
+    Raises DrawingError, ParseError.
+    """
     root = ElementTree.fromstring(text)
     by_id: dict[str, list[Element_]] = {}
     count = 0
     for each in root.iter():
         count += 1
+        _check_numbers(name, each)
         by_id.setdefault(f"#{each.get('id')}", []).append(each)
 
     def content(element: Element_) -> Content:
@@ -77,6 +102,15 @@ def _check_uses(name: str, text: bytes) -> None:
         return Content(1, [(1, each) for each in (*element, *targets)])
 
     check_expansion(name, root, content, spare=count)
+
+
+def _check_numbers(name: str, element: Element_) -> None:
+    """Refuse a dimension that is not a number: svgelements would leave out the element."""
+    for dimension in _DIMENSIONS.intersection(element.keys()):
+        if _NO_NUMBER.search(element.get(dimension, "")):
+            kind = str(element.tag).rpartition("}")[2]
+            words = f"{name}: {dimension} of <{kind}> is not a number: draw that element again."
+            raise DrawingError(words, "no-number")
 
 
 def _drawn(root: Any, near: float, left_out: Counter[str], name: str) -> Iterator[Drawn]:

@@ -17839,6 +17839,11 @@
       <translation>%1 no es SVG, su primer elemento es de otro espacio de nombres: guarde el dibujo de nuevo.</translation>
     </message>
     <message>
+      <location filename="core/drawings/svg_reader.py" />
+      <source>%1: %2 of &lt;%3&gt; is not a number: draw that element again.</source>
+      <translation>%1: %2 de &lt;%3&gt; no es un número: dibuje ese elemento otra vez.</translation>
+    </message>
+    <message>
       <location filename="core/drawings/turning_contour.py" />
       <source>The edge of the tool stands at %1 degrees, the contour at Z %2 mm at %3: take a tool for shoulders.</source>
       <translation>El filo del útil está a %1 grados, el contorno en Z %2 mm a %3: tome un útil para escalones.</translation>

@@ -222,3 +222,30 @@ def test_an_entity_of_an_unknown_kind_is_left_out_and_told(tmp_path: Path) -> No
     drawing = read_drawing(path)
     assert len(drawing.drawn) == 1
     assert drawing.left_out == {"OWNKIND": 1}
+
+
+@pytest.mark.parametrize(
+    "element",
+    [
+        '<circle cx="5" cy="5" r="NaN"/>',
+        '<rect x="nan" y="0" width="3" height="3"/>',
+        '<path d="M0 0L10 nan"/>',
+        '<line x1="0" y1="-Infinity" x2="3" y2="3"/>',
+        '<polyline points="0,0 inf,5"/>',
+    ],
+)
+def test_a_dimension_of_svg_that_is_not_a_number(tmp_path: Path, element: str) -> None:
+    """svgelements would leave the element out, and a sound one beside it would be the whole drawing."""
+    path = tmp_path / "x.svg"
+    path.write_text(
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="9mm"><path d="M0 0L5 5L9 0"/>{element}</svg>'
+    )
+    assert refused(path).code == "no-number"
+
+
+def test_names_in_svg_may_contain_nan(tmp_path: Path) -> None:
+    path = tmp_path / "x.svg"
+    path.write_text(
+        '<svg xmlns="http://www.w3.org/2000/svg"><path id="nan" class="inf" d="M0 0L5 5L9 0"/></svg>'
+    )
+    assert len(read_drawing(path).drawn) == 2
