@@ -153,8 +153,8 @@ def test_a_folder_that_cannot_be_read_is_shown_and_watched_on(
         raise OSError(number, os.strerror(number))
 
     with monkeypatch.context() as patch:
-        for name in ("stat", "open"):
-            patch.setattr(Path, name, broken)
+        patch.setattr(Path, "stat", broken)
+        patch.setattr(os, "open", broken)
         file.look()
         assert begins(file.differs, "programs.unreadable", name="part.nc")
     file.look()

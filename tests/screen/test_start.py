@@ -19,13 +19,13 @@ print(*sys.modules)
 print(*read)
 desk.close()
 """
-READ_ONCE = "from app.compose.machine_files import load_machine; load_machine()"
 OF_LATER = (
     *("app.editor", "app.programs.program_list", "app.quality.shift_page", "app.scope", "app.shapes"),
     *("app.sharing", "app.special.setup_sheet", "app.transfer", "core.sharing", "pyqtgraph"),
     *("core.drawings.profile_program", "core.interpreter.klartext", "core.interpreter.sinumerik"),
-    *("core.interpreter.omniturn.loops_and_subroutines", "drivers.canopen", "drivers.feeder", "drivers.hal"),
-    *("drivers.inverter", "drivers.mtconnect.mtconnect_adapter", "drivers.pendant", "drivers.transfer"),
+    *("core.interpreter.omniturn.loops_and_subroutines", "drivers.canopen.canopen_machine", "drivers.feeder"),
+    *("drivers.hal.hal_machine", "drivers.inverter.inverter_spindle", "drivers.pendant.pendant_reader"),
+    *("drivers.mtconnect.mtconnect_adapter", "drivers.transfer"),
     *("core.part.milled_part", "core.part.solid_picture", "core.proving.part_proof", "core.shapes"),
     *("ezdxf", "svgelements"),
 )
@@ -36,10 +36,6 @@ def started(tmp_path_factory: pytest.TempPathFactory) -> tuple[frozenset[str], l
     """Modules of a desk that stands, on the shipped lathe; source texts of ours that were read for it."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("TURNDESK_HOME", str(tmp_path_factory.mktemp("home")))
-        patch.delenv(
-            "PYTHONDONTWRITEBYTECODE", raising=False
-        )  # the machine file is read again then, each time
-        subprocess.run([sys.executable, "-c", READ_ONCE], check=True)
         command = [sys.executable, "-c", DESK]
         done = subprocess.run(command, check=True, capture_output=True, text=True)
     modules, read, *_ = [*done.stdout.split("\n"), ""]
