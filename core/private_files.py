@@ -22,7 +22,7 @@ def restrict(path: Path) -> None:
 
 
 def restrict_folder(folder: Path) -> None:
-    """Restrict a folder and the files that are directly in it. Does nothing where there is no such folder."""
+    """Restrict a folder and the files directly in it. Do nothing if the folder does not exist."""
     if not folder.is_dir():
         return
     restrict(folder)

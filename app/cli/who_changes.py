@@ -143,7 +143,7 @@ RESET = "RESET"
 
 
 def _by_service_reset(error: StoreError, acts: Collection[Act]) -> str:
-    """The name for the log. Raises CommandError unless this is a restore that is confirmed at the machine."""
+    """Return the name for the log. Raise CommandError unless a restore is confirmed at the machine."""
     if Act.RESTORE not in acts:
         raise CommandError(f"who may change this cannot be read: {error}", error_code(error)) from error
     sys.stderr.write(f"turndesk: {error}\n")
@@ -155,7 +155,7 @@ def _by_service_reset(error: StoreError, acts: Collection[Act]) -> str:
 
 
 def demand_own_keyboard(question: str) -> None:
-    """Raises CommandError unless somebody sits at a terminal of this machine and confirms the question."""
+    """Raise CommandError unless the user confirms the question at a terminal of this machine."""
     if not sys.stdin.isatty() or os.environ.get("SSH_CONNECTION"):
         raise CommandError(
             "the service reset is typed at the machine's own keyboard, in a terminal there", "not-a-terminal"

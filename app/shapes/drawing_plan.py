@@ -77,7 +77,7 @@ class Plan:
 
 
 class Planner:
-    """Keeps the drawing that was read last; it is asked on one worker. ``reading``: a file is being read."""
+    """Keeps the last drawing that was read; used by one worker. ``reading`` is true while a file is read."""
 
     def __init__(self, read: Callable[[Path, Watch], Drawing]) -> None:
         self._read = read

@@ -441,7 +441,7 @@ class Shapes:
     # --- a drawing
 
     def cancel_reading(self) -> None:
-        """F6 and Esc while a drawing is read: its process ends."""
+        """Cancel the reading of a drawing (F6 or Esc) by ending its process."""
         if isinstance(self.form, DrawingForm):
             self.planning.give_up()
             self.form.cancel()

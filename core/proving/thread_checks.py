@@ -114,7 +114,7 @@ class ThreadChecks:
     # --- threads that are cut
 
     def _counted(self, move: TipMove, tool: int, *, cuts: bool) -> Iterator[Found]:
-        """Note a pass; a thread with another lead or at another place is another one."""
+        """Record a thread pass; passes with another lead or Z range belong to another thread."""
         before = self._begun
         if before is None or not _of_one_thread(before, move):
             yield from self.finish()
@@ -262,7 +262,7 @@ class ThreadChecks:
 
 
 def _of_one_thread(before: TipMove, move: TipMove) -> bool:
-    """Whether two passes have one lead and go between the same two places in Z."""
+    """Return whether two passes have the same lead and the same Z range."""
     ends = (before.points[0], before.points[-1]), (move.points[0], move.points[-1])
     apart = max(abs(a[0] - b[0]) for a, b in zip(*ends, strict=True))
     return apart < _SAME_END + move.per_rev and math.isclose(before.per_rev, move.per_rev, rel_tol=1e-3)

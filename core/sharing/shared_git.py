@@ -170,7 +170,7 @@ class SharedGit:
             raise
 
     def _blobs(self, paths: Sequence[str]) -> dict[str, bytes]:
-        """What files of the branch hold; not those that are missing or longer than any of ours."""
+        """Return the contents of files of the branch, without those that are missing or too long."""
         names = [path for path in paths if "\n" not in path]
         sizes = self._objects("--batch-check", names).splitlines()
         wanted = [name for name, head in zip(names, sizes, strict=False) if 0 <= _size(head) <= LONGEST]

@@ -312,7 +312,7 @@ def undo_any(connection: sqlite3.Connection, reason: Reason) -> tuple[Change, ..
 
 
 def _next_step(connection: sqlite3.Connection) -> int:
-    """Behind the steps of all histories: they tell the order of changes, whatever the clock was set to."""
+    """Return the step number after those of all histories, so that a changed clock cannot reorder them."""
     return 1 + max(_newest_step(connection, log) for log in _LOGS)
 
 
