@@ -132,7 +132,7 @@ def _remove(store: Store, args: argparse.Namespace) -> str:
         )
     who = who_changes(store, args, Act.PEOPLE)
     store.write(lambda c: people.remove_person(c, row.name)).result()
-    store.log_event("access", f"{row.name} taken away", who=who).result()
+    store.log_event("access", f"{row.name} removed", who=who).result()
     return f"{row.name} is taken away\n"
 
 

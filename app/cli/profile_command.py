@@ -204,7 +204,7 @@ def _list(drawing: Drawing, view: View, found: list[Net], *, as_json: bool) -> N
     if as_json:
         sys.stdout.write(json.dumps(told) + "\n")
         return
-    unit = f"{drawing.unit:g} mm" if drawing.unit else "not said"
+    unit = f"{drawing.unit:g} mm" if drawing.unit else "not specified"
     lines = [
         f"{drawing.name}: unit {unit}",
         f"  layers: {', '.join(each or '(none)' for each in drawing.layers)}",

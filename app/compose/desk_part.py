@@ -101,7 +101,7 @@ class PartDesk:
                 Severity.WARNING,
                 NOT_MADE,
                 f"The part could not be proved: {sentence(error)}.",
-                "Say another stock, or other shapes of tools.",
+                "Specify another stock or other tool shapes.",
             )
             return _weighed([failed], None)
         return _weighed([*([trouble] if trouble else []), *report.findings], report)
@@ -113,8 +113,8 @@ def _unusable(why: str) -> Diagnostic:
         0,
         Severity.WARNING,
         NO_STOCK,
-        f"The stock that was said cannot be used, and is assumed: {why}.",
-        "Say it anew on the page PART.",
+        f"The specified stock cannot be used, so an assumed stock is used: {why}.",
+        "Enter it again on the PART page.",
     )
 
 
@@ -135,5 +135,5 @@ def _is_announced(found: Diagnostic) -> bool:
 def _in_short(found: Diagnostic) -> str:
     """What is announced; the sentence with its remedy stands in the list of findings."""
     if not found.line:
-        return tr("THE PART IS NOT PROVED AS IT WAS SAID")
+        return tr("PART NOT PROVED AS SPECIFIED")
     return tr("LINE {line}: {check}").format(line=found.line, check=found.check.upper())

@@ -51,13 +51,13 @@ class GaugeWire:
     def words(self) -> str:
         """Whether it is listened to, and whether it speaks."""
         if not self.open:
-            return tr("The gauge is not listened to; F5 begins.")
+            return tr("Not listening to the gauge. Press F5 to start.")
         silent = self._clock() - self._last
         if silent > SILENT:
-            return tr("The gauge has been silent for {minutes} min: its switch, its cable.").format(
+            return tr("No reading from the gauge for {minutes} min. Check its switch and cable.").format(
                 minutes=int(silent / 60.0)
             )
-        return tr("The gauge is listened to: {count} readings.").format(count=self._count)
+        return tr("Listening to the gauge: {count} readings.").format(count=self._count)
 
     def turn(self) -> str:
         """Listen, or no more."""
@@ -101,7 +101,7 @@ class GaugeWire:
             wire.close()
 
     def _tell(self, error: DriverError) -> None:
-        self._heard.put(tr("THE GAUGE: {why}; F5 LISTENS AGAIN").format(why=error))
+        self._heard.put(tr("GAUGE: {why}. F5: LISTEN AGAIN").format(why=error))
 
     def _take(self, line: str) -> None:
         self._last = self._clock()
@@ -109,4 +109,4 @@ class GaugeWire:
             self._heard.put(reading_of(line))
             self._count += 1
         except ValueError as error:
-            self._heard.put(tr("THE GAUGE: {why}; MEASURE AGAIN").format(why=error))
+            self._heard.put(tr("GAUGE: {why}. MEASURE AGAIN").format(why=error))

@@ -59,7 +59,7 @@ def _proved(
 
     path = desk.program_folders.find(program)
     if path is None:
-        raise ValueError(tr("{name} IS NOT AMONG THE PROGRAMS: F1, F6").format(name=program))
+        raise ValueError(tr("{name} IS NOT IN THE PROGRAM LIST. F1, F6: CHECK THE LIST").format(name=program))
     job = steps.make_job(steps.read(path), False)
     setting = of_part.setting(job, watch)[0] if machine.kind == "lathe" else PartSetting()
     return ProvedJob(setup_sheet(job.reading, job.setup, machine, setting, watch), *before(program))

@@ -132,7 +132,7 @@ class Journal(Persistence):
     def book(self) -> OffsetBook:
         """The offsets of the store, for the screen to show and to change."""
         store = self._store
-        book = OffsetBook(store, "" if store else f"OFFSETS CANNOT BE KEPT: {self.trouble}")
+        book = OffsetBook(store, "" if store else f"OFFSETS CANNOT BE SAVED: {self.trouble}")
         rows = self._rows_of_other() if store is None else None
         if rows is not None:
             book.show(rows)
@@ -378,7 +378,7 @@ class Journal(Persistence):
         """The store of this moment: another after a restore. Raises StoreError while there is none."""
         store = self._store
         if store is None:
-            raise StoreError(self._trouble or "the store is closed")
+            raise StoreError(self._trouble or "the data store is closed")
         return store
 
     def close(self) -> str:

@@ -74,20 +74,20 @@ if TYPE_CHECKING:
 
 # Threads beside the executor, and what an operator misses when they end.
 SUPERVISED = {
-    "store-writer": "WHAT KEEPS OFFSETS AND COUNTS",
-    "daily-backup": "THE DAILY BACKUP",
+    "store-writer": "STORAGE OF OFFSETS AND COUNTS",
+    "daily-backup": "DAILY BACKUP",
     "status": "STATUS.JSON",
     "mtconnect": "MTCONNECT",
-    "program-file": "WHAT WATCHES THE PROGRAM'S FILE",
-    "pendant": "WHAT READS THE PENDANT",
-    "status-page": "THE STATUS PAGE",
-    "announcer": "MQTT AND THE WEB HOOK",
-    "sharing": "THE SHARING OF PROGRAMS",
-    "inverter": "WHAT TALKS TO THE INVERTER",
-    "recorder": "THE RECORD OF THE SCOPE",
-    "paho-mqtt-client-": "WHAT TALKS TO THE MQTT BROKER",  # the name that paho gives its thread
-    "web-hook": "THE WEB HOOK",
-    WATCHDOG: "THE WATCHDOG OVER THE CONTROL",
+    "program-file": "PROGRAM FILE MONITOR",
+    "pendant": "PENDANT CONNECTION",
+    "status-page": "STATUS PAGE",
+    "announcer": "MQTT AND WEBHOOK",
+    "sharing": "PROGRAM SHARING",
+    "inverter": "INVERTER CONNECTION",
+    "recorder": "SCOPE RECORDER",
+    "paho-mqtt-client-": "MQTT BROKER CONNECTION",  # the name that paho gives its thread
+    "web-hook": "WEBHOOK",
+    WATCHDOG: "CONTROL WATCHDOG",
 }
 EXECUTOR_CLOSES = 12.0  # s: drives that come on are waited for, then the machine is halted
 STORE_CLOSES = 15.0  # s: a slow disk takes what waits in memory
@@ -144,9 +144,7 @@ def _close_store(journal: Journal) -> None:
 
 def _thread_ended(desk: Desk, journal: Journal, name: str) -> None:
     """On the watchdog's thread: the machine goes on, but what that thread did is not done any more."""
-    text = tr("{what} HAS ENDED: SAVE THE LOG, END TURNDESK AND START IT AGAIN").format(
-        what=tr(SUPERVISED[name])
-    )
+    text = tr("{what} STOPPED. SAVE THE LOG, THEN RESTART TURNDESK").format(what=tr(SUPERVISED[name]))
     desk.say(text)
     journal.hear(Event(desk.snapshot().t, "warning", text))
 
@@ -190,7 +188,9 @@ def _daily_backup(desk: Desk, machine: Machine, journal: Journal) -> Callable[[]
         return desk.snapshot().state not in UNDER_WAY
 
     def same_disk() -> None:
-        text = tr("DAILY BACKUPS: {folder} IS ON THE SAME DISK AS WHAT IS KEPT; IS THE OTHER ONE MOUNTED?")
+        text = tr(
+            "DAILY BACKUPS: {folder} IS ON THE SAME DISK AS THE DATA. CHECK THAT THE BACKUP DISK IS MOUNTED"
+        )
         journal.hear(Event(desk.snapshot().t, "warning", text.format(folder=folder)))
 
     table = machine.hardware.table(BackupTable) or BackupTable()
@@ -242,7 +242,7 @@ def desk_and_executor(
     if recorder.trouble:
         events.say("warning", recorder.trouble)
     if any(each.startswith(NO_PRIORITY) for each in connected.ports.warnings):
-        desk.say(tr("NO REAL-TIME PRIORITY: A SYNC THAT IS 10 MS LATE STOPS THE SLIDES"))
+        desk.say(tr("NO REAL-TIME PRIORITY: A SYNC 10 MS LATE STOPS THE AXES"))
     if desk.changes.barred:
         desk.say(desk.changes.barred)
     return desk, executor
@@ -259,7 +259,7 @@ def _tell_damage(desk: Desk, journal: Journal, log: Callable[[str], None]) -> No
     """What was not as it was saved goes to the log and to the prompt line."""
     for damage in journal.damage:
         log(damage)
-        desk.say(tr("LOOK: {what}").format(what=damage))
+        desk.say(tr("CHECK: {what}").format(what=damage))
 
 
 class _Events:
@@ -366,7 +366,7 @@ def _drives(machine: Machine) -> str:
     """What an operator must never be in doubt about: what of it is real."""
     if not played(machine):
         return machine.backend.upper()
-    return "SIMULATED SLIDES · REAL SPINDLE" if has_inverter(machine) else "SIMULATED"
+    return "SIMULATED AXES · REAL SPINDLE" if has_inverter(machine) else "SIMULATED"
 
 
 def _editor(desk: Desk, work: LoadingSteps, journal: Journal | None, machine: Machine) -> Editor:

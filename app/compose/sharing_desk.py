@@ -49,7 +49,7 @@ def give_sharing(desk: Desk, machine: Machine, journal: Journal | None) -> None:
         try:
             sharing = sharing_of(machine, journal.opened)
         except CommandError as error:
-            desk.say(tr("NOTHING IS SHARED: {why}").format(why=error))
+            desk.say(tr("PROGRAMS NOT SHARED: {why}").format(why=error))
     desk.attach_later("app.sharing.sharing_model.SharingModel", partial(_model, desk, sharing))
 
 
@@ -99,7 +99,7 @@ class Heard:
         if fresh:
             self._told |= fresh
             who = next(each.desk for each in family.elsewhere if each.id in fresh)
-            text = tr("{name} WAS CHANGED ON {desk}: F1, X SHOWS WHAT").format(name=name, desk=who)
+            text = tr("{name} WAS CHANGED ON {desk}. F1, X: SHOW CHANGES").format(name=name, desk=who)
             self.desk.hear(Event(self.desk.snapshot().t, "shared", text))  # said with the next frame
 
 

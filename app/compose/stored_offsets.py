@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from core.part.tool_shape import ToolShape
     from core.store.store import Store
 
-OF_A_FILE = "THE OFFSETS COME FROM A FILE (--offsets) AND ARE READ ONLY: CHANGE THE FILE, OR START WITHOUT IT"
+OF_A_FILE = "OFFSETS COME FROM A FILE (--offsets) AND ARE READ-ONLY. CHANGE THE FILE, OR START WITHOUT IT"
 
 
 class Offsets(NamedTuple):
@@ -110,8 +110,8 @@ def stored_shapes() -> dict[int, ToolShape]:
     except StoreError as error:
         raise CommandError(str(error), error_code(error)) from error
     if wrong := wrong_shapes(shapes, tools):
-        way = "mend it on the page of its shape (F8), or with 'turndesk offsets set'"
-        raise CommandError(f"a tool shape of the store cannot be: {'; '.join(wrong)}; {way}", "invalid-shape")
+        way = "correct it on its shape page (F8) or with 'turndesk offsets set'"
+        raise CommandError(f"a stored tool shape is invalid: {'; '.join(wrong)}; {way}", "invalid-shape")
     return tool_shapes(shapes, tools)
 
 

@@ -79,7 +79,7 @@ class Access:
         needed = level_for(act)
         if not self.people.on or self.level >= needed:
             return ""
-        text = tr("{what}: {level} LEVEL IS NEEDED, {now} IS IN FORCE; SIGN IN: F10, ACCESS LEVELS")
+        text = tr("{what}: {level} LEVEL REQUIRED, CURRENT LEVEL IS {now}. F10, ACCESS LEVELS: SIGN IN")
         return text.format(what=tr(act.value), level=tr(needed.name), now=tr(self.level.name))
 
     # --- signing in and out --------------------------------------------------------------------------
@@ -88,11 +88,9 @@ class Access:
         """Try a PIN; the answer comes with a later frame, and wrong ones let wait longer and longer."""
         left = self.wrong.left(self.clock())
         if left > 0.0:
-            self.say(
-                tr("TOO MANY WRONG PINS: THE NEXT IS TAKEN IN {seconds} S").format(seconds=f"{left:.0f}")
-            )
+            self.say(tr("TOO MANY WRONG PINS. TRY AGAIN IN {seconds} S").format(seconds=f"{left:.0f}"))
         elif not row.has_pin:
-            self.say(tr("{name} HAS NO PIN: SERVICE LEVEL ENTERS ONE").format(name=data(row.name)))
+            self.say(tr("{name} HAS NO PIN. A SERVICE USER MUST SET ONE").format(name=data(row.name)))
         elif not self.worker.busy:
             self.say(tr("CHECKING THE PIN OF {name}").format(name=data(row.name)))
             self.worker.queue(partial(self._try, row, pin), partial(self._tried, row), self.say)
@@ -120,7 +118,7 @@ class Access:
             self.wrong.wrong(self.clock())
             self.note(f"wrong PIN for {row.name}, {self.wrong.count} in a row")
             left = self.wrong.left(self.clock())
-            text = tr("THAT IS NOT THE PIN OF {name}; THE NEXT IS TAKEN IN {seconds} S")
+            text = tr("WRONG PIN FOR {name}. TRY AGAIN IN {seconds} S")
             self.say(text.format(name=data(row.name), seconds=f"{left:.0f}"))
         self._keep(_WRONG, self.wrong.count or None)
 
@@ -146,19 +144,19 @@ class Access:
             return
         left = self._used + 60.0 * self.minutes - self.clock()
         if left <= 0.0:
-            words = tr("{name} WAS AWAY: OPERATOR LEVEL IS IN FORCE, WHAT IS TYPED STAYS; SIGN IN: F10")
+            words = tr("{name} SIGNED OUT (NO INPUT). LEVEL IS OPERATOR, TYPED TEXT REMAINS. F10: SIGN IN")
             self.say(words.format(name=data(self.name)))
-            self.sign_out(f", after {self.minutes} min without a key")
+            self.sign_out(f", after {self.minutes} min without input")
         elif left <= _WARNED and not self._warned:
             self._warned = True
-            words = tr("THE LEVEL OF {name} ENDS IN {seconds} S: ANY KEY KEEPS IT")
+            words = tr("{name}: SIGN-OUT IN {seconds} S. PRESS ANY KEY TO STAY SIGNED IN")
             self.say(words.format(name=data(self.name), seconds=f"{left:.0f}"))
 
     def choose_minutes(self, minutes: int) -> None:
         """Another time after which a level falls back."""
         self.minutes = minutes
         self._keep(_MINUTES, minutes)
-        self.note(f"levels fall back after {minutes} min")
+        self.note(f"automatic sign-out after {minutes} min without input")
 
     # --- people --------------------------------------------------------------------------------------
 
@@ -193,7 +191,7 @@ class Access:
         try:
             self.persistence.save_setting(key, value)
         except StoreError as error:
-            self.say(tr("NOT KEPT: {why}").format(why=error))
+            self.say(tr("NOT SAVED: {why}").format(why=error))
 
     def close(self) -> None:
         """The desk shuts."""

@@ -36,15 +36,15 @@ class AccessReset:
     def why_not(self, snapshot: Snapshot) -> str:
         """Why it cannot begin; empty when it can."""
         if not self.access.people.on:
-            return tr("THERE ARE NO LEVELS TO RESET")
+            return tr("NO ACCESS LEVELS TO RESET")
         if snapshot.state is not State.ESTOP:
-            return tr("PRESS THE E-STOP FIRST: LEVELS ARE RESET WHILE IT STAYS PRESSED FOR 10 MINUTES")
+            return tr("TO RESET ACCESS LEVELS, PRESS THE E-STOP FIRST AND LEAVE IT PRESSED FOR 10 MINUTES")
         return ""
 
     def begin(self) -> None:
         """From now on the time runs."""
         self._since = self.access.clock()
-        self.access.note("service reset begun: the E-stop has to stay pressed for 10 min")
+        self.access.note("service reset started: the E-stop must stay pressed for 10 min")
 
     def look(self, snapshot: Snapshot) -> None:
         """Once a frame: given up when the E-stop is released or somebody signs in, done in its time."""
@@ -53,11 +53,11 @@ class AccessReset:
         left = self._since + WAIT - self.access.clock()
         if snapshot.state is not State.ESTOP or self.access.name:
             self._since = None
-            self.access.note("service reset given up")
-            self.say(tr("THE SERVICE RESET IS GIVEN UP: LEVELS ARE AS THEY WERE"))
+            self.access.note("service reset canceled")
+            self.say(tr("SERVICE RESET CANCELED: ACCESS LEVELS UNCHANGED"))
         elif left <= 0.0:
             self._since = None
-            self.access.note("service reset done: all people and PINs are taken away, levels are off")
+            self.access.note("service reset done: all users and PINs removed, access levels off")
             self.reset()
         time = f"{int(left // 60)}:{int(left % 60):02d}"
-        self.access.pending = tr("PINS ARE RESET IN {time}").format(time=time) if self.under_way else ""
+        self.access.pending = tr("PIN RESET IN {time}").format(time=time) if self.under_way else ""

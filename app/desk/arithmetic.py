@@ -17,7 +17,7 @@ class EntryError(ValueError):
 def value_of(entry: str) -> float:
     """The number that ``entry`` comes to. Raises EntryError with what is refused, where and why."""
     if not entry.strip():
-        raise EntryError("nothing is entered; type a number")
+        raise EntryError("no value entered; type a number")
     if len(entry) > LONGEST:
         raise EntryError(f"the entry is longer than {LONGEST} characters; type the result")
     entry = " ".join(entry.split())
@@ -70,7 +70,7 @@ class _Reader:
         if self._take("("):
             value = self.sum()
             if not self._take(")"):
-                raise self._refusal("a closing bracket")
+                raise self._refusal("a closing parenthesis")
             return value
         return self._number()
 
@@ -92,9 +92,9 @@ class _Reader:
 
     def _refusal(self, expected: str) -> EntryError:
         if self._next >= len(self._tokens):
-            return EntryError(f"{self._entry} stops short; expected {expected} at its end")
+            return EntryError(f"{self._entry} is incomplete; expected {expected} at the end")
         found, column = self._tokens[self._next]
-        return EntryError(f"{found} at character {column} of {self._entry}; expected {expected}")
+        return EntryError(f"unexpected {found} at character {column} of {self._entry}; expected {expected}")
 
 
 def _tokens(entry: str) -> list[tuple[str, int]]:
@@ -104,8 +104,8 @@ def _tokens(entry: str) -> list[tuple[str, int]]:
         match = _TOKEN.match(entry, at)
         if not match:
             bad = entry[at:].lstrip()[0]
-            hint = "the decimal sign is a point" if bad == "," else "only numbers and + - * / ( ) count"
-            raise EntryError(f"{bad} in {entry} is no number; {hint}")
+            hint = "use a decimal point" if bad == "," else ("use only numbers and + - * / ( )")
+            raise EntryError(f"{bad} in {entry} is not a number; {hint}")
         word = match.group(1) or match.group(2)
         tokens.append((word.replace("−", "-"), match.end() - len(word) + 1))
         at = match.end()

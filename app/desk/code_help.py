@@ -37,7 +37,7 @@ class CodeHelp:
         if self._book is None:
             return False
         begin, self.choices = self._book.completions(*self._asked)
-        self.title, self.marked = "CODES THAT BEGIN SO", 0
+        self.title, self.marked = "MATCHING CODES", 0
         written = self.entry is not None and any(each.head == self.entry.head for each in self.choices)
         typed = bool(self.choices)
         if not typed or (written and len(self.choices) == 1):

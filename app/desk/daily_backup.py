@@ -90,7 +90,8 @@ class DailyBackup:
         if wrong:
             target.unlink(missing_ok=True)
             raise StoreError(
-                f"it was written, but {wrong[0]}; look at the disk of {self.folder}", "damaged-backup"
+                f"the backup was written, but {wrong[0]}; check the disk that holds {self.folder}",
+                "damaged-backup",
             )
         for old in sorted(self._there(), key=partial(_made_at, target.name))[: -self.keep]:
             old.unlink(missing_ok=True)

@@ -27,9 +27,9 @@ def check_data_folder() -> None:
     folder = data_folder()
     there = next((each for each in (folder, *folder.parents) if each.exists()), folder)
     if there.exists() and not there.is_dir():
-        what = "is" if there == folder else f"lies below {there}, which is"
+        what = "is" if there == folder else f"is inside {there}, which is"
         raise DataFolderError(
-            f"TURNDESK_HOME: {folder} {what} a file and no folder; name a folder, or unset it",
+            f"TURNDESK_HOME: {folder} {what} a file, not a folder; set it to a folder or unset it",
             "not-a-folder",
         )
 
@@ -48,5 +48,5 @@ def data_folder() -> Path:
         return user_data_path("turndesk", appauthor=False)
     except RuntimeError as error:
         raise DataFolderError(
-            "this user has no home folder; name a folder in TURNDESK_HOME", "no-home"
+            "this user has no home folder; set TURNDESK_HOME to a folder", "no-home"
         ) from error

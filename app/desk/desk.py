@@ -58,7 +58,7 @@ DRIVERS_CLOSE = 10.0  # s: an inverter is stopped, a driver process ends
 SWITCHES = frozenset({"single_block", "optional_stop", "cycle_repeat", "no_count"})
 SILENT = "CONTROL SILENT"
 LAST_PROGRAM = "last_program"  # setting: the path of the program that was loaded last
-BY_SCREEN = "key or finger at the screen"  # who holds, for the log
+BY_SCREEN = "key or touch at the screen"  # who holds, for the log
 
 
 class Attached(Protocol):
@@ -179,7 +179,7 @@ class Desk:
 
     def refuse(self, why: str) -> None:
         """Say that it was not done, and why."""
-        self.say(f"REFUSED: {why}")
+        self.say(f"REJECTED: {why}")
 
     def ask(self, question: str, yes: Callable[[], None], key: str = YES) -> None:
         """Ask before something is lost or moves: ``PRESS Y TO …, N TO …``. Esc is N.
@@ -215,9 +215,9 @@ class Desk:
     def release_words(self) -> str:
         """How the E-stop is freed at this machine."""
         if self.field_open():
-            by_hand = "RELEASE THE BUTTON BY HAND, U WRITES HERE; F1 LEAVES THE PAGE"
-            return by_hand if self.station is not None else "RELEASE THE BUTTON, F1 LEAVES THE PAGE"
-        return "RELEASE THE BUTTON" if self.station is None else "RELEASE THE BUTTON (U)"
+            by_hand = "F1, THEN U: RELEASE E-STOP"
+            return by_hand if self.station is not None else "RELEASE THE E-STOP (F1: LEAVE THE PAGE)"
+        return "RELEASE THE E-STOP" if self.station is None else "RELEASE THE E-STOP (U)"
 
     @property
     def language(self) -> str:
@@ -246,7 +246,7 @@ class Desk:
         try:
             change()
         except StoreError as error:
-            self.say(f"NOT KEPT: {error}")
+            self.say(f"NOT SAVED: {error}")
 
     def next_readout(self) -> None:
         """Position, distance to go, distance from home."""
@@ -399,7 +399,7 @@ class Desk:
         part, told = loaded.part, self._part_told
         self._part_told = part
         if part is not None and part is not told and part.warned and snapshot.state in UNDER_WAY:
-            self.say(tr("LOOK: {what}; PAUSE HOLDS THE FEED").format(what=part.warned[0]))
+            self.say(tr("CAUTION: {what}. PAUSE: FEED HOLD").format(what=part.warned[0]))
 
     # --- program -------------------------------------------------------------------------------------
 
@@ -441,9 +441,15 @@ class Desk:
         elif named is not None and Path(named).name == found.program and self.choose(path):
             return
         elif not self.choose(found.program):
-            self.say(tr("THE INTERRUPTED PROGRAM {name} IS NOT IN THE FOLDER: F2").format(name=found.program))
+            self.say(
+                tr("INTERRUPTED PROGRAM {name} IS NOT IN THE FOLDER. F2: CHOOSE A PROGRAM").format(
+                    name=found.program
+                )
+            )
         elif named is not None:
-            self.say(tr("{name} IS NOT LOADED: A JOB WAS INTERRUPTED").format(name=Path(named).name))
+            self.say(
+                tr("{name} NOT LOADED: THE INTERRUPTED JOB WAS LOADED INSTEAD").format(name=Path(named).name)
+            )
 
     # --- keys ----------------------------------------------------------------------------------------
 
@@ -458,9 +464,9 @@ class Desk:
         """Turn Block Delete over. It is part of the job that was proved, so the program is loaded anew."""
         loaded = self.session.now
         if loaded.path is None:
-            self.say("CHOOSE A PROGRAM FIRST: BLOCK DELETE BELONGS TO THE PROGRAM THAT IS PROVED")
+            self.say("CHOOSE A PROGRAM FIRST: BLOCK DELETE IS PROVED WITH THE PROGRAM")
         elif self.snapshot().state in UNDER_WAY:
-            self.say("BLOCK DELETE CHANGES WHAT WAS PROVED: ONLY BETWEEN TWO CYCLES")
+            self.say("BLOCK DELETE CHANGES THE PROVED PROGRAM: SWITCH IT BETWEEN CYCLES ONLY")
         else:
             self.clear()
             self.session.load(loaded.path, not loaded.block_delete)
@@ -469,7 +475,7 @@ class Desk:
         """Whether the control may be left; where something would be lost by it Y does ``close``."""
         waiting = self.waiting()
         if waiting:
-            words = tr("NOT KEPT, AND LOST BY CLOSING: {what}; PRESS Y TO CLOSE, N TO STAY")
+            words = tr("NOT SAVED, LOST WHEN YOU CLOSE: {what}. Y: CLOSE   N: STAY")
             self.ask(words.format(what=waiting), close)
         return not waiting
 
@@ -503,7 +509,7 @@ class Desk:
         elif (
             snapshot.state is not State.IDLE or not self.starts_here or snapshot.starts is not Starts.PROGRAM
         ):
-            self.say(tr("Y MEANS SOMETHING ON THE AUTOMATIC PAGE, WITH THE DRIVES ON"))
+            self.say(tr("Y: AUTOMATIC PAGE ONLY, DRIVES ON"))
         elif refusal := self.first_move_refusal(snapshot):
             self.say(f"{prompt_line.NO_START}: {refusal}")
         else:
@@ -523,11 +529,11 @@ class Desk:
             self.clear()
             self.post(EnableDrives())
         elif state is State.ESTOP:
-            self.say(f"THE E-STOP IS STILL PRESSED: {self.release_words} FIRST")
+            self.say(f"E-STOP STILL PRESSED. {self.release_words}")
         elif state is State.FAULT:
-            self.say("AN ALARM STANDS: PRESS R TO ACKNOWLEDGE IT FIRST")
+            self.say("ALARM ACTIVE: PRESS R TO ACKNOWLEDGE IT FIRST")
         else:
-            self.done("THE DRIVES ARE ON")
+            self.done("THE DRIVES ARE ALREADY ON")
 
     def escape(self) -> bool:
         """Esc takes a question back; while something moves it holds, because it is what a hand hits first.
@@ -542,7 +548,7 @@ class Desk:
             self.post(ConfirmStart(""))
         elif moves:
             self.clear()
-            self.feed_hold("Esc at the screen")
+            self.feed_hold("Esc key at the screen")
         else:
             return False
         return True

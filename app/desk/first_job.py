@@ -29,14 +29,19 @@ class Step(NamedTuple):
 
 
 STEPS = (
-    Step("CHOOSE A PROGRAM", "F2 AND A NAME, OR F1, F6 FOR THE LIST"),
+    Step("CHOOSE A PROGRAM", "F2: TYPE A NAME   F1, F6: CHOOSE FROM THE LIST"),
     Step(
-        "SET ITS TOOLS",
-        "F8 NAMES THOSE THAT NOBODY HAS SET; F1, F5: T AND ITS NUMBER, THEN X AND Z, OR C FOR A SKIM CUT",
+        "SET THE TOOLS",
+        "F8: SHOW TOOLS NOT SET   F1, F5: TYPE T AND NUMBER, THEN X AND Z, OR C FOR A SKIM CUT",
     ),
-    Step("PROVE IT", "WITH THE NEW OFFSET IT IS PROVED BY ITSELF; WHAT IS FOUND STANDS ON B (PART)"),
-    Step("DRY RUN", "P (NO COUNT), D, THEN BOTH PALMS; H HOLDS. LOOK AT EVERY MOVE, WITHOUT STOCK", _COUNTED),
-    Step("FIRST PART", "P AGAIN, PUT STOCK IN, BOTH PALMS; THEN MEASURE IT: F9 CORRECTS WEAR", _COUNTED),
+    Step(
+        "PROVE THE PROGRAM",
+        ("THE PROGRAM IS PROVED AUTOMATICALLY WITH THE NEW OFFSET. B (PART): SHOW FINDINGS"),
+    ),
+    Step("DRY RUN", "DRY RUN, NO STOCK: P, D, CYCLE START. WATCH EVERY MOVE. H: FEED HOLD", _COUNTED),
+    Step(
+        "FIRST PART", "PRESS P AGAIN, LOAD STOCK, CYCLE START. MEASURE THE PART. F9: CORRECT WEAR", _COUNTED
+    ),
 )
 
 
@@ -85,7 +90,7 @@ class FirstJob:
         """The card of now."""
         keys = ((CLOSE, tr("CLOSE")),)
         if self.at >= len(STEPS):
-            return NoticeRow(tr("FIRST JOB: DONE"), tr("F10, 7, RETURN SHOWS THIS CARD AGAIN"), keys, "run")
+            return NoticeRow(tr("FIRST JOB: DONE"), tr("F10, 7, ENTER: SHOW THIS CARD AGAIN"), keys, "run")
         step = STEPS[self.at]
         head = tr("FIRST JOB, STEP {number} OF {count}").format(number=self.at + 1, count=len(STEPS))
         own = tuple((name, tr(label)) for name, label in step.keys)

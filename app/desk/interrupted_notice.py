@@ -44,7 +44,7 @@ def notice_of(snapshot: Snapshot, loaded: Loaded, units: Units) -> NoticeRow | N
         part=found.part,
         at=formats.wall_time(found.at),
         why=tr(found.why),
-        changed=tr(" (ITS TEXT HAS CHANGED SINCE)") if _changed(found, loaded) else "",
+        changed=tr(" (PROGRAM TEXT CHANGED SINCE)") if _changed(found, loaded) else "",
     )
     return NoticeRow(words, _places(found, snapshot, units) + _uncertain(found))
 
@@ -55,15 +55,11 @@ def interrupted_prompt(snapshot: Snapshot, loaded: Loaded, start: str) -> str:
     if not line or snapshot.state is not State.IDLE or snapshot.starts is not Starts.PROGRAM:
         return ""
     if snapshot.confirmed:
-        words = tr("BEGINS AT LINE 1, {text}, FROM WHERE T{tool} STANDS NOW: {start}; ESC TAKES IT BACK")
+        words = tr("STARTS AT LINE 1 ({text}) FROM CURRENT T{tool} POSITION. {start}. ESC: CANCEL")
         return words.format(text=_first(loaded), tool=snapshot.modal.tool, start=start)
     if not may_go_on(loaded):
-        return tr("LINE {line} WAS INTERRUPTED: JOG THE TOOL CLEAR; Y, THEN THE START: LINE 1").format(
-            line=line
-        )
-    words = tr(
-        "LINE {line} WAS INTERRUPTED: F6 SHOWS THE WAY OUT AND GOES ON THERE; Y, THEN THE START: LINE 1"
-    )
+        return tr("STOPPED IN LINE {line}. JOG THE TOOL CLEAR. Y: START OVER").format(line=line)
+    words = tr("STOPPED IN LINE {line}. F6: RETRACT AND RESUME. Y: START OVER")
     return words.format(line=line)
 
 
@@ -75,7 +71,8 @@ def may_go_on(loaded: Loaded) -> bool:
 def instead(found: InterruptedJob, name: str) -> str:
     """The question before another program takes the place of an interrupted one."""
     words = tr(
-        "T{tool} MAY STAND IN THE PART OF {program} LINE {line}: Y GIVES THAT JOB UP FOR {name}, N KEEPS IT"
+        "T{tool} MAY BE IN THE PART, {program} LINE {line}. PRESS Y TO CANCEL THAT JOB AND "
+        "LOAD {name}, N TO KEEP IT"
     )
     return words.format(tool=found.tool, program=found.program, line=found.line, name=name)
 
@@ -104,22 +101,20 @@ def _places(found: InterruptedJob, snapshot: Snapshot, units: Units) -> str:
     """From home, as the readout FROM HOME counts: where the tool stood, and where it stands by now."""
     stood = _figures(found.axes, found.where, snapshot, units)
     if not all(snapshot.homed):
-        return tr("STOOD AT {stood} FROM HOME; WHERE IT STANDS NOW IS NOT KNOWN BEFORE HOMING").format(
-            stood=stood
-        )
+        return tr("WAS AT {stood} FROM HOME. CURRENT POSITION UNKNOWN UNTIL HOMED").format(stood=stood)
     if snapshot.axes != found.axes:
-        return tr("STOOD AT {stood} FROM HOME").format(stood=stood)
+        return tr("WAS AT {stood} FROM HOME").format(stood=stood)
     if max(abs(a - b) for a, b in zip(found.where, snapshot.actual, strict=True)) <= _SAME:
-        return tr("STANDS AT {stood} FROM HOME").format(stood=stood)
+        return tr("STILL AT {stood} FROM HOME").format(stood=stood)
     now = _figures(snapshot.axes, snapshot.actual, snapshot, units)
-    return tr("STOOD AT {stood}, STANDS AT {now} FROM HOME").format(stood=stood, now=now)
+    return tr("WAS AT {stood}, NOW AT {now} FROM HOME").format(stood=stood, now=now)
 
 
 def _uncertain(found: InterruptedJob) -> str:
     """What nobody knows of a job whose control was gone at once: its note was written once a second."""
     if found.why != CONTROL_LOST:
         return ""
-    return tr(". NOT CERTAIN: THE LAST SECOND OF ITS WAY, AND IF THE CUT IS WHOLE. LOOK AT TOOL AND PART")
+    return tr(". LAST SECOND NOT RECORDED. CUT MAY BE INCOMPLETE. CHECK TOOL AND PART")
 
 
 def _figures(axes: Sequence[str], where: Sequence[float], snapshot: Snapshot, units: Units) -> str:

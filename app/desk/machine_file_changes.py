@@ -22,7 +22,7 @@ class FileChanges:
         """Why the drives stay off; empty when they need not."""
         if not self.changes:
             return ""
-        text = tr("THE MACHINE FILE HAS CHANGED ({count}): F10, MACHINE FILE SHOWS IT AND ACCEPTS IT")
+        text = tr("MACHINE FILE CHANGED ({count}). F10, MACHINE FILE: REVIEW AND ACCEPT")
         return text.format(count=len(self.changes))
 
     def accept(self) -> None:

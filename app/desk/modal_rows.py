@@ -100,7 +100,7 @@ def _labels() -> dict[str, str]:
         "trans": tr("TRANS"),
         "transformation": tr("TRANSFORMATION"),
         "units": tr("UNITS"),
-        "x words": tr("X WORDS"),
+        "x words": tr("X VALUES"),
         "distance": tr("DISTANCE"),
         "coolant": tr("COOLANT"),
         "outputs": tr("M FUNCTIONS"),
@@ -112,7 +112,7 @@ def _geometry(modal: Modal) -> tuple[ModalRow, ...]:
     coarse = {0: "G36", 1: "G35", 2: "G35F2"}[modal.coarse]
     return (
         ModalRow("units", tr("UNITS"), "G71 MM" if modal.metric else tr("G70 INCH")),
-        ModalRow("x words", tr("X WORDS"), "G72 Ø" if modal.diameter else "G73 R"),
+        ModalRow("x words", tr("X VALUES"), "G72 Ø" if modal.diameter else "G73 R"),
         ModalRow("distance", tr("DISTANCE"), distance),
         ModalRow("nose", tr("NOSE COMP"), f"G{modal.nose_comp}"),
         ModalRow("coarse", tr("COARSE FEED"), coarse),
@@ -128,7 +128,7 @@ def _feeds(point: Checkpoint) -> tuple[ModalRow, ...]:
         ModalRow("rapid", tr("RAPID"), "G00" if modal.rapid else tr("OFF")),
         ModalRow("cut feed", tr("G01 FEED"), _feed(modal.cut_feed, modal.metric, modal.cut_per_rev)),
         ModalRow("rapid rate", tr("RAPID RATE"), _feed(modal.rapid_rate, modal.metric, False)),
-        ModalRow("first feed", tr("F THAT IS A RAPID"), first),
+        ModalRow("first feed", tr("F USED AS RAPID"), first),
     )
 
 
@@ -158,7 +158,7 @@ def _frame(modal: Modal) -> tuple[ModalRow, ...]:
         ModalRow("tool", tr("TOOL"), edge_name(modal.tool)),
         ModalRow("tool offset", tr("TOOL OFFSET"), pair(modal, modal.tool_x, modal.tool_z)),
         ModalRow("secondary", tr("D OFFSET"), f"D{modal.secondary}  {_d(modal)}"),
-        ModalRow("shift", tr("G10 IN FORCE"), pair(modal, modal.shift_x, modal.shift_z)),
+        ModalRow("shift", tr("G10 ACTIVE"), pair(modal, modal.shift_x, modal.shift_z)),
         ModalRow("pending", tr("G10 AT NEXT T"), pair(modal, modal.pending_shift_x, modal.pending_shift_z)),
         ModalRow("preset", tr("G92 PRESET"), pair(modal, modal.preset_x, modal.preset_z)),
     )

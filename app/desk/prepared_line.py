@@ -21,7 +21,7 @@ ProveLine = Callable[[str, Snapshot, Watch], tuple[Job, Proved]]
 def never_set(job: Job, proved: Proved) -> tuple[Diagnostic, ...]:
     """An error for each tool that the line calls and nobody has set."""
     missing = proved.proof.unset(job)
-    text = "Tool {number} was never set."
+    text = "Tool {number} has not been set."
     return tuple(
         Diagnostic(1, 0, Severity.ERROR, "tool-never-set", text.format(number=number), "Set it with F8.")
         for number in missing

@@ -30,9 +30,9 @@ class Phase(StrEnum):
     READING = "READING"
     PROVING = "PROVING"
     DRAWING = "DRAWING"
-    PART = "PROVING THE PART OF"  # before it is known, the program will not start
+    PART = "PROVING THE PART MADE BY"  # before it is known, the program will not start
     READY = "READY"
-    REFUSED = "REFUSED"  # the proof found errors: it is shown, but it will not run
+    REFUSED = "REJECTED"  # the proof found errors: it is shown, but it will not run
     UNREADABLE = "UNREADABLE"
 
 

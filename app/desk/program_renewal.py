@@ -156,7 +156,7 @@ class ProgramRenewal:
         trouble, before = book.poll(), self._changes
         self._changes = book.changes
         if trouble:
-            self.warn(f"REFUSED: {trouble}")
+            self.warn(f"REJECTED: {trouble}")
         changed, under_way = self._changes != before, snapshot.state in UNDER_WAY
         if changed and under_way:
             self.renewing.begin()
@@ -177,7 +177,7 @@ class ProgramRenewal:
         """While there is still time to take a change back."""
         why = self.renewing.trouble()
         if why and snapshot.state in UNDER_WAY:
-            self.warn(tr("NO NEXT PART WITH THE CHANGED OFFSETS: {why}").format(why=why))
+            self.warn(tr("NEXT PART WILL NOT START WITH THE CHANGED OFFSETS: {why}").format(why=why))
 
     def _outdated(self, snapshot: Snapshot) -> bool:
         """The job before has left another unit than this program was proved with, and it names none."""

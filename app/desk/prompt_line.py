@@ -24,22 +24,22 @@ from core.tool_edges import edge_name
 OF_PROGRAM: frozenset[Code] = frozenset({"program-stop", "optional-stop"})  # stops with a message
 NOT_FOUND = "FILE NOT FOUND, PRESS ANY KEY TO CONTINUE"
 ASK_FILE = "FILE TO BE PROCESSED"
-CHOOSE_FILE = "TYPE A NAME OR MARK A PROGRAM WITH THE ARROWS, THEN PRESS RETURN; ESC CLOSES THE LIST"
-NONE_NAMED = "TYPE A NAME, OR MARK A PROGRAM WITH THE ARROWS, BEFORE EDITING"
-ONE_PALM = "ONE PALM BUTTON ALONE DOES NOT START: PRESS BOTH WITHIN HALF A SECOND"
-ONE_HAND = "PRESS BOTH PALMS WITHIN HALF A SECOND; FOR ONE HAND: F10, 7, RETURN, PALM BUTTONS ON THE SCREEN"
-STOP_HELD = "A KEY THAT STOPS IS HELD DOWN: LET IT GO FIRST"
-BOTH_UP = "ONE PALM BUTTON WAS HELD LONGER THAN HALF A SECOND: LET BOTH GO, THEN PRESS BOTH"
-CONTROL_SILENT = "THE CONTROL DOES NOT ANSWER: PRESS E-STOP; WHAT IS SHOWN IS NOT OF NOW"
-NOT_HERE = "CYCLES ARE STARTED ON THE AUTOMATIC PAGE: PRESS F1, THEN F2"
-RESTORING = "NO START: A BACKUP IS BEING RESTORED"
-STALE = "NO START: THE PROGRAM IS BEING READ ANEW"
+CHOOSE_FILE = "TYPE A NAME OR SELECT A PROGRAM WITH THE ARROWS   ENTER: LOAD   ESC: CLOSE THE LIST"
+NONE_NAMED = "TO EDIT, TYPE A NAME OR SELECT A PROGRAM WITH THE ARROWS FIRST"
+ONE_PALM = "ONLY ONE PALM BUTTON PRESSED: PRESS BOTH WITHIN 0.5 S"
+ONE_HAND = "PRESS BOTH PALM BUTTONS WITHIN 0.5 S. ONE HAND ONLY: F10, 7, ENTER, PALM BUTTONS ON THE SCREEN"
+STOP_HELD = "RELEASE THE STOP KEY FIRST"
+BOTH_UP = "ONE PALM BUTTON PRESSED FOR OVER 0.5 S: RELEASE BOTH, THEN PRESS BOTH"
+CONTROL_SILENT = "CONTROL NOT RESPONDING. PRESS E-STOP. SCREEN IS NOT LIVE"
+NOT_HERE = "START CYCLES ON THE AUTOMATIC PAGE: PRESS F1, THEN F2"
+RESTORING = "CANNOT START: A BACKUP IS BEING RESTORED"
+STALE = "CANNOT START: THE PROGRAM IS BEING RELOADED"
 NO_START = "WILL NOT START"  # how the standing prompt begins then
-GIVE_UP = "PRESS Y TO GIVE THE PROGRAM UP, N TO KEEP IT"
-TWIST_OUT = "PRESS Y TO TWIST THE E-STOP OUT, N TO LEAVE IT IN"
-NO_MUSHROOM = "THE E-STOP IS THE RED BUTTON AT THE MACHINE: HIT IT. THIS KEY HAS HELD THE FEED"
-HOW_TO_HOLD = "FEED HOLD (PAUSE, H OR ESC) HOLDS THE FEED, STOP (SCROLL LOCK) IS THE E-STOP"
-KEYBOARD_AWAY = "ANOTHER WINDOW HAS THE KEYBOARD: NO KEY STOPS HERE. PRESS THE BUTTONS, OR TOUCH THIS WINDOW"
+GIVE_UP = "PRESS Y TO ABORT THE PROGRAM, N TO KEEP IT"
+TWIST_OUT = "PRESS Y TO RELEASE THE E-STOP, N TO LEAVE IT PRESSED"
+NO_MUSHROOM = "PRESS THE RED E-STOP BUTTON ON THE MACHINE. THIS KEY ONLY STARTED FEED HOLD"
+HOW_TO_HOLD = "FEED HOLD: PAUSE, H OR ESC   E-STOP: SCROLL LOCK (STOP)"
+KEYBOARD_AWAY = "KEYBOARD IS IN ANOTHER WINDOW: STOP KEYS DO NOT WORK. USE THE BUTTONS, OR TOUCH THIS WINDOW"
 MOVING = frozenset({State.RUN, State.HOLDING, State.WAIT, State.JOG, State.HOME})
 INTERRUPTED = frozenset({State.HOLD, State.BLOCK_END, State.PROGRAM_STOP})
 UNDER_WAY = MOVING | INTERRUPTED
@@ -50,7 +50,7 @@ def prompt(snapshot: Snapshot, loaded: Loaded, start: str, release: str, *, fiel
 
     ``field_open``: letters are text.
     """
-    go_on = f"TO GO ON {start}; R GIVES THE PROGRAM UP"
+    go_on = f"TO CONTINUE: {start}. R: ABORT THE PROGRAM"
     standing = {
         State.ESTOP: _estop(release),
         State.DISABLED: "DRIVES ARE OFF: PRESS D FOR DRIVES ON",
@@ -58,11 +58,11 @@ def prompt(snapshot: Snapshot, loaded: Loaded, start: str, release: str, *, fiel
         State.RUN: HOW_TO_HOLD,
         State.JOG: HOW_TO_HOLD,
         State.WAIT: HOW_TO_HOLD,
-        State.HOLDING: "COMING TO REST",
+        State.HOLDING: "STOPPING",
         State.HOLD: go_on,
         State.BLOCK_END: go_on,
         State.PROGRAM_STOP: go_on,
-        State.HOME: "THE SLIDES ARE LOOKING FOR HOME",
+        State.HOME: "HOMING THE AXES",
     }
     return standing.get(snapshot.state) or _idle(snapshot, loaded, start)
 
@@ -80,15 +80,15 @@ def alarm_of(snapshot: Snapshot, release: str, *, field_open: bool = False) -> s
     """What goes before anything a page has to say: an alarm, an E-stop; empty when there is none."""
     if snapshot.state is State.FAULT:
         if not snapshot.alarms:
-            return "ALARM: PUT THE CAUSE RIGHT, THEN PRESS R TO ACKNOWLEDGE"
+            return "ALARM: CORRECT THE CAUSE, THEN PRESS R TO ACKNOWLEDGE"
         if field_open:
-            return f"WHAT TO DO: {snapshot.alarms[0].remedy}  ·  F1 LEAVES THE PAGE, THEN R ACKNOWLEDGES"
-        return f"WHAT TO DO: {snapshot.alarms[0].remedy}  ·  R ACKNOWLEDGES, F7 LISTS"
+            return f"WHAT TO DO: {snapshot.alarms[0].remedy}  ·  F1: LEAVE THE PAGE, THEN R: ACKNOWLEDGE"
+        return f"WHAT TO DO: {snapshot.alarms[0].remedy}  ·  R: ACKNOWLEDGE   F7: ALARM LIST"
     return _estop(release) if snapshot.state is State.ESTOP else ""
 
 
 def _estop(release: str) -> str:
-    return f"E-STOP: MAKE THE MACHINE SAFE, {release}, THEN PRESS D FOR DRIVES ON"
+    return f"E-STOP: MAKE THE MACHINE SAFE. {release}. THEN D: DRIVES ON"
 
 
 def reason(view: MachineStatus) -> str:
@@ -118,7 +118,7 @@ def _idle(snapshot: Snapshot, loaded: Loaded, start: str) -> str:
     if loaded.busy:
         return _progress(loaded)
     asked = interrupted_notice.interrupted_prompt(snapshot, loaded, start)
-    return lacking(snapshot, loaded) or asked or f"TO START {start}"
+    return lacking(snapshot, loaded) or asked or f"TO START: {start}"
 
 
 def lacking(snapshot: Snapshot, loaded: Loaded) -> str:
@@ -133,7 +133,7 @@ def lacking(snapshot: Snapshot, loaded: Loaded) -> str:
     if missing and "Y" in snapshot.axes:
         return f"WILL NOT START: {', '.join(missing)} NOT IN THE TOOL TABLE (F8)"
     if missing:
-        return f"WILL NOT START: NO OFFSET WAS EVER SET FOR {', '.join(missing)} (F8 SETS THEM)"
+        return f"WILL NOT START: NO OFFSET SET FOR {', '.join(missing)}. SET IT WITH F8"
     return f"WILL NOT START: {snapshot.next_barred}" if snapshot.next_barred else ""
 
 
@@ -147,7 +147,7 @@ def missing_tools(loaded: Loaded) -> list[str]:
 def refusal(loaded: Loaded) -> str:
     """Why the program on the desk will not run: the first error, and how many there are."""
     if loaded.phase is Phase.UNREADABLE:
-        return f"{loaded.name} CANNOT BE LOADED: {loaded.trouble}; PRESS F2 FOR ANOTHER"
+        return f"{loaded.name} CANNOT BE LOADED: {loaded.trouble}. F2: CHOOSE ANOTHER PROGRAM"
     errors = loaded.errors
     if not errors:
         first = loaded.proof.errors[0] if loaded.proof and loaded.proof.errors else "PROVING FOUND ERRORS"
@@ -164,7 +164,8 @@ def remedy(loaded: Loaded, prompt: str) -> str:
     errors = loaded.errors
     if errors:
         return errors[0].hint if prompt == refusal(loaded) else ""
-    if "TO START" not in prompt:
+    restart = tr("RESUME AT THIS LINE: {start}. ESC: CANCEL").partition("{start}")[0]
+    if "TO START: " not in prompt and restart not in prompt:
         return ""
     warned = (each for each in loaded.diagnostics if each.check and each.severity is Severity.WARNING)
     first = next(warned, None)
@@ -294,7 +295,7 @@ class PromptAnswers:
         while self._heard:
             event = self._heard.popleft()
             if event.kind == "refused" and event.text != snapshot.start_refused:
-                self.say(f"REFUSED: {event.text}")
+                self.say(f"REJECTED: {event.text}")
             elif event.kind in {"disturbed", "shared"}:
                 self.say(event.text)
             elif event.kind == "uncounted":
@@ -302,7 +303,7 @@ class PromptAnswers:
         if snapshot.start_refused != self._refused:
             self._refused = snapshot.start_refused
             if self._refused:
-                self.say(f"NO START: {self._refused}")
+                self.say(f"CANNOT START: {self._refused}")
         self._tell_not_kept()
 
     def _tell_not_kept(self) -> None:
@@ -311,4 +312,4 @@ class PromptAnswers:
         if trouble != self._not_kept:
             self._not_kept = trouble
             if trouble:
-                self.say(f"NOT KEPT: {trouble}")
+                self.say(f"NOT SAVED: {trouble}")

@@ -82,7 +82,7 @@ def _rotary_lamps(snapshot: Snapshot, *, table: bool) -> tuple[Lamp, ...]:
     tilted = snapshot.swivel is not None and snapshot.swivel.system.tilted
     rotary = zip(snapshot.axes, snapshot.actual, strict=True)
     turned = any(abs(math.remainder(at, 360.0)) > AT_ZERO for name, at in rotary if name in "ABC")
-    return Lamp("TILTED PLANE", lit=tilted), Lamp("TABLE TURNED" if table else "HEAD TURNED", lit=turned)
+    return Lamp("TILTED PLANE", lit=tilted), Lamp("TABLE ROTATED" if table else "HEAD ROTATED", lit=turned)
 
 
 def _spindle_lamp(snapshot: Snapshot) -> Lamp:
@@ -90,12 +90,12 @@ def _spindle_lamp(snapshot: Snapshot) -> Lamp:
     if Unknown.SPINDLE in snapshot.unknown:
         return Lamp("SPINDLE UNKNOWN", lit=True, warn=True)
     if snapshot.orienting:
-        return Lamp("SPINDLE ORIENTS", lit=True, warn=True)
+        return Lamp("SPINDLE ORIENTING", lit=True, warn=True)
     if snapshot.oriented is not None:
-        return Lamp("SPINDLE HELD", lit=True)
+        return Lamp("SPINDLE ORIENTED", lit=True)
     turning = abs(snapshot.rpm_actual) > TURNING
     if turning and snapshot.rpm_command == 0:
-        return Lamp("SPINDLE COASTS", lit=True, warn=True)
+        return Lamp("SPINDLE COASTING", lit=True, warn=True)
     if turning:
         return Lamp("SPINDLE REV" if snapshot.rpm_actual < 0 else "SPINDLE FWD", lit=True)
     return Lamp("SPINDLE", lit=False)
@@ -104,7 +104,7 @@ def _spindle_lamp(snapshot: Snapshot) -> Lamp:
 def _collet_lamp(snapshot: Snapshot) -> Lamp:
     """The output decides, not the program's word: it is what holds the bar."""
     if "collet" in snapshot.absent:
-        return Lamp("COLLET BY HAND", lit=False)
+        return Lamp("MANUAL COLLET", lit=False)
     if "collet" in snapshot.outputs:
         return Lamp("COLLET CLOSED", lit=True)
     return Lamp("COLLET OPEN", lit=True, warn=True)
@@ -381,7 +381,7 @@ def spindle_figures(snapshot: Snapshot, metric: bool, language: str) -> SpindleF
     forward, reverse, off = _directions(language)
     direction = forward if command > 0 else reverse if command < 0 else off
     if snapshot.oriented is not None:
-        direction = tr("HELD {angle}").format(angle=formats.angle(snapshot.oriented))
+        direction = tr("ORIENTED {angle}").format(angle=formats.angle(snapshot.oriented))
     return SpindleFigures(
         direction=f"{direction} · G96" if modal.css else direction,
         rpm=formats.rpm(command),

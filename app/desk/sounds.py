@@ -70,9 +70,9 @@ def _played(command: list[str]) -> str:
     try:
         done = subprocess.run(command, capture_output=True, timeout=_PATIENCE, check=False)
     except subprocess.TimeoutExpired:
-        return f"{command[0]} does not come to an end"
+        return f"{command[0]} did not finish in time"
     said = done.stderr.decode(errors="replace").strip().splitlines()
-    return "" if done.returncode == 0 else (said[-1] if said else f"{command[0]} has failed")
+    return "" if done.returncode == 0 else (said[-1] if said else f"{command[0]} failed")
 
 
 class Sounds:

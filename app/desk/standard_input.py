@@ -24,8 +24,12 @@ def standard_input(what: str) -> bytes:
     if what in _taken:
         return _taken[what]
     for other in _taken:
-        raise CommandError(f"- (stdin) is the {other} already; name a file for the {what}", "stdin-taken")
+        raise CommandError(
+            f"- (stdin) is already used for the {other}; name a file for the {what}", "stdin-taken"
+        )
     if sys.stdin is None:
-        raise CommandError(f"stdin is closed, so no {what} comes in there; name a file", "stdin-closed")
+        raise CommandError(
+            f"stdin is closed, so the {what} cannot be read from it; name a file", "stdin-closed"
+        )
     _taken[what] = sys.stdin.buffer.read(MOST_BYTES + 1)
     return _taken[what]

@@ -150,7 +150,7 @@ def _verdict(plain: Clearance, found: FirstMove, part: KnownPart) -> Clearance:
 
 
 def _not_known() -> str:
-    return tr("THE PART IN THE CHUCK IS NOT KNOWN: LOOK AT THE FIRST MOVE BEFORE YOU START")
+    return tr("PART IN THE CHUCK UNKNOWN. CHECK THE FIRST MOVE BEFORE STARTING")
 
 
 def _words(found: FirstMove, part: KnownPart) -> str:
@@ -163,9 +163,9 @@ def _words(found: FirstMove, part: KnownPart) -> str:
 
 
 def _way_out(found: FirstMove, part: KnownPart) -> str:
-    jog = tr("JOG {direction} UNTIL IT IS CLEAR").format(direction=found.out)
+    jog = tr("JOG {direction} UNTIL THE TOOL IS CLEAR").format(direction=found.out)
     if not found.out:
-        jog = tr("JOG IT OUT ALONG THE PATH BY WHICH IT CAME")
+        jog = tr("JOG IT BACK OUT ALONG ITS ENTRY PATH")
     if part.broken is None or not may_go_on(Loaded(source=part.job.source)):
         return jog
-    return tr("F6, THEN F4 SHOWS THE WAY OUT, OR {jog}").format(jog=jog)
+    return tr("PRESS F6, THEN F4 TO RETRACT, OR {jog}").format(jog=jog)

@@ -50,6 +50,6 @@ def wrong_shapes(shapes: Mapping[int, ShapeRow], tools: Mapping[int, ToolRow]) -
 def row_mistakes(row: ShapeRow, tool: ToolRow | None) -> tuple[ShapeMistake, ...]:
     """What in a row cannot be: fields that contradict each other, a code or an outline that means nothing."""
     if row.profile and outline_points(row.profile) is None:
-        text = "a profile is three points or more, Z and X in mm: 0,0 2.5,0 1.2,1.5"
+        text = "a profile needs three or more points, Z and X in mm: 0,0 2.5,0 1.2,1.5"
         return (ShapeMistake("profile", text, "not-an-outline"),)
     return shape_mistakes(shape_of(row, tool))

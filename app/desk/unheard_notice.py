@@ -20,8 +20,8 @@ def unheard_notice(snapshot: Snapshot) -> NoticeRow | None:
         Unknown.INPUTS: tr("INPUTS"),
     }
     what = ", ".join(words for which, words in named.items() if which in unknown)
-    head = tr("{what} UNKNOWN: THE MACHINE IS NOT HEARD").format(what=what)
+    head = tr("{what} UNKNOWN: NO RESPONSE FROM THE MACHINE").format(what=what)
     if Unknown.SPINDLE in unknown:
-        head = tr("SPINDLE UNKNOWN – SPINDLE MAY TURN: PRESS E-STOP")
-    below = tr("NOT KNOWN: {what} · WHAT IS SHOWN IS THE LAST THAT WAS HEARD").format(what=what)
+        head = tr("SPINDLE UNKNOWN – SPINDLE MAY BE TURNING: PRESS E-STOP")
+    below = tr("UNKNOWN: {what} · LAST KNOWN VALUES ARE SHOWN").format(what=what)
     return NoticeRow(head, below, tone="alarm")

@@ -6,18 +6,18 @@ from app.desk.translation import tr
 from core.executor.snapshot import Snapshot
 
 _ENDS = {
-    "AT SPEED": "THE SPINDLE COMES TO ITS SPEED: THE PROGRAM GOES ON BY ITSELF",
-    "DWELL": "A DWELL OF THE PROGRAM (G04): IT GOES ON BY ITSELF",
-    "COLLET": "THE COLLET MOVES: THE PROGRAM GOES ON BY ITSELF",
-    "SPINDLE STOP": "THE SPINDLE COMES TO REST: THE PROGRAM GOES ON BY ITSELF",
-    "SPINDLE STOPPED": "THE SPINDLE WAS STOPPED: SWITCH IT OFF AND BACK TO AUTO (A), THEN CYCLE START",
-    "SPINDLE SWITCH OFF": "THE SPINDLE SWITCH STANDS AT OFF: A TURNS IT TO AUTO",
-    "SPINDLE OVERRIDE AT 0": "THE SPINDLE POT STANDS AT 0: TURN IT UP (.)",
-    "FEED OVERRIDE AT 0": "THE FEED POT STANDS AT 0: TURN IT UP (+)",
-    "FEED HOLD BEHIND THE TAP": "THE TAP FIRST COMES OUT OF ITS HOLE; E-STOP STOPS IT AT ONCE",
+    "AT SPEED": "SPINDLE COMING TO SPEED: PROGRAM CONTINUES AUTOMATICALLY",
+    "DWELL": "PROGRAM DWELL (G04): CONTINUES AUTOMATICALLY",
+    "COLLET": "COLLET MOVING: PROGRAM CONTINUES AUTOMATICALLY",
+    "SPINDLE STOP": "SPINDLE STOPPING: PROGRAM CONTINUES AUTOMATICALLY",
+    "SPINDLE STOPPED": "SPINDLE WAS STOPPED: SWITCH IT OFF AND BACK TO AUTO (A), THEN CYCLE START",
+    "SPINDLE SWITCH OFF": "SPINDLE SWITCH IS OFF. A: SWITCH TO AUTO",
+    "SPINDLE OVERRIDE AT 0": "SPINDLE OVERRIDE IS AT 0: TURN IT UP (.)",
+    "FEED OVERRIDE AT 0": "FEED OVERRIDE IS AT 0: TURN IT UP (+)",
+    "FEED HOLD BEHIND THE TAP": "TAP BACKS OUT OF ITS HOLE FIRST. E-STOP: STOP IT AT ONCE",
     "GUARD OPEN": "THE GUARD IS OPEN: CLOSE IT",
 }
-GIVES_UP = "FEED HOLD (PAUSE), THEN R GIVES THE PROGRAM UP"
+GIVES_UP = "FEED HOLD (PAUSE), THEN R: ABORT THE PROGRAM"
 
 
 def waits_for(snapshot: Snapshot) -> str:
@@ -27,7 +27,7 @@ def waits_for(snapshot: Snapshot) -> str:
         return name
     if _is_input(snapshot):
         state = tr("OFF") if name in snapshot.inputs else tr("ON")
-        return tr("INPUT {name} TO COME {state}").format(name=name, state=state)
+        return tr("INPUT {name} TO TURN {state}").format(name=name, state=state)
     return name
 
 
@@ -40,9 +40,9 @@ def how_it_ends(snapshot: Snapshot, simulated: bool = False) -> str:
         return f"{tr(_ENDS[name])}  ·  {tr(GIVES_UP)}"
     if not _is_input(snapshot):
         return ""
-    words = tr("THE PROGRAM WAITS FOR {what}").format(what=waits_for(snapshot))
+    words = tr("PROGRAM WAITING FOR {what}").format(what=waits_for(snapshot))
     if simulated:
-        words += "  ·  " + tr("F10, 3, RETURN, F4 SWITCHES THE SIMULATED INPUTS")
+        words += "  ·  " + tr("F10, 3, ENTER, F4: SWITCH SIMULATED INPUTS")
     return f"{words}  ·  {tr(GIVES_UP)}"
 
 

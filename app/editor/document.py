@@ -58,7 +58,10 @@ def open_document(path: Path, samples: Path) -> Document:
     text = _text(path)
     if text.count("\n") >= MOST_LINES:
         raise TooLongError(
-            f"{path.name} has over {MOST_LINES} lines: too long for this editor; split it elsewhere",
+            (
+                f"{path.name} has over {MOST_LINES} lines, too many for this editor; split the file "
+                "in another editor"
+            ),
             "too-long",
         )
     line_end = _DOS if _DOS in text else "\n"
@@ -85,19 +88,19 @@ def program_name(typed: str, usual: str) -> str:
     """The file name that was meant: a name without an ending gets the ``usual`` one."""
     name = typed.strip()
     if not name:
-        raise NameRefusedError("NO NAME WAS TYPED: A PROGRAM NEEDS ONE")
+        raise NameRefusedError("ENTER A PROGRAM NAME")
     if name.startswith("."):
-        raise NameRefusedError(f"{name} WOULD BE HIDDEN: TAKE A NAME THAT BEGINS WITH A LETTER OR DIGIT")
+        raise NameRefusedError(f"{name} WOULD BE A HIDDEN FILE. START THE NAME WITH A LETTER OR DIGIT")
     try:
         check_name(name)
     except StoreError as error:
         raise NameRefusedError(
-            f"{name} CANNOT NAME A PROGRAM: LETTERS, DIGITS, DOT, DASH AND BLANK"
+            f"{name} IS NOT A VALID NAME. USE LETTERS, DIGITS, DOT, DASH, SPACE"
         ) from error
     ending = Path(name).suffix
     if ending.lower() not in ENDINGS:
         allowed = " ".join(sorted(ENDINGS - {""}))
-        raise NameRefusedError(f"{ending} IS NO ENDING OF A PROGRAM: TAKE NONE, OR ONE OF {allowed}")
+        raise NameRefusedError(f"FILE EXTENSION {ending} NOT ALLOWED. USE NONE OR ONE OF {allowed}")
     return name if ending else name + usual
 
 
@@ -119,7 +122,7 @@ def save_document(document: Document, text: str, archive: Archive, replacing: bo
         return CHANGED
     trouble = ""
     if there is not None:
-        trouble = _kept(archive, document.name, there, "as it was before editing")
+        trouble = _kept(archive, document.name, there, "text before editing")
         if trouble and foreign:
             return CHANGED  # what somebody else wrote is not replaced before it is safe
     data = document.encoded(text)

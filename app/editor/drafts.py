@@ -13,7 +13,7 @@ from app.editor.versions import Archive
 from core.file_placing import write_in_place
 from core.store.store_errors import StoreError
 
-WHY = "typed and not saved"
+WHY = "unsaved draft"
 
 
 @dataclass(slots=True)

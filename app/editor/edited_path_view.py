@@ -58,18 +58,18 @@ class EditedPath(PathView):
         """To the source line of what the cross stands on; answers a sentence where it stands on none."""
         block = self.ruler.block() if self.ruler is not None else 0
         if not block:
-            return tr("THE CROSS STANDS ON NO LINE OF THE PATH: AN ARROW TAKES IT TO ONE")
+            return tr("CROSSHAIR IS NOT ON THE PATH. PRESS AN ARROW TO MOVE IT THERE")
         self._picked_block(block)
         return ""
 
     def keys(self) -> dict[int, Key]:
         """The function keys while the keyboard is in the path."""
         return {
-            2: Key("HOLD", self._hold),
+            2: Key("FEED HOLD", self._hold),
             4: Key("VIEW", self.next_view),
             5: Key("FIT", self.fit),
-            6: Key("NEARER", partial(self.zoom, 1)),
-            7: Key("FARTHER", partial(self.zoom, -1)),
+            6: Key("ZOOM IN", partial(self.zoom, 1)),
+            7: Key("ZOOM OUT", partial(self.zoom, -1)),
         }
 
     def _hold(self) -> None:

@@ -125,7 +125,7 @@ class Editor:
         try:
             document = new_document(self.programs, self._offered, self.usual_ending)
         except NameRefusedError as error:
-            self.notice = f"{error}; ESC"
+            self.notice = f"{error}. ESC: BACK"
             return
         if document.path.exists():
             self.notice = messages.THERE_ALREADY.format(document.name)
@@ -286,7 +286,7 @@ class Editor:
         if self._leaving:
             self._go(self.document)
         elif not trouble:
-            self.notice = f"{document.name} IS SAVED"
+            self.notice = f"{document.name} SAVED"
 
     def _not_saved(self, why: str) -> None:
         self.stage, self.notice, self._leaving = Stage.OPEN, why, False

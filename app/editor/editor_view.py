@@ -231,7 +231,7 @@ class EditorPage(Page):
             Mode.HISTORY: lambda: {2: Key("RESTORE", self.restore), **self.versions.keys()},
             Mode.CODES: self.codes.keys,
             Mode.SHAPES: self.shapes.model.keys,
-            Mode.LOOK: lambda: {3: Key("TO LINE", self._to_line), **self.path.keys()},
+            Mode.LOOK: lambda: {3: Key("GO TO LINE", self._to_line), **self.path.keys()},
         }
         if self.mode is Mode.SHAPES and not self.shapes.model.listing:
             return {**of_mode[self.mode](), 10: back}  # what a form holds is written or dropped first
@@ -240,7 +240,7 @@ class EditorPage(Page):
         if self.mode is Mode.OFFER:
             return {1: Key("CREATE", self.editor.create), 10: Key("ABORT", self.editor.abort)}
         if self.mode is Mode.TEXT:
-            return {1: menu, **self._text_keys(), **undo, 10: Key("NO SAVE", self.abandon)}
+            return {1: menu, **self._text_keys(), **undo, 10: Key("DISCARD", self.abandon)}
         return {2: Key("SAVE" if self.mode is Mode.NAME else "GO", self._take), 10: back}
 
     def _text_keys(self) -> Keys:
@@ -249,7 +249,7 @@ class EditorPage(Page):
             3: Key(self._load_label(), partial(self.leave_to, page_table.AUTOMATIC)),
             4: Key("FIND", partial(self.enter, Mode.FIND)),
             5: Key("GO TO", partial(self.enter, Mode.GO_TO)),
-            6: Key("YES", self.answer) if self.editor.asked else Key("NEXT ERR", self.next_finding),
+            6: Key("YES", self.answer) if self.editor.asked else Key("NEXT ERROR", self.next_finding),
             7: Key("HISTORY", partial(self.enter, Mode.HISTORY)),
         }
 
@@ -305,7 +305,7 @@ class EditorPage(Page):
         if found is not None:
             self._go_to_finding(found)
         else:
-            self.editor.notice = "NOTHING WAS FOUND THAT IS WRONG"
+            self.editor.notice = "NO ERRORS OR WARNINGS FOUND"
 
     def save(self) -> None:
         """Save the text and go on editing."""
@@ -403,7 +403,7 @@ class EditorPage(Page):
     def _ask(self) -> None:
         """The question of this mode; the line goes where there is none."""
         if self.mode is Mode.FIND:
-            self.ask.ask("FIND", "REPLACE BY", entry=self.finder.start())
+            self.ask.ask("FIND", "REPLACE WITH", entry=self.finder.start())
             self.finder.look()
         elif self.mode is Mode.GO_TO:
             self.ask.ask("GO TO LINE", entry=str(self.field.line))
@@ -420,7 +420,7 @@ class EditorPage(Page):
         elif self.mode is Mode.NAME:
             self.editor.take_name(entry)
         elif (number := line_of(entry)) is None or number > self.field.blockCount():
-            self.ask.answer = f"A NUMBER FROM 1 TO {self.field.blockCount()}"
+            self.ask.answer = f"ENTER A NUMBER FROM 1 TO {self.field.blockCount()}"
             self.ask.first.selectAll()  # the next digit replaces it
         else:
             self.enter(Mode.TEXT)
@@ -434,7 +434,7 @@ class EditorPage(Page):
         line, column, count = self.field.line, self.field.column, self.field.blockCount()
         if self.mode is Mode.SHAPES:  # of the text with what the form writes
             line, count = self.shapes.model.line, self.shapes.model.text.count("\n") + 1
-        place = f"LINE {line} OF {count}  ·  {column}"
+        place = f"LINE {line} OF {count}  ·  COL {column}"
         self.head.heading = Heading(editor.name, self.typed_text.mark, place)
         self.head.with_shapes, self.codes.dialect = written_in(editor.name), dialect_of(editor.name)
         findings = editor.proof.now

@@ -46,9 +46,9 @@ class Search:
         count = len(self.places(text))
         found = f"{count} FOUND" if count else "NOT FOUND"
         if not self.whole:
-            return f"{found}, PARTS OF WORDS TOO"
+            return f"{found}, INCLUDING PARTS OF WORDS"
         more = self.inside(text)
-        return f"{found}, {more} MORE INSIDE LONGER WORDS" if more else found
+        return f"{found}, {more} MORE WITHIN LONGER WORDS" if more else found
 
 
 def following(places: tuple[int, ...], at: int) -> int | None:

@@ -62,7 +62,7 @@ class HeadLine(Panel):
             key = key.translated(-(KEYS + 0.6) * u, 0)  # a place of its own: the one before is kept
             self.key(painter, key, tr("SHAPES ⇧F3"), 1.9, self._shapes, ink="accent", margin=1.0)
         key = key.translated(-(KEYS + 0.6) * u, 0)
-        self.key(painter, key, tr("SUMS ⇧F4"), 1.9, self._sums, ink="accent", margin=1.0)
+        self.key(painter, key, tr("CALCULATOR ⇧F4"), 1.9, self._sums, ink="accent", margin=1.0)
 
 
 # --- where everything stands on the page, in the unit of the Automatic page --------------------------------

@@ -37,7 +37,7 @@ class NoArchive:
 
     def text_of(self, name: str, version: int) -> bytes:
         """Raises StoreError: no version is kept."""
-        raise StoreError(f"no version {version} of {name} is kept here", "no-version")
+        raise StoreError(f"version {version} of {name} is not stored here", "no-version")
 
     def save_version(self, _name: str, _text: bytes, _why: str) -> int:
         """Keeps nothing and answers 0."""
@@ -140,7 +140,7 @@ class VersionHistory:
 
     def heading(self) -> str:
         """What the lines of the comparison are."""
-        return f"FROM VERSION {self.number} TO THE TEXT IN THE EDITOR"
+        return f"CHANGES FROM VERSION {self.number} TO THE EDITOR TEXT"
 
     @property
     def number(self) -> int:
@@ -152,10 +152,10 @@ class VersionHistory:
         if self.trouble:
             return self.trouble
         if not self.rows:
-            return "READING" if self.worker.busy else "NO VERSION IS KEPT OF THIS PROGRAM YET"
+            return "READING" if self.worker.busy else "NO VERSION OF THIS PROGRAM STORED YET"
         if self.text is None:
             return "COMPARING"
-        return "" if self.changes else "THE SAME AS IN THE EDITOR"
+        return "" if self.changes else "IDENTICAL TO THE TEXT IN THE EDITOR"
 
     def _listed(self, rows: tuple[VersionRow, ...]) -> None:
         self.rows = rows

@@ -60,7 +60,7 @@ def findings(sheet: SetupSheet) -> tuple[Diagnostic, ...]:
 
 def _lacks(tool: SheetTool, job: ProvedJob, life: ToolLife | None, parts: int) -> Iterator[str]:
     if tool.offset is None:
-        yield tr("no offset: touch it off")
+        yield tr("no offset set: touch off the tool")
         return
     yield from _of_life(tool, life, parts)
     yield from _of_tip(tool, job)
@@ -70,11 +70,11 @@ def _of_life(tool: SheetTool, life: ToolLife | None, parts: int) -> Iterator[str
     if life is None or life.state is LifeState.NO_LIMIT:
         return
     if life.state is LifeState.SPENT:
-        yield tr("its life is gone, {words}: change the insert").format(words=tr(life.words))
+        yield tr("tool life used up, {words}: change the insert").format(words=tr(life.words))
         return
     left = _parts_left(life, tool.time.cutting)
     if left is not None and left < parts:
-        yield tr("life for {left} of {parts} parts").format(left=left, parts=parts)
+        yield tr("tool life left for {left} of {parts} parts").format(left=left, parts=parts)
 
 
 def _parts_left(life: ToolLife, seconds: float) -> int | None:
@@ -92,7 +92,7 @@ def _of_tip(tool: SheetTool, job: ProvedJob) -> Iterator[str]:
         return
     if then.quadrant == now.quadrant and abs(then.nose_radius - now.nose_radius) < _SAME:
         return
-    words = tr("another tip: R {radius}, {tip}; {when} it ran with R {was}, {was_tip}")
+    words = tr("tip changed: now R {radius}, {tip}; in the run of {when} it was R {was}, {was_tip}")
     length = job.sheet.length
     yield words.format(
         radius=length(now.nose_radius),
@@ -104,7 +104,7 @@ def _of_tip(tool: SheetTool, job: ProvedJob) -> Iterator[str]:
 
 
 def _tip(quadrant: int) -> str:
-    return tr("tip {quadrant}").format(quadrant=quadrant)
+    return tr("tip quadrant {quadrant}").format(quadrant=quadrant)
 
 
 def tool_name(number: int) -> str:

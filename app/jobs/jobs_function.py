@@ -15,9 +15,9 @@ class JobsFunction(PageFunction):
     """How many jobs wait, and which is next."""
 
     name = "JOBS"
-    use = "what is made next, how many, what it needs"
+    use = "which job is next, how many parts, what it needs"
     page = PAGE
-    way = "Return opens the page; Shift+F6 does so anywhere, J in the main menu."
+    way = "Press Enter to open the page. Shift+F6 opens it from any page, J from the main menu."
 
     def facts(self) -> tuple[Row, ...]:
         """Under way, next, waiting."""
@@ -28,8 +28,8 @@ class JobsFunction(PageFunction):
         made = f"{job.program}  {job.made}/{job.wanted}" if job is not None else NOTHING
         then = f"{coming.program}  {coming.left}" if coming is not None else NOTHING
         waiting = sum(not each.done and not each.under_way for each in watch.jobs)
-        return (Row((tr("UNDER WAY"), made)), Row((tr("NEXT"), then)), Row((tr("WAITING"), str(waiting))))
+        return (Row((tr("IN PROGRESS"), made)), Row((tr("NEXT"), then)), Row((tr("WAITING"), str(waiting))))
 
     def prompt(self) -> str:
         """How the page is opened."""
-        return "PRESS RETURN FOR THE JOBS; ESC GOES BACK TO THE LIST"
+        return "ENTER: OPEN JOBS   ESC: BACK TO THE LIST"

@@ -27,8 +27,8 @@ from core.store.job_queue import NOTE_LONGEST, JobRow
 from core.store.program_settings import notes_key
 from core.store.store_errors import StoreError
 
-NONE_YET = "NO JOB WAITS: F3 ADDS THE PROGRAM ON THE DESK, F10 OF THE LIST OF PROGRAMS (F1, F6) ANY OTHER"
-NO_PROGRAM = "CHOOSE A PROGRAM FIRST (F1, F2), OR MARK ONE IN THE LIST OF PROGRAMS (F1, F6) AND PRESS F10"
+NONE_YET = "NO JOBS WAITING. F3: ADD LOADED PROGRAM. FOR ANOTHER ONE: PROGRAM LIST (F1, F6), F10"
+NO_PROGRAM = "LOAD A PROGRAM (F1, F2), OR SELECT ONE IN THE PROGRAM LIST (F1, F6) AND PRESS F10"
 _WIDE = 46  # letters of a cell
 
 
@@ -61,7 +61,7 @@ class JobsModel:
     def locked(self) -> str:
         """Why nothing is kept here; empty where jobs are."""
         book = self.watch.parts.book
-        return "" if book.store is not None else book.away or tr("NOT KEPT HERE: THERE IS NO STORE")
+        return "" if book.store is not None else book.away or tr("JOBS CANNOT BE SAVED: NO DATA STORE")
 
     def look(self) -> None:
         """Once a frame: the marked job is proved as the next one is."""
@@ -115,8 +115,8 @@ class JobsModel:
 
     def _state(self, job: JobRow) -> str:
         if job.done:
-            return tr("DONE, STILL ON THE DESK") if self.watch.on_desk(job) else tr("DONE")
-        return tr("UNDER WAY") if self.watch.on_desk(job) else self.watch.state_words(job)
+            return tr("DONE, STILL LOADED") if self.watch.on_desk(job) else tr("DONE")
+        return tr("IN PROGRESS") if self.watch.on_desk(job) else self.watch.state_words(job)
 
     def setup(self) -> Sheet:
         """Of the marked job: its tools and what each lacks, what the proof has found, notes of its setup."""
@@ -132,7 +132,7 @@ class JobsModel:
         elif made is None:
             words = tr("PROVING …")
             if self.watch.on_desk(job) or job.done:
-                words = tr("ON THE DESK: ITS FINDINGS STAND ON B") if not job.done else tr("DONE")
+                words = tr("PROGRAM LOADED: ITS FINDINGS ARE ON PAGE B") if not job.done else tr("DONE")
             yield Row((tr("PROOF"), words, ""), False)
         else:
             yield from self._proved_rows(job, made)
@@ -154,7 +154,7 @@ class JobsModel:
     @staticmethod
     def _station(station: Station, made: ProvedJob) -> Row:
         tool = station.tool
-        lacks = _folded("; ".join(station.lacks)) or tr("in order")
+        lacks = _folded("; ".join(station.lacks)) or tr("ready")
         words = f"{made.sheet.shape_words(tool)}\n{made.sheet.offset_words(tool)}"
         return Row((tool_name(tool.number), words, lacks), bool(station.lacks),
                    Tone.PAUSE if station.lacks else Tone.RUN)  # fmt: skip
@@ -173,12 +173,12 @@ class JobsModel:
     def prompt(self) -> str:
         """What the keys do now."""
         if self.asking:
-            return "TYPE IT AND PRESS RETURN; ESC KEEPS EVERYTHING AS IT IS"
+            return "TYPE THE ENTRY   ENTER: ACCEPT   ESC: CANCEL"
         if self.job is None:
             return NONE_YET if self.desk.session.now.name else NO_PROGRAM
         if self.load_barred:
-            return "NO JOB IS LOADED WHILE THE MACHINE MOVES OR A PROGRAM IS UNDER WAY; ESC FOR AUTOMATIC"
-        return "F2 PUTS THE MARKED JOB ON THE DESK; NOTHING STARTS BEFORE THE PALMS; ESC FOR AUTOMATIC"
+            return "CANNOT LOAD A JOB: MACHINE MOVING OR PROGRAM RUNNING. ESC: AUTOMATIC"
+        return "F2: LOAD JOB (DOES NOT START IT)   CYCLE START: RUN   ESC: AUTOMATIC"
 
     # --- keys ----------------------------------------------------------------------------------------
 
@@ -190,7 +190,7 @@ class JobsModel:
         notes_barred = none or self.desk.snapshot().state in UNDER_WAY
         return {
             "F3": Key("ADD", self.add, barred=not self.desk.session.now.name),
-            "F4": Key("COUNT", partial(self._ask, "count"), barred=none),
+            "F4": Key("QUANTITY", partial(self._ask, "count"), barred=none),
             "F5": Key("UP", partial(self.move, -1), barred=none),
             "F6": Key("DOWN", partial(self.move, 1), barred=none),
             "F8": Key("NOTE", partial(self._ask, "note"), barred=notes_barred),
@@ -233,7 +233,7 @@ class JobsModel:
         if job is None:
             self.desk.say(NONE_YET)
         elif what == "note" and self.desk.snapshot().state in UNDER_WAY:
-            self.desk.say("NOTES ARE TYPED BETWEEN CYCLES: LETTERS STOP THE MACHINE WHILE IT RUNS")
+            self.desk.say("TYPE NOTES BETWEEN CYCLES: DURING A CYCLE, LETTER KEYS STOP THE MACHINE")
         else:
             self.desk.clear()
             text = job.note if what == "note" else ""
@@ -249,7 +249,7 @@ class JobsModel:
             self._write(
                 lambda c: job_queue.move(c, job.id, to),
                 partial(self._mark, to - 1),
-                f"job {job.program}: now {to}",
+                f"job {job.program}: moved to position {to}",
             )
 
     def _mark(self, row: int) -> None:
@@ -261,12 +261,12 @@ class JobsModel:
         if job is None:
             self.desk.say(NONE_YET)
             return
-        words = tr("PRESS Y TO TAKE {program} OUT OF THE QUEUE, {made} OF {wanted} MADE; N KEEPS IT")
+        words = tr("{program}: {made} OF {wanted} MADE. PRESS Y TO REMOVE IT FROM THE QUEUE, N TO KEEP IT")
         words = words.format(program=job.program, made=job.made, wanted=job.wanted)
         self.desk.ask(
             words,
             partial(
-                self._write, lambda c: job_queue.remove(c, job.id), change=f"job {job.program} taken out"
+                self._write, lambda c: job_queue.remove(c, job.id), change=(f"job {job.program} removed")
             ),
         )
 
@@ -274,16 +274,16 @@ class JobsModel:
         """Jobs that are done go, after asking."""
         done = sum(job.done for job in self.jobs)
         if not done:
-            self.desk.done("NO JOB IS DONE YET: THERE IS NOTHING TO CLEAR")
+            self.desk.done("NO FINISHED JOBS TO CLEAR")
             return
-        words = tr("PRESS Y TO TAKE {count} JOBS THAT ARE DONE OUT OF THE QUEUE, N TO KEEP THEM")
+        words = tr("PRESS Y TO REMOVE {count} FINISHED JOBS FROM THE QUEUE, N TO KEEP THEM")
         self.desk.ask(words.format(count=done), partial(self._write, _clear_done))
 
     def _write(
         self,
         operation: Callable[[sqlite3.Connection], object],
         done: Callable[[], None] = lambda: None,
-        change: str = "jobs: those that are done are cleared",
+        change: str = "jobs: finished jobs cleared",
     ) -> None:
         self.desk.clear()
         self.watch.parts.book.write(Act.JOBS, operation, done, self.watch.parts.refuse, change)
@@ -298,7 +298,7 @@ class JobsModel:
         if key == "Enter":
             self._answer()
         elif self.asking == "note" and len(self.entry.text) >= NOTE_LONGEST and len(key) == 1:
-            self.desk.say(tr("A NOTE HAS {most} LETTERS AT MOST").format(most=NOTE_LONGEST))
+            self.desk.say(tr("NOTE TOO LONG: {most} CHARACTERS AT MOST").format(most=NOTE_LONGEST))
         elif self.entry.type(key):
             self.desk.clear()
         else:

@@ -86,7 +86,9 @@ class JobsWatch:
             return
         path = self.desk.program_folders.find(job.program)
         if path is None:
-            self.desk.say(tr("{name} IS NOT AMONG THE PROGRAMS: F1, F6").format(name=job.program))
+            self.desk.say(
+                tr("{name} IS NOT IN THE PROGRAM LIST. F1, F6: CHECK THE LIST").format(name=job.program)
+            )
             return
         loads = self.desk.session.loads
         self.desk.put_on_desk(path)
@@ -105,7 +107,7 @@ class JobsWatch:
                     lambda connection: job_queue.begin(connection, job.id),
                     _nothing,
                     self.parts.refuse,
-                    f"job {job.program} begun",
+                    f"job {job.program} started",
                 )
         elif not self.desk.asked:
             self._loading = None
@@ -130,7 +132,7 @@ class JobsWatch:
     def _next_words(self) -> str:
         job = self.next
         if job is None:
-            return tr("NO OTHER JOB WAITS.")
+            return tr("NO MORE JOBS WAITING.")
         words = tr("NEXT: {program}, {left} PARTS").format(program=job.program, left=job.left)
         return f"{words}, {self.state_words(job)}"
 
@@ -142,9 +144,9 @@ class JobsWatch:
         if not isinstance(made, ProvedJob):
             return made
         if made.sheet.errors:
-            return tr("REFUSED BY ITS PROOF")
+            return tr("PROOF FOUND ERRORS")
         lacking = missing(made, self.lives, job.left)
-        return tr("{count} MISSING").format(count=lacking) if lacking else tr("TOOLS COMPLETE")
+        return tr("{count} ITEMS NOT READY").format(count=lacking) if lacking else tr("TOOLS COMPLETE")
 
     def notice(self, snapshot: Snapshot) -> NoticeRow | None:
         """On the Automatic page, between cycles: the job is done, and which comes next."""

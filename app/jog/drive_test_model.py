@@ -62,7 +62,7 @@ class HeldTest(HeldJog):
     def _go(self, source: str, axis: str, sign: int, rapid: bool) -> None:
         if rapid:
             self.asked = None
-            self.say(tr("A DRIVE TEST HAS NO RAPID: PRESS WITHOUT SHIFT"))
+            self.say(tr("DRIVE TEST HAS NO RAPID. PRESS WITHOUT SHIFT"))
         elif self.asked != (axis, sign):
             self.clear()
             self.asked = axis, sign
@@ -169,7 +169,7 @@ class DriveTests:
         """F5: the figures of the last test, its window, what is chosen for the next."""
         self.desk.clear()
         if self.found is None:
-            self.desk.say(tr("NO TEST WAS PLAYED YET: THERE ARE NO FIGURES"))
+            self.desk.say(tr("NO TEST VALUES YET. RUN A TEST FIRST"))
         else:
             self.part = following((None, Part.RESPONSE, Part.WINDOW), self.part)
 
@@ -182,7 +182,7 @@ class DriveTests:
 
     def _choose(self) -> None:
         self.desk.clear()
-        self.hold.let_go(tr("ANOTHER TEST WAS CHOSEN: THE ONE UNDER WAY HAS ENDED"))
+        self.hold.let_go(tr("ANOTHER TEST SELECTED. THE RUNNING TEST WAS STOPPED"))
         self.hold.asked, self.part = None, None
 
     # --- may it, and where does it go ------------------------------------------------------------------
@@ -193,9 +193,9 @@ class DriveTests:
         if self.desk.stop_held():
             return tr(STOP_HELD)
         if snapshot.drive_test.barred:
-            return tr("NO DRIVE TEST: {why}").format(why=snapshot.drive_test.barred)
+            return tr("DRIVE TEST NOT POSSIBLE: {why}").format(why=snapshot.drive_test.barred)
         if abs(snapshot.rpm_actual) >= 1.0 or snapshot.spindle_asked:
-            return tr("THE SPINDLE TURNS: STOP IT FIRST")
+            return tr("SPINDLE IS TURNING. STOP IT FIRST")
         return why_no_jog(snapshot.state)
 
     def refusal(self, asked: Asked) -> str:
@@ -204,7 +204,7 @@ class DriveTests:
         snapshot, model = self.desk.snapshot(), self.machine.axis(axis)
         index = snapshot.axes.index(axis)
         if not snapshot.homed[index]:
-            return tr("{axis} IS NOT HOMED: NOBODY KNOWS WHETHER THE TEST HAS ROOM").format(axis=axis)
+            return tr("{axis} IS NOT HOMED, SO ITS TRAVEL CANNOT BE CHECKED. HOME IT FIRST").format(axis=axis)
         path, limits = self.path(axis, sign), self._limits(axis)
         if why := path.refusal(limits):
             return why
@@ -213,7 +213,7 @@ class DriveTests:
         if max(high, 1e-9) > room_to_limit(model, here, 1.0) or max(-low, 1e-9) > room_to_limit(
             model, here, -1.0
         ):
-            return tr("{axis} HAS NO ROOM FOR IT: JOG AWAY FROM THE END OF ITS TRAVEL").format(axis=axis)
+            return tr("NOT ENOUGH TRAVEL IN {axis}. JOG AWAY FROM THE END OF TRAVEL").format(axis=axis)
         return ""
 
     def travel(self, asked: Asked) -> str:
@@ -238,7 +238,7 @@ class DriveTests:
         if why := self.barred() or self.refusal(asked):
             return why
         key = next(each.label for each in self.directions if (each.axis, each.sign) == asked)
-        return tr("{travel}: HOLD {key} TO PLAY IT, LET GO TO STOP").format(
+        return tr("{travel}: HOLD {key} TO RUN THE TEST, RELEASE TO STOP").format(
             travel=self.travel(asked), key=key
         )
 
@@ -292,7 +292,7 @@ class DriveTests:
             self.desk.say(found)
             return
         self.found, self.part = found, Part.RESPONSE
-        self.desk.say(tr("WRITTEN: {path}").format(path=self.kept))
+        self.desk.say(tr("SAVED: {path}").format(path=self.kept))
 
     # --- keys ----------------------------------------------------------------------------------------
 
@@ -327,7 +327,7 @@ class DriveTests:
 
     def let_go(self) -> None:
         """Hands off: the keyboard, the window or the page is gone."""
-        self.hold.let_go(tr("THE TEST HAS ENDED: THE KEYBOARD WENT ELSEWHERE"))
+        self.hold.let_go(tr("TEST STOPPED: THIS PAGE LOST THE KEYBOARD"))
         self.hold.asked = None
 
     def leave(self) -> None:
@@ -349,10 +349,10 @@ class DriveTests:
         if why:
             return why
         if self.hold.held is not None:
-            return tr("KEEP IT HELD UNTIL IT HAS COME BACK")
+            return tr("KEEP HOLDING THE KEY UNTIL THE AXIS IS BACK")
         if self.found is None:
-            return tr("AN ARROW ASKS FOR THE TRAVEL; THE SAME ARROW, HELD, PLAYS THE TEST")
-        return tr("AN ARROW ASKS FOR THE TRAVEL; THE SAME ARROW, HELD, PLAYS THE TEST; F5 SHOWS ITS FIGURES")
+            return tr("PRESS AN ARROW TO SHOW THE TRAVEL. HOLD IT TO RUN THE TEST")
+        return tr("PRESS AN ARROW TO SHOW THE TRAVEL. HOLD IT TO RUN THE TEST. F5: VALUES")
 
     def drawing(self) -> Drawing:
         """Asked and done of the last test."""
@@ -361,7 +361,7 @@ class DriveTests:
     def words(self) -> str:
         """What the drawing shows."""
         if self.found is None:
-            return tr("no test has been played yet")
+            return tr("no test has been run yet")
         return shown_words(self.found.path, self.metric) + "  ·  " + self.kept
 
     def sheet(self) -> Sheet:
@@ -380,9 +380,9 @@ class DriveTests:
             Row((tr("SIZE"), "F3", units.way(abs(path.size)))),
             Row(
                 (
-                    tr("HERTZ") if self.shape is Shape.SINE else tr("SPEED"),
+                    tr("FREQUENCY") if self.shape is Shape.SINE else tr("SPEED"),
                     "F4",
-                    speed or tr("as fast as it can"),
+                    speed or tr("as fast as possible"),
                 )
             ),
             *self._axis_rows(units),
@@ -390,10 +390,10 @@ class DriveTests:
         why = self.barred()
         notes = (
             *((why,) if why else ()),
-            *(() if "Y" in self.drives else (tr("Of the slide: a size of X is half of a diameter."),)),
-            tr("Nothing is written to a drive."),
+            *(() if "Y" in self.drives else (tr("The size is axis travel: in X, half of the diameter."),)),
+            tr("The test writes nothing to the drive."),
         )
-        heads, shares = ("", tr("KEY"), tr("CHOSEN")), (0.34, 0.16, 0.5)
+        heads, shares = ("", tr("KEY"), tr("SETTING")), (0.34, 0.16, 0.5)
         return Sheet(tr("DRIVE TEST"), heads, shares, tuple(rows), notes=notes, figures=frozenset({2}))
 
     def _axis_rows(self, units: Units) -> list[Row]:
@@ -401,7 +401,7 @@ class DriveTests:
         return [
             Row(
                 (
-                    tr("WINDOW {axis}").format(axis=name),
+                    tr("FOLLOWING ERROR LIMIT {axis}").format(axis=name),
                     "",
                     f"{units.way(axis.still_window)} … {units.way(axis.following_window)}",
                 )

@@ -37,7 +37,7 @@ class DriveTestPad(JogCross):
 
     def draw(self, painter: Painter) -> None:
         self.controls.clear()
-        self.frame(painter, tr("DRIVE TEST  ·  ASK, THEN HOLD"))
+        self.frame(painter, tr("DRIVE TEST  ·  PRESS, THEN HOLD"))
         asked = self._model.hold.asked
         middle = self.cross(painter, QRectF(self.inside()))
         if asked is not None:
@@ -50,7 +50,7 @@ class DriveTestPage(HeldKeysPage):
     """What is held is renewed from ``refresh``: a screen that stands still moves nothing for longer."""
 
     NAME = page_table.DRIVE_TEST
-    LABELS = ("MENU", "SHAPE", "SIZE", "SPEED", "FIGURES", "", "ALARMS", "ANALYSE", "JOG", "")
+    LABELS = ("MENU", "SHAPE", "SIZE", "SPEED", "VALUES", "", "ALARMS", "ANALYZE", "JOG", "")
 
     model: DriveTests
 

@@ -33,7 +33,7 @@ KEYS = {
     "5": CLOSE,
     "6": OPEN,
 }
-NOT_OPENED = "THE COLLET IS NOT OPENED BY HAND WHILE THE SPINDLE TURNS: 0 STOPS IT"
+NOT_OPENED = "COLLET CANNOT BE OPENED BY HAND WHILE THE SPINDLE TURNS. 0: STOP SPINDLE"
 SPEED = "9"  # the key that asks for it
 
 
@@ -105,7 +105,7 @@ class HandFunctions:
     def leave(self) -> bool:
         """Whether the page may be left: as in MDI not while a line is under way, and the spindle stays on."""
         if self.under_way(self.desk.snapshot()):
-            self.desk.say(tr("A LINE IS UNDER WAY: LET IT END, OR STOP IT AND PRESS R"))
+            self.desk.say(tr("A LINE IS RUNNING. LET IT END, OR STOP IT AND PRESS R"))
             return False
         if self._armed:
             self.line.leave()
@@ -178,13 +178,13 @@ class HandFunctions:
         if snapshot.state is State.IDLE:
             return ""
         words = {
-            State.DISABLED: tr("THE DRIVES ARE OFF: PRESS D FOR DRIVES ON"),
-            State.ESTOP: tr("THE E-STOP IS PRESSED: NOTHING MOVES"),
-            State.FAULT: tr("AN ALARM STANDS: PUT ITS CAUSE RIGHT, THEN PRESS R"),
-            State.JOG: tr("THE SLIDES ARE STILL MOVING"),
-            State.HOME: tr("THE SLIDES ARE LOOKING FOR HOME: H STOPS THEM"),
+            State.DISABLED: tr("DRIVES ARE OFF. PRESS D TO TURN THEM ON"),
+            State.ESTOP: tr("E-STOP IS PRESSED. NO AXIS CAN MOVE"),
+            State.FAULT: tr("ALARM ACTIVE. CORRECT ITS CAUSE, THEN PRESS R"),
+            State.JOG: tr("AXES ARE STILL MOVING"),
+            State.HOME: tr("HOMING. PRESS H TO STOP"),
         }
-        return words.get(snapshot.state) or tr("SOMETHING IS UNDER WAY: LET IT END, OR GIVE IT UP WITH R")
+        return words.get(snapshot.state) or tr("MACHINE IS BUSY. LET IT FINISH, OR PRESS R TO CANCEL")
 
     def stop(self) -> None:
         """The spindle stops, at once and without palms; a line that was begun here is given up."""
@@ -196,7 +196,7 @@ class HandFunctions:
     def _coolant_off(self) -> None:
         self.take_back()
         if self.desk.snapshot().state is State.JOG:
-            self.desk.say(tr("THE SLIDES ARE STILL MOVING"))
+            self.desk.say(tr("AXES ARE STILL MOVING"))
         else:
             self.desk.clear()
             self.desk.post(ForceOutput("coolant", on=False))
@@ -239,13 +239,15 @@ class HandFunctions:
             rpm = value_of(self.text)
         except EntryError as error:
             self.text = refused(self.text)
-            self.desk.say(tr("REFUSED: {why}").format(why=error))
+            self.desk.say(tr("REJECTED: {why}").format(why=error))
             return
         highest = self.desk.snapshot().spindle_limit or self.machine.spindle.rpm_max
         if not 0.0 < rpm <= highest:
             self.text = refused(self.text)
             self.desk.say(
-                tr("REFUSED: {rpm:g} RPM IS NOT BETWEEN 0 AND {highest:g}").format(rpm=rpm, highest=highest)
+                tr("{rpm:g} RPM REJECTED. ENTER MORE THAN 0, UP TO {highest:g} RPM").format(
+                    rpm=rpm, highest=highest
+                )
             )
             return
         self.rpm, self.asked, self.text = rpm, False, ""
@@ -285,7 +287,7 @@ class HandFunctions:
 
     def _refused(self, error: Diagnostic) -> None:
         self._forget()
-        self.desk.say(tr("REFUSED: {why}").format(why=f"{tr(error.message)} {tr(error.hint)}".strip()))
+        self.desk.say(tr("REJECTED: {why}").format(why=f"{tr(error.message)} {tr(error.hint)}".strip()))
 
     def _failed(self, why: str) -> None:
         self._forget()
@@ -321,16 +323,16 @@ class HandFunctions:
             return ""
         if not self.shown:
             return prompt_line.NOT_HERE
-        return tr("NOTHING IS CHOSEN: 1 TO 6 SAY WHAT THE PALMS SWITCH ON")
+        return tr("NOTHING SELECTED. PICK 1–6, THEN CYCLE START")
 
     def prompt(self, snapshot: Snapshot) -> str:
         """What can be done now; empty where it is the jog's to say."""
         if self.asked:
-            return tr("TYPE A SPEED IN RPM, THEN RETURN; ESC LEAVES IT")
+            return tr("TYPE THE RPM AND PRESS ENTER. ESC: CANCEL")
         if self.under_way(snapshot):
-            words = tr("{line} IS UNDER WAY: 0 STOPS THE SPINDLE")
+            words = tr("{line} IS RUNNING. 0: STOP SPINDLE")
             if snapshot.state in STOPPED:
-                words = tr("{line} IS HELD: BOTH PALMS GO ON, 0 STOPS THE SPINDLE AND GIVES IT UP")
+                words = tr("{line} IS STOPPED. CYCLE START: RESUME   0: STOP SPINDLE AND CANCEL")
             return words.format(line=snapshot.block_text)
         if snapshot.state is not State.IDLE:
             return ""
@@ -340,18 +342,18 @@ class HandFunctions:
 
     def _ready_words(self, snapshot: Snapshot) -> str:
         if self.line.ready is not None:
-            words = tr("TO RUN {line} {start}; ESC TAKES IT BACK")
+            words = tr("RUN {line}: {start}   ESC: CANCEL")
             line = self.line.ready.source.text
             if self.words.speed and self.chosen in {FORWARD, REVERSE}:
                 line = f"{line} (S{self.speed:g})"  # which S counts does not stand in it
             return words.format(line=line, start=tr(self.desk.start_words))
         if self._moved:
-            return tr("THE SLIDES WERE MOVED: CHOOSE AGAIN WHAT THE PALMS SHALL SWITCH ON")
+            return tr("AXES WERE MOVED. PICK THE FUNCTION AGAIN")
         if self.turns(snapshot):
-            return tr("THE SPINDLE TURNS: KEEP CLEAR; 0 STOPS IT, HOLD AN ARROW TO MOVE")
+            return tr("SPINDLE IS TURNING. KEEP CLEAR. 0: STOP   HOLD AN ARROW: JOG")
         if not self.shown:
             return ""
-        return tr("1 TO 6 SAY WHAT THE PALMS SWITCH ON, 9 THE SPEED; B SHOWS TOOL SETTING")
+        return tr("PICK 1–6, THEN CYCLE START. 9: RPM. B: TOOL SETTING")
 
     @staticmethod
     def turns(snapshot: Snapshot) -> bool:

@@ -64,7 +64,7 @@ class HandPanel(FingerPanel):
 
     def draw(self, painter: Painter) -> None:
         self.controls.clear()
-        self.frame(painter, tr("BY HAND  ·  CHOOSE, THEN BOTH PALMS"))
+        self.frame(painter, tr("MANUAL FUNCTIONS  ·  PICK, THEN CYCLE START"))
         u, room, hand = self.look.u, self.inside(), self._model.hand
         rows = 4 if CLOSE in hand.there else 3
         high = (room.height() + 0.6 * u) / rows
@@ -103,9 +103,9 @@ class HandPanel(FingerPanel):
     def _spindle(self, painter: Painter, row: QRectF) -> None:
         """What the spindle does now, and the key that stops it."""
         u, hand, snapshot = self.look.u, self._model.hand, self._model.desk.snapshot()
-        words = tr("THE SPINDLE STANDS")
+        words = tr("SPINDLE STOPPED")
         if hand.turns(snapshot):
-            words = tr("THE SPINDLE TURNS {rpm:.0f} RPM").format(rpm=abs(snapshot.rpm_actual))
+            words = tr("SPINDLE TURNING AT {rpm:.0f} RPM").format(rpm=abs(snapshot.rpm_actual))
         left = QRectF(row.x(), row.y(), 0.56 * row.width(), row.height())
         painter.write(left, words, 2.4, "pause" if hand.turns(snapshot) else "text", at=LEFT)
         box = QRectF(left.right() + 0.6 * u, row.y(), row.right() - left.right() - 0.6 * u, row.height())
@@ -171,8 +171,8 @@ class HandStrip(FingerPanel):
 
     def _keys(self) -> tuple[Key, ...]:
         model, skim = self._model, self._model.skim
-        leave: Key = ("Esc", tr("GIVE UP"), skim.escape)
-        hand: Key = ("B", tr("TOOL SETTING") if model.hand.shown else tr("BY HAND"), model.show_hand)
+        leave: Key = ("Esc", tr("CANCEL"), skim.escape)
+        hand: Key = ("B", tr("TOOL SETTING") if model.hand.shown else tr("MANUAL FUNCTIONS"), model.show_hand)
         if skim.step is CutStep.AXIS:
             return (
                 ("X", tr("DIAMETER"), partial(skim.choose, TOUCH_X)),
@@ -180,7 +180,7 @@ class HandStrip(FingerPanel):
                 leave,
             )
         if skim.step is CutStep.CUT:
-            return (hand, ("↵", tr("THE CUT IS MADE"), skim.made), leave)
+            return (hand, ("↵", tr("CUT DONE"), skim.made), leave)
         if skim.step is CutStep.AWAY:
             return (hand, ("0", tr("SPINDLE STOP"), partial(model.press_hand, STOP)), leave)
         return (hand,) if model.on_mill else (hand, ("C", tr("SKIM CUT"), skim.begin))

@@ -61,7 +61,7 @@ class HeldJog:
         others, self._ended = self.down - {source}, ""
         self.down.add(source)
         if others or self.held is not None:
-            self.stop(tr("TWO AT ONCE MOVE NOTHING: LET BOTH GO, THEN PRESS ONE"))
+            self.stop(tr("TWO KEYS PRESSED, JOG STOPPED. RELEASE BOTH, THEN PRESS ONE"))
         elif why := self.barred():
             self.say(why)
         else:
@@ -78,7 +78,7 @@ class HeldJog:
     def _step(self, axis: str, sign: int, rapid: bool) -> None:
         """One step, which is its own length and not longer by being held."""
         if rapid:
-            self.say(tr("RAPID IS FOR A HELD JOG: CHOOSE CONTINUOUS, OR PRESS WITHOUT SHIFT"))
+            self.say(tr("RAPID NEEDS CONTINUOUS JOG. SELECT CONT, OR PRESS WITHOUT SHIFT"))
             return
         self.clear()
         distance = sign * self.speeds.distance(axis, self.mode)
@@ -110,12 +110,12 @@ class HeldJog:
     def other_key(self) -> None:
         """Another key goes down: whoever reaches for it does not look at the slide."""
         if self.held is not None:
-            self.stop(tr("ANOTHER KEY HAS ENDED THE JOG"))
+            self.stop(tr("JOG STOPPED: ANOTHER KEY WAS PRESSED"))
 
     def shift_released(self) -> None:
         """A rapid does not go on without its Shift, nor slower."""
         if self.held is not None and self.held.rapid:
-            self.stop(tr("SHIFT WAS LET GO: THE RAPID HAS ENDED"))
+            self.stop(tr("SHIFT RELEASED. RAPID STOPPED"))
 
     def let_go(self, why: str = "") -> None:
         """Hands off everything: no release will arrive any more."""
@@ -141,9 +141,9 @@ class HeldJog:
             return
         away, held.looked = now - held.looked, now
         if away > self.lease:
-            self.stop(tr("THE SCREEN WAS AWAY: THE JOG HAS ENDED"))
+            self.stop(tr("SCREEN FROZE. JOG STOPPED"))
         elif held.repeated is not None and now - held.repeated > SILENT:
-            self.stop(tr("THE KEY HAS GONE SILENT: LET IT GO AND PRESS IT AGAIN"))
+            self.stop(tr("JOG KEY LOST. RELEASE, THEN PRESS AGAIN"))
         elif snapshot.state is State.JOG:
             held.moving = True
             self._renew(held, now)

@@ -65,7 +65,7 @@ class HeldKeysPage(ModelPage):
             model.hold.other_key()
         elif event.modifiers() & Qt.KeyboardModifier.KeypadModifier:
             model.hold.other_key()
-            self.desk.say(tr("NUM LOCK IS OFF: THE ARROWS OF THE NUMBER PAD MOVE NOTHING"))
+            self.desk.say(tr("NUM LOCK IS OFF. NUMBER PAD ARROWS DO NOT JOG"))
         else:
             axis, sign = self._arrows[key]
             rapid = bool(event.modifiers() & Qt.KeyboardModifier.ShiftModifier)

@@ -82,7 +82,7 @@ class JogHandwheel:
         if not self.there:
             self.hold.say(tr("THIS MACHINE HAS NO HANDWHEEL"))
         elif self.switched:
-            self.hold.say(tr("THE SWITCH AT THE STATION CHOOSES THE AXIS OF THE HANDWHEEL"))
+            self.hold.say(tr("SELECT THE HANDWHEEL AXIS WITH THE OPERATOR PANEL SWITCH"))
         elif axis and (why := self.barred()):
             self.hold.say(why)
         else:
@@ -109,7 +109,7 @@ class JogHandwheel:
             return
         wanted = self._wanted(snapshot)
         if self.choice is not None and away > self.hold.lease:
-            self.drop(tr("THE SCREEN WAS AWAY: THE HANDWHEEL IS OFF"))
+            self.drop(tr("SCREEN FROZE. HANDWHEEL IS OFF"))
         elif self.choice is not None and (why := self.barred()):
             self.drop(why)
         elif wanted != self.choice and self.choice is not None:
@@ -118,7 +118,7 @@ class JogHandwheel:
             self._by_hand, self._left = axis, None  # another step, or another axis at the switch
         elif self.choice is not None and now - self._asked > BEGINS and not snapshot.wheel:
             why = snapshot.wheel_ended.upper()  # of the control
-            self.drop(tr("THE HANDWHEEL IS OFF: {why}").format(why=why) if why else "")
+            self.drop(tr("HANDWHEEL IS OFF: {why}").format(why=why) if why else "")
         elif wanted is not None and not self.barred():
             self._renew(wanted, now)
 

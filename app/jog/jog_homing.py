@@ -76,9 +76,9 @@ class HomingQuestion:
         if why_not:
             self.desk.say(why_not)
         elif not lost:
-            self.desk.say(tr("EVERY AXIS KNOWS ITS POSITION: THERE IS NOTHING TO HOME"))
+            self.desk.say(tr("ALL AXES HOMED"))
         else:
-            text = tr("HOME {first}: PRESS RETURN FOR ALL, {letters} FOR ONE AXIS, ESC FOR NONE")
+            text = tr("HOME {first}. ENTER: ALL AXES   {letters}: ONE AXIS   ESC: CANCEL")
             order = tr(", THEN ").join(lost)
             question = text.format(first=order, letters=tr(" OR ").join(sorted(lost)))
             self.desk.ask(_stands(snapshot) + question, lambda: self._go(""), "Enter")
@@ -92,7 +92,7 @@ class HomingQuestion:
         self.give_up()
         if name in {axis.name for axis in self.axes}:
             if name not in self.lost(snapshot):
-                self.desk.say(tr("{axis} KNOWS ITS POSITION").format(axis=name))
+                self.desk.say(tr("{axis} IS ALREADY HOMED").format(axis=name))
             elif read:
                 self._go(name)
             return True
@@ -123,4 +123,4 @@ def _stands(snapshot: Snapshot) -> str:
     found = snapshot.interrupted
     if found is None:
         return ""
-    return tr("T{tool} MAY STAND IN THE PART: JOG IT CLEAR FIRST. ").format(tool=found.tool)
+    return tr("T{tool} MAY BE IN THE PART. JOG IT CLEAR FIRST. ").format(tool=found.tool)

@@ -103,17 +103,17 @@ class JogModel:
         if self.desk.stop_held():
             return tr(STOP_HELD)
         if self.asked:
-            return tr("AN ENTRY IS OPEN: PRESS RETURN OR ESC; THE ARROWS MOVE NOTHING MEANWHILE")
+            return tr("ARROWS DO NOT JOG DURING AN ENTRY. PRESS ENTER OR ESC")
         if self.home.give_up():
-            return tr("HOMING IS NOT DONE; PRESS THE ARROW AGAIN TO JOG")
+            return tr("HOMING CANCELED. PRESS THE ARROW AGAIN TO JOG")
         return why_no_jog(state)
 
     def _wheel_barred(self) -> str:
         """As ``barred``, and takes nothing back."""
         if self.tilt.on:
-            return tr("3D-ROT IS ON: THE HANDWHEEL MOVES THE MACHINE'S OWN AXES, TURN IT OFF FIRST (F5)")
+            return tr("HANDWHEEL MOVES ONLY MACHINE AXES. F5: TURN 3D-ROT OFF FIRST")
         if self.asked:
-            return tr("AN ENTRY IS OPEN: THE HANDWHEEL IS OFF")
+            return tr("HANDWHEEL IS OFF DURING AN ENTRY")
         return why_no_jog(self.desk.snapshot().state)
 
     def look(self, snapshot: Snapshot) -> None:
@@ -132,9 +132,9 @@ class JogModel:
     def prompt(self, snapshot: Snapshot) -> str:
         """The page's own words on the prompt line."""
         if self.tool.by_setter:
-            return tr("RETURN KEEPS WHAT WAS FOUND, ESC LEAVES THE TOOL AS IT WAS")
+            return tr("ENTER: SAVE MEASURED VALUE   ESC: DISCARD")
         if self.tool.asked:
-            return tr("TYPE A VALUE OR A SUM SUCH AS .5-.002, THEN RETURN; ESC LEAVES IT AS IT WAS")
+            return tr("TYPE A VALUE OR EXPRESSION (.5-.002), PRESS ENTER. ESC: CANCEL")
         return self._prompt_of_work(snapshot) or self._prompt_of_jog(snapshot)
 
     def _prompt_of_work(self, snapshot: Snapshot) -> str:
@@ -151,14 +151,12 @@ class JogModel:
         if why:
             return why
         if not self.on_mill and not self.tool.number:
-            return tr("HOLD AN ARROW TO MOVE, WITH SHIFT FOR RAPID; T CHOOSES A TOOL")
+            return tr("HOLD AN ARROW TO JOG. SHIFT: RAPID   T: SELECT TOOL")
         if not self.on_mill:
-            return tr("HOLD AN ARROW TO MOVE, WITH SHIFT FOR RAPID; T CHOOSES A TOOL, X AND Z TOUCH IT OFF")
+            return tr("HOLD AN ARROW TO JOG. SHIFT: RAPID   T: SELECT TOOL   X, Z: TOUCH OFF")
         if self.tilt.on:
-            return tr(
-                "HOLD A KEY TO MOVE ALONG X' Y' Z' OF WHAT IS TILTED, SHIFT FOR RAPID; F5 TURNS 3D-ROT OFF"
-            )
-        return tr("HOLD A KEY TO MOVE, WITH SHIFT FOR RAPID; F8 TOUCHES TOOLS OFF, F9 THE WORKPIECE")
+            return tr("HOLD A KEY TO JOG IN TILTED X' Y' Z'. SHIFT: RAPID   F5: 3D-ROT OFF")
+        return tr("HOLD A KEY TO JOG. SHIFT: RAPID   F8: TOUCH OFF TOOL   F9: TOUCH OFF PART")
 
     # --- step and speed: any change ends what is held ------------------------------------------------
 
@@ -193,10 +191,10 @@ class JogModel:
         self.hold.press(source, axis, sign, rapid=rapid)
 
     def _another_step(self) -> None:
-        self.hold.let_go(tr("ANOTHER STEP WAS CHOSEN: THE JOG HAS ENDED"))
+        self.hold.let_go(tr("JOG STOPPED: STEP CHANGED"))
 
     def _another_speed(self) -> None:
-        self.hold.let_go(tr("ANOTHER SPEED WAS CHOSEN: THE JOG HAS ENDED"))
+        self.hold.let_go(tr("JOG STOPPED: SPEED CHANGED"))
 
     # --- keys ----------------------------------------------------------------------------------------
 
@@ -271,9 +269,9 @@ class JogModel:
 
     def _no_homing(self) -> str:
         if self.asked:
-            return tr("AN ENTRY IS OPEN: PRESS RETURN OR ESC FIRST")
+            return tr("FINISH THE ENTRY FIRST: PRESS ENTER OR ESC")
         state = self.desk.snapshot().state
-        return tr("THE SLIDES ARE STILL MOVING") if state is State.JOG else why_no_jog(state)
+        return tr("AXES ARE STILL MOVING") if state is State.JOG else why_no_jog(state)
 
     def opened(self) -> None:
         """The page comes up: what was changed on another is no news here."""
@@ -318,7 +316,7 @@ class JogModel:
             self.setter.drop()
             return True
         if self.wheel.choice is not None:
-            self.wheel.drop(tr("THE HANDWHEEL IS OFF"))
+            self.wheel.drop(tr("HANDWHEEL IS OFF"))
             return True
         if self.home.give_up() or self.hand.take_back_by_key():
             return True
@@ -331,8 +329,8 @@ class JogModel:
 
     def let_go(self) -> None:
         """Hands off: the keyboard, the window or the page is gone."""
-        self.hold.let_go(tr("THE JOG HAS ENDED: THE KEYBOARD WENT ELSEWHERE"))
-        self.wheel.drop(tr("THE HANDWHEEL IS OFF: THE KEYBOARD WENT ELSEWHERE"))
+        self.hold.let_go(tr("JOG STOPPED: THIS PAGE LOST THE KEYBOARD"))
+        self.wheel.drop(tr("HANDWHEEL IS OFF: THIS PAGE LOST THE KEYBOARD"))
         self.armed = False
         self._stop_step()
 
@@ -360,15 +358,15 @@ class JogModel:
 def why_no_jog(state: State) -> str:
     """Why nothing is moved by hand in this state; empty when it may be."""
     words = {
-        State.DISABLED: tr("THE DRIVES ARE OFF: PRESS D FOR DRIVES ON"),
-        State.ESTOP: tr("THE E-STOP IS PRESSED: NOTHING MOVES"),
-        State.FAULT: tr("AN ALARM STANDS: PUT ITS CAUSE RIGHT, THEN PRESS R"),
-        State.HOME: tr("THE SLIDES ARE LOOKING FOR HOME: H STOPS THEM"),
+        State.DISABLED: tr("DRIVES ARE OFF. PRESS D TO TURN THEM ON"),
+        State.ESTOP: tr("E-STOP IS PRESSED. NO AXIS CAN MOVE"),
+        State.FAULT: tr("ALARM ACTIVE. CORRECT ITS CAUSE, THEN PRESS R"),
+        State.HOME: tr("HOMING. PRESS H TO STOP"),
     }
     if state in ACTIVE:
-        return tr("A PROGRAM IS UNDER WAY: LET IT END, OR PRESS PAUSE, THEN R, BEFORE JOGGING")
+        return tr("PROGRAM RUNNING. TO JOG, LET IT END OR PRESS PAUSE, THEN R")
     if state in prompt_line.INTERRUPTED:
-        return tr("A PROGRAM IS UNDER WAY: LET IT END, OR GIVE IT UP WITH R, BEFORE JOGGING")
+        return tr("PROGRAM IS NOT FINISHED. TO JOG, LET IT END OR PRESS R TO CANCEL")
     return words.get(state, "")
 
 
@@ -378,11 +376,11 @@ def jog_prompt(state: State, lost: list[str], wheel: str, step: int) -> str:
     if why:
         return why
     if lost:
-        return tr("{axes} NOT HOMED: JOG SLOWLY, THERE ARE NO SOFT LIMITS; PRESS HOME").format(
+        return tr("{axes} NOT HOMED, NO SOFT LIMITS. JOG SLOWLY. PRESS HOME").format(
             axes=tr(" AND ").join(sorted(lost))
         )
     if wheel:
-        return tr("THE HANDWHEEL MOVES {axis}: ONE CLICK IS ONE STEP; V FOR THE NEXT AXIS").format(axis=wheel)
+        return tr("HANDWHEEL MOVES {axis}, ONE STEP PER CLICK. V: NEXT AXIS").format(axis=wheel)
     if step != CONTINUOUS:
-        return tr("EACH PRESS OF AN ARROW IS ONE STEP; F2 CHANGES ITS LENGTH")
+        return tr("EACH ARROW PRESS JOGS ONE STEP. F2: STEP SIZE")
     return ""

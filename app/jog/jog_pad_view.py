@@ -259,7 +259,7 @@ class JogPad(JogCross):
         presses = [partial(wheel.choose, name) for name in ("", *wheel.names)]
         chosen = ("", *wheel.names).index(axis)
         words = (tr("OFF"), *wheel.names)
-        self._tiles(painter, row, Tiles((tr("WHEEL"), "V"), words, presses, chosen, warn=bool(axis)))
+        self._tiles(painter, row, Tiles((tr("HANDWHEEL"), "V"), words, presses, chosen, warn=bool(axis)))
 
     def wheelEvent(self, event: QWheelEvent) -> None:
         """The mouse's wheel turns the one that is drawn."""
@@ -284,7 +284,7 @@ class JogPad(JogCross):
         chosen = 0 if model.home.asking else -1
         armed = model.setter.armed
         if model.setter.model is not None:
-            words.append(tr("SETTER P"))
+            words.append(tr("SETTER (P)"))
             presses.append(model.touch_at_setter)
             chosen = len(words) - 1 if armed else chosen
         self._tiles(painter, row, Tiles(("", ""), tuple(words), presses, chosen, armed, lost))
@@ -299,17 +299,19 @@ class JogPad(JogCross):
         mode: Mode = model.hold.mode
         step = model.speeds.step
         words = (
-            (tr("STEP"), step_words(mode)[step]) if step != CONTINUOUS else (tr("HELD"), self._speed(mode))
+            (tr("STEP"), step_words(mode)[step])
+            if step != CONTINUOUS
+            else (tr("CONTINUOUS"), self._speed(mode))
         )
         if model.wheel.choice is not None:
             axis, step = model.wheel.choice
-            words = (tr("WHEEL {axis}").format(axis=axis), model.speeds.step_word(axis, mode, step))
+            words = (tr("HANDWHEEL {axis}").format(axis=axis), model.speeds.step_word(axis, mode, step))
         if model.wheel_drawn:
             self._dial.draw(painter, box, words[1])
             self.controls.append(self._dial.control(box))
             return
         if model.setter.armed:
-            draw_middle(painter, box, (tr("TOUCH OFF"), f"T{model.tool.number}", tr("at the setter")))
+            draw_middle(painter, box, (tr("TOUCH OFF"), f"T{model.tool.number}", tr("at the tool setter")))
             return
         unit = tr("mm") if mode.metric else tr("in")
         if self._turning:

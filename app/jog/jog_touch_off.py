@@ -26,9 +26,9 @@ def refusal(what: str, snapshot: Snapshot) -> str:
     """Why nothing is touched off now; empty when it may be."""
     axis = TOUCHES[what].upper()
     if not snapshot.homed[snapshot.axes.index(axis)]:
-        return tr("{axis} IS NOT HOMED: ITS POSITION MEANS NOTHING YET").format(axis=axis)
+        return tr("{axis} IS NOT HOMED, ITS POSITION IS UNKNOWN. HOME IT FIRST").format(axis=axis)
     if snapshot.state not in {State.IDLE, State.DISABLED}:
-        return tr("TOUCH OFF WITH THE MACHINE AT REST AND READY")
+        return tr("TOUCH OFF ONLY WITH THE MACHINE STOPPED AND READY")
     return ""
 
 
@@ -98,7 +98,7 @@ class TouchOff:
         if len(values) < 2:
             return ""
         x, z = (float(values[name]) for name in ("x", "z"))
-        why = ask.touch_off(number, Touch(x, z), self.cause or tr("touched off, new tool"), new.tip)
+        why = ask.touch_off(number, Touch(x, z), self.cause or tr("touch-off, new tool"), new.tip)
         if not why:
             new.drop()
         return why
@@ -118,8 +118,10 @@ class TouchOff:
     def _reason(self, text: str, mode: Mode) -> str:
         """What the history says of it."""
         if self.cause:
-            return f"{self.cause}{tr(', alone') if self.alone else ''}"
+            return f"{self.cause}{tr(', this tool only') if self.alone else ''}"
         unit = "MM " if mode.metric else ""
-        names = (tr("cut Ø"), tr("cut Z")) if self.by_cut else (tr("touched Ø"), tr("touched Z"))
+        names = (
+            (tr("skim cut Ø"), tr("skim cut Z")) if self.by_cut else (tr("touch-off Ø"), tr("touch-off Z"))
+        )
         what = names[self.what != TOUCH_X]
-        return f"{unit}{what} {text.strip()}{tr(', alone') if self.alone else ''}"
+        return f"{unit}{what} {text.strip()}{tr(', this tool only') if self.alone else ''}"

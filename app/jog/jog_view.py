@@ -128,7 +128,7 @@ class JogPage(HeldKeysPage):
         entering, hand = self.model.asked, self.model.hand
         self.pad.setVisible(not entering)
         self.numbers.setVisible(entering)
-        self.numbers.own = ("L", tr("ALONE")) if self.model.tool.masters else None
+        self.numbers.own = ("L", tr("THIS TOOL ONLY")) if self.model.tool.masters else None
         self.pad.show_jog(snapshot)
         self.hand.setVisible(hand.shown)
         self.mill.setVisible(self.model.on_mill and not hand.shown)
@@ -146,13 +146,13 @@ class JogPage(HeldKeysPage):
         """What is asked; while nothing is, what else can be opened here."""
         tool, hand = self.model.tool, self.model.hand
         if hand.asked:
-            foot = tr("Return enters it, Esc leaves it as it was")
+            foot = tr("Enter: accept   Esc: cancel")
             self.asked.asked = EntryWords("", tr("SPINDLE SPEED, RPM?"), hand.text, "", foot)
             return
         foot = tool.note() or (
-            tr("Return enters it, Esc leaves it as it was")
+            tr("Enter: accept   Esc: cancel")
             if self.model.asked
-            else tr("T tool · X Z touch · W wear · N nose · Q tip · K remark · M master · F4 undo")
+            else tr("T tool · X Z touch off · W wear · N nose radius · Q tip · K remark · M master · F4 undo")
         )
         if self.model.on_mill:
             foot = ""

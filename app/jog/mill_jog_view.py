@@ -59,7 +59,7 @@ class MillJogPanel(Panel):
     def _tool(self, painter: Painter, row: QRectF) -> None:
         book, number = self._model.desk.book, self._model.desk.snapshot().modal.tool
         tool = book.mill_tools.get(number)
-        words = tr("none: TOOL CALL in MDI")
+        words = tr("none; run TOOL CALL in MDI")
         if tool is not None:
             words = f"{tool.name}   L {tool.length + tool.dl:.3f}   R {tool.radius + tool.dr:.3f}"
         self._key(painter, row, "F8", f"T{number}" if number else tr("TOOL"), words, self._tools)
@@ -67,7 +67,7 @@ class MillJogPanel(Panel):
     def _preset(self, painter: Painter, row: QRectF) -> None:
         book = self._model.desk.book
         preset = book.presets.get(book.preset)
-        words = tr("of the machine file")
+        words = tr("from the machine file")
         if preset is not None:
             words = f"X {preset.x:.3f}   Y {preset.y:.3f}   Z {preset.z:.3f}   ROT {preset.rotation:.3f}"
         self._key(painter, row, "F9", tr("PRESET {number}").format(number=book.preset), words, self._presets)
@@ -77,9 +77,9 @@ class MillJogPanel(Panel):
         state = tr("ON") if tilt.on else tr("OFF")
         tilted = self._model.desk.snapshot().swivel
         words = (
-            tr("nothing is tilted")
+            tr("not tilted")
             if tilted is None or not tilted.system.tilted
-            else tr("table not turned there")
+            else tr("rotary axes not at the plane angles")
         )
         words = tilt.frame.words if tilt.frame is not None else words
         self._key(painter, row, "F5", f"3D-ROT {state}", words, self._model.turn_tilt, lit=tilt.on)
@@ -107,9 +107,9 @@ class MillJogPanel(Panel):
         """Where the tip stands in the system in force, and where each key moves in the machine."""
         u, tilt = self.look.u, self._model.tilt
         head = QRectF(room.x(), room.y(), room.width(), 2.2 * u)
-        painter.write(head, tr("THE TIP STANDS AT"), 1.5, "soft")
+        painter.write(head, tr("TIP POSITION"), 1.5, "soft")
         if tilt.frame is not None:
-            painter.write(head, tr("THE KEY MOVES ALONG X Y Z OF THE MACHINE"), 1.5, "soft", at=RIGHT)
+            painter.write(head, tr("KEY DIRECTION IN MACHINE X Y Z"), 1.5, "soft", at=RIGHT)
         high = min(4.4 * u, (room.height() - 2.4 * u) / len(SLIDES))
         for place, name in enumerate(SLIDES):
             row = QRectF(room.x(), head.bottom() + place * high, room.width(), high)
@@ -123,7 +123,7 @@ class MillJogPanel(Panel):
                 words = "   ".join(f"{share + 0.0:+.{_PLACES}f}" for share in direction)
                 painter.write(row, words, 2.2, "text" if tilt.on else "soft", at=RIGHT)
         if self._tip is None:
-            painter.write(room, tr("known once a line has run"), 2.2, "soft", at=CENTRE)
+            painter.write(room, tr("unknown until a line has run"), 2.2, "soft", at=CENTRE)
 
 
 def _slides(snapshot: Snapshot) -> tuple[float, float, float]:

@@ -44,7 +44,7 @@ class PendantJog:
                 self.hold.release(name)
         if away > _AWAY:
             if self.buttons.keys() & (on - before):
-                self.hold.say(tr("THE SCREEN WAS AWAY: LET THE BUTTON GO, AND PRESS IT AGAIN"))
+                self.hold.say(tr("SCREEN FROZE. RELEASE THE BUTTON, THEN PRESS AGAIN"))
             return
         if JOG_RAPID in before and JOG_RAPID not in on:
             self.hold.shift_released()
@@ -58,7 +58,7 @@ class PendantJog:
             self.wheel.next_step()
         elif name in self.buttons:
             if ENABLE in self.machine.inputs and ENABLE not in on:
-                self.hold.say(tr("THE ENABLING SWITCH IS NOT HELD: THE BUTTON MOVES NOTHING"))
+                self.hold.say(tr("ENABLING SWITCH NOT PRESSED. HOLD IT TO JOG WITH THE BUTTON"))
                 return
             axis, sign = self.buttons[name]
             self.hold.press(name, axis, sign, rapid=JOG_RAPID in on, button=name)

@@ -95,18 +95,16 @@ class SetterTouch:
         if why := tool.book.locked or refusal(snapshot, correction=False):
             return why
         if not tool.number:
-            return tr("WHICH TOOL? PRESS T AND TYPE ITS NUMBER FIRST")
+            return tr("NO TOOL SELECTED. PRESS T AND TYPE ITS NUMBER")
         if not ways_of(tool.row):
-            return tr("T{number} HAS NO TIP: PRESS Q AND TYPE 1…9, WHICH WAY IT POINTS").format(
-                number=tool.number
-            )
+            return tr("T{number}: TIP DIRECTION NOT SET. PRESS Q AND TYPE 1…9").format(number=tool.number)
         return ""
 
     def command(self, axis: str, sign: int, button: str) -> Command | str:
         """What a press of this direction does: a touch-off, or why not."""
         ways = ways_of(self.tool.row)
         if (axis, sign) not in ways:
-            text = tr("T{number} TOUCHES WITH {ways} ALONE")
+            text = tr("T{number} CAN TOUCH OFF ONLY IN {ways}")
             words = tr(" OR ").join(way_word(way) for way in ways)
             return text.format(number=self.tool.number, ways=words)
         self._presses += 1
@@ -125,7 +123,7 @@ class SetterTouch:
         if not self.armed or self.model is None:
             return
         if touched.place is None:
-            self.desk.say(tr("NOT TOUCHED OFF: {why}").format(why=touched.why.upper()))
+            self.desk.say(tr("TOUCH-OFF FAILED: {why}").format(why=touched.why.upper()))
         else:
             self.armed = False
             self._found(touched, touched.place, self.model)
@@ -143,11 +141,11 @@ class SetterTouch:
         if not self.armed:
             return ""
         words = {
-            TouchPhase.SEARCH: tr("LOOKING FOR THE TOOL SETTER: LETTING GO STOPS"),
+            TouchPhase.SEARCH: tr("SEARCHING FOR THE TOOL SETTER. RELEASE THE KEY TO STOP"),
             TouchPhase.BACK_OFF: tr("TOUCHED: BACKING OFF"),
-            TouchPhase.SLOW: tr("TOUCHING SLOWLY: THIS ONE COUNTS"),
+            TouchPhase.SLOW: tr("MEASURING WITH A SLOW TOUCH"),
             TouchPhase.RETREAT: tr("TOUCHED: BACKING OFF"),
-            TouchPhase.RETURN: tr("NOTHING THERE: GOING BACK"),
+            TouchPhase.RETURN: tr("NO CONTACT. RETURNING"),
         }
         if snapshot.touching is not None:
             return words[snapshot.touching]
@@ -157,7 +155,7 @@ class SetterTouch:
             for each in self.directions
             if (each.axis, each.sign) in ways
         )
-        text = tr("T{number} AT THE TOOL SETTER: HOLD {keys} UNTIL IT IS BACK; P OR ESC ENDS")
+        text = tr("T{number} AT THE TOOL SETTER. HOLD {keys} UNTIL IT RETURNS. P OR ESC: CANCEL")
         return text.format(number=self.tool.number, keys=keys)
 
 
@@ -177,7 +175,7 @@ class HeldTouch(HeldJog):
         if isinstance(asked, str):
             self.say(asked)
         elif rapid:
-            self.say(tr("A TOUCH-OFF HAS NO RAPID: PRESS WITHOUT SHIFT"))
+            self.say(tr("TOUCH-OFF HAS NO RAPID. PRESS WITHOUT SHIFT"))
         else:
             self._asked = asked
             self._hold(source, axis, float(sign), False, asked)

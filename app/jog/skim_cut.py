@@ -96,12 +96,12 @@ class SkimCut:
     def _no_cut(self, snapshot: Snapshot) -> str:
         """Why there is no cut to be measured yet; empty when there is."""
         if snapshot.state is not State.IDLE:
-            return tr("LET THE SLIDE COME TO REST FIRST")
+            return tr("AXES ARE STILL MOVING. WAIT UNTIL THEY STOP")
         if self.way >= LEAST_CUT:
             return ""
         if abs(snapshot.rpm_actual) <= TURNING:
-            return tr("NO CUT YET, AND THE SPINDLE STANDS: B SWITCHES IT ON")
-        return tr("NO CUT YET: {axis} HAS MOVED LAST; FEED ALONG {other} WITH {axis} KEPT").format(
+            return tr("NO CUT YET, SPINDLE STOPPED. PRESS B TO START IT")
+        return tr("NO CUT YET, {axis} MOVED LAST. FEED IN {other} WITHOUT MOVING {axis}").format(
             axis=self.axis, other=self.other
         )
 
@@ -122,7 +122,7 @@ class SkimCut:
         was = self.open
         if was:
             self.drop()
-            self.desk.say(tr("THE SKIM CUT IS GIVEN UP: NOTHING WAS CHANGED"))
+            self.desk.say(tr("SKIM CUT CANCELED, NOTHING CHANGED"))
         return was
 
     def drop(self) -> None:
@@ -157,11 +157,9 @@ class SkimCut:
     def _spoilt(self, snapshot: Snapshot) -> str:
         """Why it cannot go on; empty when it may."""
         if snapshot.state in {State.ESTOP, State.FAULT, State.DISABLED, State.HOME}:
-            return tr("THE SKIM CUT IS GIVEN UP, THE MACHINE HAS STOPPED: NOTHING WAS CHANGED")
+            return tr("MACHINE STOPPED. SKIM CUT CANCELED, NOTHING CHANGED")
         if not snapshot.homed[snapshot.axes.index(self.axis)]:
-            return tr("THE SKIM CUT IS GIVEN UP, {axis} IS NOT HOMED: NOTHING WAS CHANGED").format(
-                axis=self.axis
-            )
+            return tr("{axis} IS NOT HOMED. SKIM CUT CANCELED, NOTHING CHANGED").format(axis=self.axis)
         return ""
 
     def _follow(self, snapshot: Snapshot) -> None:
@@ -185,7 +183,7 @@ class SkimCut:
             self.tool.close()
         self.step = CutStep.CUT
         self._anew(snapshot)
-        words = tr("{axis} HAS MOVED {away} SINCE THE CUT: NOTHING WAS CHANGED, CUT AGAIN OR PRESS ESC")
+        words = tr("{axis} MOVED {away} AFTER THE CUT, NOTHING CHANGED. CUT AGAIN OR PRESS ESC")
         self.spoilt = words.format(axis=self.axis, away=shown)
 
     def _measure(self, snapshot: Snapshot) -> None:
@@ -209,9 +207,9 @@ class SkimCut:
     def words(self, snapshot: Snapshot) -> str:
         """What is to be done next, and how."""
         if self.step is CutStep.AXIS:
-            return tr("SKIM CUT: X FOR A DIAMETER, Z FOR A FACE; ESC GIVES IT UP")
+            return tr("SKIM CUT. X: DIAMETER   Z: FACE   ESC: CANCEL")
         if self.step is CutStep.AWAY:
-            words = tr("RETRACT IN {other} ONLY, {axis} IS KEPT; THEN 0 STOPS THE SPINDLE; ESC GIVES IT UP")
+            words = tr("RETRACT IN {other} ONLY, DO NOT MOVE {axis}, THEN 0: STOP SPINDLE   ESC: CANCEL")
             return words.format(axis=self.axis, other=self.other)
         return self._words_of_cut(snapshot) if self.step is CutStep.CUT else ""
 
@@ -219,9 +217,9 @@ class SkimCut:
         if self.spoilt and self.way < LEAST_CUT:
             return self.spoilt
         if self.way >= LEAST_CUT and snapshot.state not in CYCLE:
-            words = tr("CUT ALONG {other} FAR ENOUGH TO BE MEASURED, THEN RETURN: THE CUT IS MADE")
+            words = tr("CUT FAR ENOUGH IN {other} TO MEASURE, THEN PRESS ENTER")
             return words.format(other=self.other)
         if not self._turns(snapshot):
-            return tr("SWITCH THE SPINDLE ON (B), THEN JOG INTO THE CUT; ESC GIVES IT UP")
-        words = tr("JOG {axis} TO THE CUT, SLOWLY, THEN FEED ALONG {other}; ESC GIVES IT UP")
+            return tr("START THE SPINDLE (B), THEN JOG INTO THE CUT. ESC: CANCEL")
+        words = tr("JOG {axis} SLOWLY TO THE CUT, THEN FEED IN {other}. ESC: CANCEL")
         return words.format(axis=self.axis, other=self.other)

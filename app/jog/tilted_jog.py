@@ -46,11 +46,11 @@ def jog_frame(machine: Kinematics | None, snapshot: Snapshot) -> JogFrame | str:
         off = [axis.name for axis in axes if _off(system, axis, angles[axis.name])]
         if off:
             turn = " ".join(f"{axis.name}+Q{120 + _ROTARY.index(axis.name)}" for axis in axes)
-            words = tr("{axes} NOT WHERE THE PLANE ASKS: TURN THERE FIRST, L {turn} FMAX IN MDI")
+            words = tr("{axes} NOT AT THE PLANE ANGLE. FIRST RUN L {turn} FMAX IN MDI")
             return words.format(axes=tr(" AND ").join(off), turn=turn)
         return JogFrame(system.place.turn, tr("TILTED PLANE OF LINE {line}").format(line=system.line))
     if machine is None or abs(machine.tool_axis(angles)[2] - 1.0) <= _UPRIGHT:
-        return tr("NOTHING IS TILTED: PLANE IN MDI (F4) TILTS IT, A HEAD THAT LEANS DOES")
+        return tr("NO TILT ACTIVE. RUN PLANE IN MDI (F4) OR TILT THE HEAD")
     heads = [turned(each.direction, angles[each.name]) for each in machine.rotaries if not each.table]
     return JogFrame(product(*heads), tr("TOOL AXIS"))
 
@@ -100,7 +100,7 @@ class TiltedJog:
         self.frame, self.why = (None, found) if isinstance(found, str) else (found, "")
         if self.on and self.frame is None:
             self.on = False
-            why = tr("3D-ROT IS OFF, KEYS MOVE ALONG THE MACHINE'S X Y Z: {why}").format(why=self.why)
+            why = tr("3D-ROT IS OFF, KEYS JOG IN MACHINE X Y Z: {why}").format(why=self.why)
             self.let_go(why)
             self.say(why)
 

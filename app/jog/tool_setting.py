@@ -101,7 +101,7 @@ class ToolSetting:
         if self.asked == TOOL:
             return tr("TOOL NUMBER?")
         if self.by_setter:
-            return tr("{tool} {axis} BY THE TOOL SETTER: KEEP IT?").format(
+            return tr("{tool} {axis} FROM THE TOOL SETTER: SAVE IT?").format(
                 tool=name, axis=self.touching.name.upper()
             )
         if self.asked == TOUCH_X:
@@ -114,13 +114,15 @@ class ToolSetting:
         """What has to be known before the answer is entered."""
         number, new = self.number, self.fields.new
         if self.masters and self.touching.alone:
-            return tr("T{number} ALONE: THE OTHERS STAY (L: ALL FOLLOW)").format(number=edge_number(number))
+            return tr("ONLY T{number} CHANGES, OTHER TOOLS STAY. L: ALL FOLLOW").format(
+                number=edge_number(number)
+            )
         if self.masters:
-            return tr("T{number} IS THE MASTER: {others} FOLLOW (L: IT ALONE)").format(
+            return tr("T{number} IS THE MASTER, {others} FOLLOW. L: THIS TOOL ONLY").format(
                 number=edge_number(number), others=follower_names(self.book.tools, number) or tr("no tools")
             )
         if new.number and new.number == number:
-            text = tr("T{number} IS SET WHEN {axis} IS TOUCHED TOO")
+            text = tr("T{number} IS NOT SET YET. TOUCH OFF {axis} TOO")
             return text.format(number=edge_number(number), axis=new.missing.upper())
         return ""
 
@@ -169,9 +171,7 @@ class ToolSetting:
         self.history.look(snapshot)
         if self.history.mode != before and self.asked:
             self.close()
-            self.desk.say(
-                tr("THE CONTROL HAS CHANGED ITS UNIT OR ITS X: NOTHING WAS CHANGED, ENTER IT AGAIN")
-            )
+            self.desk.say(tr("CONTROL CHANGED UNITS OR DIAMETER/RADIUS. NOTHING SAVED. ENTER IT AGAIN"))
         if snapshot.modal.tool != self._active:
             self._active = snapshot.modal.tool
             if self._active and not self.asked:
@@ -206,7 +206,7 @@ class ToolSetting:
         if what in TOUCHES:
             return jog_touch_off.refusal(what, snapshot)
         if self.row is None:
-            return tr("T{number} WAS NEVER SET: TOUCH X AND Z FIRST").format(number=edge_number(self.number))
+            return tr("T{number} IS NOT SET. TOUCH OFF X AND Z FIRST").format(number=edge_number(self.number))
         return ""
 
     def close(self) -> None:
@@ -239,7 +239,7 @@ class ToolSetting:
             why = self._answer()
         except EntryError as error:
             self.text = refused(self.text)
-            why = tr("REFUSED: {why}").format(why=error)
+            why = tr("REJECTED: {why}").format(why=error)
         if why:
             self.desk.say(why)
 
@@ -263,7 +263,7 @@ class ToolSetting:
 
     def _touched(self, snapshot: Snapshot) -> str:
         if self.touching.moved(snapshot):
-            return tr("THE SLIDE HAS MOVED SINCE: PRESS ESC AND TOUCH AGAIN")
+            return tr("AXIS MOVED AFTER THE TOUCH. PRESS ESC AND TOUCH AGAIN")
         why = self.touching.save(self.number, self.text, self.history, self.fields.new)
         if not why:
             self.close()
@@ -298,13 +298,13 @@ class ToolSetting:
         """Close the question, forget half a tool; False when there was nothing."""
         was = bool(self.asked or self.fields.new.number)
         if was and self.number:
-            self.desk.say(tr("T{number} IS AS IT WAS").format(number=edge_number(self.number)))
+            self.desk.say(tr("T{number} NOT CHANGED").format(number=edge_number(self.number)))
         self.forget()
         return was
 
 
 def _which_tool() -> str:
-    return tr("WHICH TOOL? PRESS T AND TYPE ITS NUMBER FIRST")
+    return tr("NO TOOL SELECTED. PRESS T AND TYPE ITS NUMBER")
 
 
 def _wear_that_ends(row: ToolRow | None, name: str, mode: Mode) -> str:

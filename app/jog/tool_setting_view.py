@@ -126,7 +126,9 @@ class ToolPanel(Panel):
         press: Callable[[], None] = model.choose_master if name == "master" else partial(model.ask, asks)
         self._target(painter, box, press, lit=tool.asked == asks)
         mark = marked(name, mode)
-        label = {"x": tr("TOUCH X"), "z": tr("TOUCH Z")}.get(name, word(name)) + (f" {mark}" if mark else "")
+        label = {"x": tr("TOUCH OFF X"), "z": tr("TOUCH OFF Z")}.get(name, word(name)) + (
+            f" {mark}" if mark else ""
+        )
         self._key(painter, box, key)
         upper = QRectF(box.x() + 3.4 * u, box.y() + 0.3 * u, box.width() - 4 * u, 2.2 * u)
         painter.write(upper, label, 1.5, "soft")
@@ -148,7 +150,7 @@ class ToolPanel(Panel):
         if not master:
             return tr("none")
         if master == tool.number:
-            return tr("THIS ONE")
+            return tr("THIS TOOL")
         apart = tool.from_master()
         if apart is None:
             return f"T{master}"

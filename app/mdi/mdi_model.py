@@ -56,7 +56,7 @@ class MdiModel:
         if not self.open:
             return True
         if self.snapshot().state in CYCLE:
-            self.say(tr("A LINE IS UNDER WAY: LET IT END, OR STOP IT AND PRESS R"))
+            self.say(tr("A LINE IS RUNNING. LET IT END, OR STOP IT AND PRESS R"))
             return False
         self.open = False
         self.line.leave()
@@ -97,10 +97,10 @@ class MdiModel:
         snapshot = self.snapshot()
         self.clear()
         if snapshot.state is not State.IDLE:
-            self.say(tr("THE LINE IS PROVED AND RUN WITH THE DRIVES ON: F5 SWITCHES THEM ON, F6 IS RESET"))
+            self.say(tr("DRIVES MUST BE ON TO PROVE AND RUN THE LINE. F5: DRIVES ON   F6: RESET"))
             return
         if not self.typing.text.strip():
-            self.say(tr("TYPE A LINE FIRST; ARROW UP BRINGS EARLIER ONES BACK"))
+            self.say(tr("TYPE A LINE FIRST. UP ARROW: EARLIER LINES"))
             return
         self.line.ask(self.typing.text, snapshot, self._failed)
 
@@ -153,11 +153,11 @@ class MdiModel:
     def prompt(self, snapshot: Snapshot, start: str) -> str:
         """What can be done now; ``start`` names what starts a cycle here."""
         if snapshot.state is State.DISABLED:
-            return tr("DRIVES ARE OFF: PRESS F5 FOR DRIVES ON; A LINE CAN BE TYPED MEANWHILE")
+            return tr("DRIVES ARE OFF. F5: DRIVES ON. YOU CAN ALREADY TYPE A LINE")
         if snapshot.state is not State.IDLE:
             return ""
         if self.completion.open:
-            return tr("ARROWS MARK A CODE OR ANOTHER CHAPTER, RETURN WRITES IT INTO THE LINE; ESC: BACK")
+            return tr("ARROWS: SELECT CODE OR CHAPTER   ENTER: INSERT INTO THE LINE   ESC: BACK")
         return self._of_the_line(start)
 
     def _of_the_line(self, start: str) -> str:
@@ -165,10 +165,10 @@ class MdiModel:
         if self.line.busy:
             return tr("PROVING THE LINE")
         if self.line.errors:
-            return tr("THE LINE DOES NOT RUN: MEND IT, OR ESC TO CLEAR IT")
+            return tr("CORRECT THE LINE. ESC: CLEAR IT")
         if self.line.ready is not None:
-            return tr("TO RUN THE LINE {start}; ESC TAKES IT BACK").format(start=start)
-        return tr("TYPE A LINE, TAB COMPLETES A CODE, ENTER PROVES IT; F1 LEAVES, THE SPINDLE STAYS AS IT IS")
+            return tr("TO RUN THE LINE: {start}. ESC: CANCEL").format(start=start)
+        return tr("TYPE A LINE   TAB: COMPLETE CODE   ENTER: PROVE   F1: LEAVE, SPINDLE STAYS AS IT IS")
 
     def barred(self) -> str:
         """Why the palms start nothing now; empty when they may."""

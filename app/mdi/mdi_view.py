@@ -55,7 +55,7 @@ class LinePanel(Panel):
 
     def draw(self, painter: Painter) -> None:
         look, u = self.look, self.look.u
-        title = tr("LINE  ·  READY, CYCLE START RUNS IT") if self.ready else tr("LINE")
+        title = tr("LINE  ·  READY FOR CYCLE START") if self.ready else tr("LINE")
         self.frame(painter, title, "lit" if self.ready else "frame", 0.3 if self.ready else 0.16)
         room = self.inside()
         self.place(self.area(), self._touched)
@@ -103,7 +103,7 @@ class HistoryPanel(Panel):
         self._choose = choose
 
     def draw(self, painter: Painter) -> None:
-        self.frame(painter, tr("HISTORY  ·  ARROW UP AND DOWN"))
+        self.frame(painter, tr("HISTORY  ·  UP AND DOWN ARROWS"))
         u, room = self.look.u, self.inside()
         rows = max(1, int(room.height() / (ROW * u)))
         refused = dict(self.refused)
@@ -120,7 +120,7 @@ class HistoryPanel(Panel):
             self.place(row, partial(self._choose, back))
         if not self.lines:
             empty = QRectF(room.x(), room.y(), room.width(), 3 * u)
-            painter.write(empty, tr("No line was run yet."), 2.0, "soft", bold=False)
+            painter.write(empty, tr("No lines run yet."), 2.0, "soft", bold=False)
 
     def _refused(self, painter: Painter, row: QRectF, text: str, column: int) -> None:
         """A line that does not run: the word in question is underlined, and it says so at the right."""
@@ -146,7 +146,7 @@ class ModalPanel(Panel):
     rows: Shown[tuple[ModalRow, ...]] = Shown(())
 
     def draw(self, painter: Painter) -> None:
-        self.frame(painter, tr("IN FORCE"))
+        self.frame(painter, tr("MODAL STATE"))
         u, room = self.look.u, self.inside()
         high = min(2.7 * u, room.height() / max(1, len(self.rows)))
         size = min(1.9, high / u * 0.78)

@@ -132,13 +132,13 @@ class CellTable(OffsetTable):
     def hint(self, _snapshot: Snapshot) -> str:
         """How a value is entered and another cell chosen."""
         if self.writing:
-            return tr("TYPE THE TEXT; RETURN SAVES IT, ESC LEAVES IT AS IT WAS")
-        return tr("TYPE A VALUE OR A SUM AND PRESS RETURN; ARROWS AND TAB CHOOSE ANOTHER CELL")
+            return tr("TYPE THE TEXT. ENTER: SAVE   ESC: CANCEL")
+        return tr("TYPE A NUMBER OR EXPRESSION AND PRESS ENTER. ARROWS, TAB: OTHER CELL")
 
     def barred(self, snapshot: Snapshot, *, correction: bool = False) -> str:
         """Nothing here is a correction: what says where zero or a tip is changes between cycles only."""
         if snapshot.state in UNDER_WAY - {State.JOG, State.HOME} and not self.book.locked:
-            return tr("A PROGRAM IS UNDER WAY: THIS TABLE CHANGES BETWEEN CYCLES ONLY")
+            return tr("PROGRAM RUNNING. THIS TABLE CAN CHANGE ONLY BETWEEN CYCLES")
         return self.book.locked or refusal(snapshot, correction=correction)
 
     # --- keys ----------------------------------------------------------------------------------------
@@ -259,10 +259,10 @@ class CellTable(OffsetTable):
             new = value()
         except EntryError as error:
             self.text = refused(self.text)
-            self.desk.say(tr("REFUSED: {why}").format(why=error))
+            self.desk.say(tr("REJECTED: {why}").format(why=error))
             return False
         if self.stored is not None and self.value_before == new:
-            self.desk.say(tr("{which} IS AS IT WAS").format(which=self.which))
+            self.desk.say(tr("{which} NOT CHANGED").format(which=self.which))
         elif why := self.keep({self.name: new, **also(new)}, self._reason(typed)):
             self.text = refused(self.text)
             self.desk.say(why)

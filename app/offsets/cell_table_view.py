@@ -168,7 +168,7 @@ class ZeroOffsetsPage(CellTablePage):
     """G54 to G59: a row each, X, Z and C."""
 
     NAME = page_table.ZERO
-    LABELS = ("MENU", "HERE", "", "UNDO", "HISTORY", "", "ALARMS", "TOOLS", "SECCMP", "")
+    LABELS = ("MENU", "SET HERE", "", "UNDO", "HISTORY", "", "ALARMS", "TOOLS", "SECCMP", "")
     model: ZeroOffsets
 
     def __init__(self, host: Host, parent: QWidget) -> None:
@@ -216,7 +216,7 @@ class PresetsPage(CellTablePage):
     """The workpiece's zero, a row each."""
 
     NAME = page_table.PRESETS
-    LABELS = ("MENU", "TOUCH", "IN FORCE", "UNDO", "HISTORY", "", "ALARMS", "TOOLS", "", "")
+    LABELS = ("MENU", "TOUCH", "ACTIVATE", "UNDO", "HISTORY", "", "ALARMS", "TOOLS", "", "")
     model: Presets
 
     def __init__(self, host: Host, parent: QWidget) -> None:

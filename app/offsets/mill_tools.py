@@ -66,10 +66,13 @@ class MillTools(CellTable):
     def foot(self) -> str:
         """What F2 and Esc do here; of the columns of tool life what they mean."""
         if self.name in {"life", USED}:
-            return tr("TIME2: minutes at feed, 0 no limit        CUR.TIME: cut so far, 0 of a fresh tool")
+            return tr(
+                "TIME2: limit in minutes at feed, 0 = no limit        CUR.TIME: minutes cut so far, "
+                "0 for a new tool"
+            )
         if self.name == "stops":
-            return tr("STOP: no other part begins when TIME2 is reached        Return turns it on and off")
-        return tr("F2: the tip stands at the height that is typed: L follows        Esc: exit")
+            return tr("STOP: no new part starts once TIME2 is reached        Enter: on/off")
+        return tr("F2: set L so that the tip is at the typed height now        Esc: exit")
 
     def keep(self, values: Mapping[str, Value], why: str) -> str:
         """CUR.TIME goes to what counts it, all else to the table; answers why not, or nothing."""
@@ -83,7 +86,7 @@ class MillTools(CellTable):
     def here_barred(self) -> str:
         """Return why no length is touched off now; empty when one is."""
         if self.name != "length":
-            return tr("CHOOSE THE COLUMN L FIRST: F2 TOUCHES THE LENGTH OFF")
+            return tr("SELECT COLUMN L FIRST. F2: TOUCH OFF THE LENGTH")
         nose = MillTouch.of(self.desk).nose_height()
         return nose if isinstance(nose, str) else self.barred(self.desk.snapshot())
 
@@ -94,4 +97,6 @@ class MillTools(CellTable):
             self.desk.say(self.here_barred())
             return
         reads = self.text.strip() or "0"
-        self.save(lambda: self.checked(nose - value_of(reads)), tr("at {value}").format(value=reads))
+        self.save(
+            lambda: self.checked(nose - value_of(reads)), tr("touch-off at {value}").format(value=reads)
+        )

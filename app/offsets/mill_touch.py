@@ -43,7 +43,7 @@ class MillTouch:
         number = self.desk.snapshot().modal.tool
         row = self.desk.book.mill_tools.get(number)
         if row is None:
-            return tr("NO TOOL OF THE TABLE IS IN THE SPINDLE: TOOL CALL IN MDI FIRST, ITS LENGTH COUNTS")
+            return tr("NO TOOL FROM THE TABLE IN THE SPINDLE, LENGTH UNKNOWN. RUN TOOL CALL IN MDI")
         length = row.length + row.dl
         bare = machine.with_preset(DatumPreset(_HERE, zeros=tuple(zeros.items())))
         return bare.at_zeros(replace(bare, origin=_HERE).place(angles, tool_length=length).point(slides))
@@ -77,14 +77,14 @@ class MillTouch:
             return stands
         machine, angles, slides = stands
         if abs(machine.frame(angles)[2][2] - 1.0) > _UPRIGHT:
-            return tr("THE TOOL LEANS ON THE WORKPIECE: TURN THE ROTARY AXES SO THAT IT STANDS UPRIGHT")
+            return tr("TOOL IS TILTED TO THE WORKPIECE. TURN THE ROTARY AXES UNTIL IT IS UPRIGHT")
         return machine.place(angles).point(slides)[2]
 
     def _stands(self) -> tuple[Kinematics, dict[str, float], Vector] | str:
         """The chain with the preset in force, the angles, the slides; or why they are not known."""
         snapshot, book = self.desk.snapshot(), self.desk.book
         if self.machine is None:
-            return tr("THE MACHINE FILE OF THIS MILL HAS NO [kinematics]: NOTHING CAN BE TOUCHED OFF")
+            return tr("CANNOT TOUCH OFF: THE MACHINE FILE OF THIS MILL HAS NO [kinematics]")
         if why := _unknown(snapshot):
             return why
         setup = with_mill(Setup(kinematics=self.machine), MillOffsets({}, book.presets, book.preset))
@@ -96,8 +96,8 @@ class MillTouch:
 
 def _unknown(snapshot: Snapshot) -> str:
     if snapshot.state in {State.JOG, State.HOME}:
-        return tr("THE SLIDES ARE MOVING: OFFSETS CHANGE AT REST")
+        return tr("AXES ARE MOVING. WAIT UNTIL THEY STOP TO CHANGE OFFSETS")
     for axis, homed in zip(snapshot.axes, snapshot.homed, strict=True):
         if not homed:
-            return tr("{axis} DOES NOT KNOW ITS POSITION: HOME IT FIRST").format(axis=axis)
+            return tr("{axis} IS NOT HOMED. HOME IT FIRST").format(axis=axis)
     return ""

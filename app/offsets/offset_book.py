@@ -29,8 +29,8 @@ from core.store.touch_off import Touch
 if TYPE_CHECKING:
     from core.store.store import Store
 
-NONE_KEPT = "NO OFFSETS ARE KEPT HERE"
-SAVING = "STILL SAVING THE CHANGE BEFORE: PRESS RETURN AGAIN"
+NONE_KEPT = "NO OFFSETS ARE STORED HERE"
+SAVING = "STILL SAVING THE PREVIOUS CHANGE. PRESS ENTER AGAIN"
 
 
 class OffsetRows(NamedTuple):
@@ -150,7 +150,7 @@ class OffsetBook:
         before = self.preset
 
         def choose(store: Store, _who: str) -> Future[None]:
-            self.access.persistence.note_change(f"preset in force: {before} → {number}")
+            self.access.persistence.note_change(f"active preset: {before} → {number}")
             return store.set_setting(PRESET, number)
 
         return self._post(Act.PRESETS, choose)
@@ -220,7 +220,7 @@ class OffsetBook:
         if rows is not None:
             self.show(rows)
         self.store, self.unread = store, self.unread and store is None and rows is None
-        self.locked = "" if store is not None else f"OFFSETS CANNOT BE KEPT: {trouble}"
+        self.locked = "" if store is not None else f"OFFSETS CANNOT BE SAVED: {trouble}"
         return self._read_or_why()
 
     def _read_or_why(self) -> str:

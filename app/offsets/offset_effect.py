@@ -170,9 +170,9 @@ class EffectDisplay:
         if self.open:
             return ""
         if self.effect is None or self.table.desk.session.now.job is None:
-            return tr("LOAD A PROGRAM FIRST: THE EFFECT IS SHOWN ON ITS PATH")
+            return tr("LOAD A PROGRAM FIRST. ITS PATH SHOWS THE EFFECT")
         if self._pair() is None:
-            return tr("NOTHING HAS CHANGED HERE YET: TYPE A VALUE OR CHANGE ONE, THEN PRESS F6")
+            return tr("NO CHANGES YET. TYPE OR CHANGE A VALUE, THEN PRESS F6")
         return ""
 
     def _open(self) -> None:
@@ -219,14 +219,14 @@ class EffectDisplay:
     def _words_of_part(self, effect: Effect) -> str:
         part = self.part
         if effect.trouble:
-            return tr("THE PART CANNOT BE COMPARED: {why}; F6 SHOWS THE TABLE").format(why=effect.trouble)
+            return tr("PART CANNOT BE COMPARED: {why}. F6: SHOW TABLE").format(why=effect.trouble)
         if part is None:
-            return tr("MAKING THE PART WITH THE OFFSETS BEFORE AND AFTER")
+            return tr("SIMULATING THE PART WITH OLD AND NEW OFFSETS")
         if not part.differing:
-            return tr("NO DIAMETER OR SHOULDER OF THE PART CHANGES; F6 SHOWS THE TABLE")
+            return tr("NO DIAMETER OR SHOULDER OF THE PART CHANGES. F6: SHOW TABLE")
         if part.differing == 1:
-            return tr("1 FEATURE OF THE PART CHANGES; F6 SHOWS THE TABLE")
-        words = tr("{count} FEATURES OF THE PART CHANGE; F6 SHOWS THE TABLE")
+            return tr("1 PART FEATURE CHANGES. F6: SHOW TABLE")
+        words = tr("{count} PART FEATURES CHANGE. F6: SHOW TABLE")
         return words.format(count=part.differing)
 
     @property
@@ -240,19 +240,19 @@ class EffectDisplay:
         if effect is not None and effect.trouble:
             return tr("THE EFFECT CANNOT BE DRAWN: {why}").format(why=effect.trouble)
         if pair is None:
-            return tr("DRAWING THE PATH BEFORE AND AFTER")
+            return tr("DRAWING THE OLD AND NEW PATHS")
         if pair.same:
-            return tr("THIS CHANGE DOES NOTHING TO THE LOADED PROGRAM; F6 SHOWS THE TABLE")
+            return tr("THIS CHANGE DOES NOT AFFECT THE LOADED PROGRAM. F6: SHOW TABLE")
         mode = self.table.mode
         if pair.furthest == float("inf"):
-            return tr("THE PATHS DIFFER IN KIND; F6 SHOWS THE TABLE")
+            return tr("THE TWO PATHS HAVE DIFFERENT MOVES. F6: SHOW TABLE")
         far = f"{length(pair.furthest, mode.metric)} {mode.name}"
         if not self.near:
-            text = tr("UP TO {far} APART, AT THE CIRCLE; F6 GOES NEAR, Z ZOOMS, ESC SHOWS THE TABLE")
+            text = tr("PATHS DIFFER BY UP TO {far} (CIRCLED). F6: CLOSE-UP   Z: ZOOM   ESC: TABLE")
             return text.format(far=far)
-        text = tr("UP TO {far} APART; Z ZOOMS, F6 SHOWS THE TABLE")
+        text = tr("PATHS DIFFER BY UP TO {far}. Z: ZOOM   F6: SHOW TABLE")
         if effect is not None and effect.compare is not None:
-            text = tr("UP TO {far} APART; Z ZOOMS, F6: WHAT IT DOES TO THE PART")
+            text = tr("PATHS DIFFER BY UP TO {far}. Z: ZOOM   F6: EFFECT ON THE PART")
         return text.format(far=far)
 
 

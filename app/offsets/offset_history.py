@@ -36,9 +36,9 @@ def refusal(snapshot: Snapshot, *, correction: bool) -> str:
     offsets that it was proved with. What says where a tip is waits until no program is under way.
     """
     if snapshot.state in {State.JOG, State.HOME}:
-        return tr("THE SLIDES ARE MOVING: OFFSETS CHANGE AT REST")
+        return tr("AXES ARE MOVING. WAIT UNTIL THEY STOP TO CHANGE OFFSETS")
     if snapshot.state in UNDER_WAY and not correction:
-        return tr("A PROGRAM IS UNDER WAY: ONLY WEAR AND F9 CORRECTIONS MAY CHANGE")
+        return tr("PROGRAM RUNNING. ONLY WEAR AND F9 OFFSETS CAN CHANGE")
     return ""
 
 
@@ -47,8 +47,8 @@ def counts_from(snapshot: Snapshot) -> str:
     if snapshot.state not in UNDER_WAY:
         return ""
     if snapshot.cycle_repeat:
-        return tr("PARTS RUN: A CORRECTION COUNTS FROM THE NEXT PART, ONCE IT IS PROVED")
-    return tr("THE PART UNDER WAY KEEPS ITS OFFSETS: A CORRECTION COUNTS FROM THE NEXT CYCLE START")
+        return tr("PARTS RUNNING. OFFSET CHANGES APPLY FROM NEXT PART, ONCE PROVED")
+    return tr("WEAR APPLIES FROM NEXT CYCLE START")
 
 
 def _behind_saved(snapshot: Snapshot) -> str:
@@ -56,8 +56,8 @@ def _behind_saved(snapshot: Snapshot) -> str:
     if snapshot.state not in UNDER_WAY:
         return ""
     if snapshot.cycle_repeat:
-        return tr("; IT COUNTS FROM THE NEXT PART")
-    return tr("; IT COUNTS FROM THE NEXT CYCLE START")
+        return tr("; APPLIES FROM NEXT PART")
+    return tr("; APPLIES FROM NEXT CYCLE START")
 
 
 @dataclass(slots=True)
@@ -109,7 +109,7 @@ class OffsetHistory:
         if len(self.last) > 1 and self.kind is not Kind.ZERO:
             names = tr("{count} OFFSETS").format(count=len(self.last))
         taken_back = self.last[0].undoes is not None
-        return (tr("{names} TAKEN BACK") if taken_back else tr("{names} SAVED")).format(names=names)
+        return (tr("{names} UNDONE") if taken_back else tr("{names} SAVED")).format(names=names)
 
     def _named(self, change: Change) -> str:
         letter = LETTERS[self.kind]
@@ -128,7 +128,7 @@ class OffsetHistory:
         if len(self.last) == 1:
             _at, which, change, _why = self.in_words(self.last[0])
             return f"{which}   {change}"
-        return tr("{count} offsets changed: F5 shows them").format(count=len(self.last)) if self.last else ""
+        return tr("{count} offsets changed. F5: show them").format(count=len(self.last)) if self.last else ""
 
     def toggle(self) -> None:
         """The history instead of the table, or the table again."""

@@ -113,9 +113,9 @@ class OffsetQuestions:
         if (why := history.book.barred(act)) or not found:
             return why or save()
         changes = described(found, lambda each: self._named(kind, each), lambda each: _reason(each.doubt))
-        text = tr("{changes}: PRESS Y TO CHANGE IT, N TO KEEP THE OLD VALUE")
+        text = tr("{changes}. Y: CHANGE   N: KEEP OLD VALUE")
         if others:
-            text = tr("{changes}. FOLLOWERS: {others}. PRESS Y TO CHANGE, N TO KEEP")
+            text = tr("{changes}. FOLLOWERS: {others}. Y: CHANGE   N: KEEP")
         question = text.format(changes=changes, others=others)
         history.desk.ask(question, lambda: history.answer(save() if unchanged() else _changed_meanwhile()))
         return ""
@@ -145,7 +145,7 @@ class OffsetQuestions:
         if why := book.barred(Act.TOOLS):
             return why
         chosen = 0 if before == number else number
-        reason = tr("chosen as master") if chosen else tr("no master")
+        reason = tr("set as master") if chosen else tr("no master")
         self.history.desk.ask(
             self._master_question(before, chosen),
             lambda: self.history.answer(
@@ -156,11 +156,11 @@ class OffsetQuestions:
 
     def _master_question(self, before: int, chosen: int) -> str:
         if not chosen:
-            text = tr("MASTER {before} → NONE, NO TOOL FOLLOWS IT: PRESS Y TO CHANGE, N TO KEEP")
+            text = tr("MASTER {before} → NONE, NO TOOL WILL FOLLOW. Y: CHANGE   N: KEEP")
             return text.format(before=edge_name(before))
         text = tr(
-            "MASTER {before} → {tool}. FOLLOWERS: {others}. A TOUCH-OFF OVER {limit} {unit} IS ASKED. "
-            "PRESS Y TO CHANGE, N TO KEEP"
+            "MASTER {before} → {tool}. FOLLOWERS: {others}. TOUCH-OFF OVER {limit} {unit} WILL "
+            "ASK FIRST. Y: CHANGE   N: KEEP"
         )
         mode = self.history.mode
         return text.format(
@@ -186,13 +186,13 @@ class OffsetQuestions:
         except StoreError as error:
             return str(error)
         if not step:
-            return tr("{row} HAS NO CHANGE TO UNDO").format(row=_table_or_row(kind, number))
+            return tr("NO CHANGE TO UNDO IN {row}").format(row=_table_or_row(kind, number))
         chosen = next((each for each in step if each.number == number), step[0])
         _at, _which, change, _why = self.history.in_words(chosen._replace(old=chosen.new, new=chosen.old))
         others = [_row_name(kind, each.number) for each in step if each is not chosen]
-        text = tr("UNDO {row}: {change}; PRESS Y TO UNDO, N TO KEEP IT")
+        text = tr("UNDO {row}: {change}? Y: UNDO   N: KEEP")
         if others:
-            text = tr("UNDO {row}: {change}, AND WITH IT {others}; PRESS Y TO UNDO, N TO KEEP IT")
+            text = tr("UNDO {row}: {change}, AND ALSO {others}? Y: UNDO   N: KEEP")
         words = text.format(
             row=_row_name(kind, chosen.number), change=change, others=", ".join(_short(others))
         )
@@ -208,16 +208,16 @@ class OffsetQuestions:
 
 def _reason(doubt: Doubt) -> str:
     words = {
-        Doubt.TRAVEL: tr("BEYOND THE TRAVEL"),
-        Doubt.SIDE: tr("THE OTHER SIDE OF THE PART"),
-        Doubt.LARGE: tr("A LARGE CHANGE"),
+        Doubt.TRAVEL: tr("OUTSIDE AXIS TRAVEL"),
+        Doubt.SIDE: tr("OPPOSITE SIDE OF THE PART"),
+        Doubt.LARGE: tr("LARGE CHANGE"),
         Doubt.MASTER: tr("OTHER TOOLS FOLLOW"),
     }
     return words[doubt]
 
 
 def _changed_meanwhile() -> str:
-    return tr("THE OFFSETS HAVE CHANGED SINCE THE QUESTION: ENTER IT AGAIN")
+    return tr("OFFSETS CHANGED IN BETWEEN. ENTER THE VALUE AGAIN")
 
 
 def _row_name(kind: Kind, number: int) -> str:

@@ -134,7 +134,7 @@ class OffsetTable(ABC):
         if why := self.barred(snapshot, correction=self.corrects):
             return why
         if self.history.listed is not None:
-            return tr("F5 OR ESC LEAVES THE HISTORY; PAGE UP AND PAGE DOWN LOOK ON")
+            return tr("PAGE UP, PAGE DOWN: SCROLL   F5 OR ESC: CLOSE HISTORY")
         return self.hint(snapshot)
 
     def look(self, snapshot: Snapshot) -> None:

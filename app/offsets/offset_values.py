@@ -80,7 +80,7 @@ def added(mm: float, value: float, metric: bool) -> float:
 
 def out_of_range(field: str, value: str, unit: str, low: float, high: float) -> str:
     """Why a value is not kept, said in the unit of the entry."""
-    text = tr("{field} would become {value} {unit}; it may be {low}…{high}")
+    text = tr("{field} would become {value} {unit}; allowed range is {low}…{high}")
     return text.format(field=field, value=value, unit=unit, low=f"{low:g}", high=f"{high:g}")
 
 
@@ -192,7 +192,9 @@ def value_added(name: str, old: ToolRow, text: str, mode: Mode) -> Value:
     """What a length becomes when the text is added to it, mm. Raises EntryError with the reason."""
     field, before = TOOL_FIELDS[name], getattr(old, name)
     if field.sort is not Sort.LENGTH:
-        raise EntryError(tr("{field} takes no sum; press Return to set it").format(field=field.word))
+        raise EntryError(
+            tr("no value can be added to {field}; press Enter to set it").format(field=field.word)
+        )
     return _taken(field, added(before, value_of(text) / _doubled(name, mode), mode.metric), mode)
 
 
@@ -200,7 +202,7 @@ def _taken(field: Field, value: Value, mode: Mode) -> Value:
     if field.takes(value):
         return value
     if field.sort is not Sort.LENGTH:
-        raise EntryError(tr("{field} takes {range}").format(field=field.word, range=field.range))
+        raise EntryError(tr("{field} must be {range}").format(field=field.word, range=field.range))
     factor = _doubled(field.name, mode) / mode.unit
     figure = shown_value(field.name, value, mode)
     raise EntryError(out_of_range(field.word, figure, mode.name, field.low * factor, field.high * factor))
@@ -260,7 +262,7 @@ def word(name: str) -> str:
         "pitch": tr("PITCH"),
         "flutes": tr("FLUTES"),
         "entry": tr("ENTERING ANGLE"),
-        "rear": tr("WORKS AT X−"),
+        "rear": tr("CUTS ON X− SIDE"),
         "profile": tr("PROFILE"),
     }
     return words[name]
@@ -275,7 +277,7 @@ def choice_word(value: str) -> str:
         "parting": tr("PARTING"),
         "threading": tr("THREADING"),
         "drill": tr("DRILL"),
-        "centre-drill": tr("CENTRE DRILL"),
+        "centre-drill": tr("CENTER DRILL"),
         "reamer": tr("REAMER"),
         "tap": tr("TAP"),
         "end-mill": tr("END MILL"),

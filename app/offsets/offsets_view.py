@@ -68,7 +68,7 @@ Entry = tuple[str, str, str, str]
 class HistoryList(Panel):
     """Newest on top, two lines each."""
 
-    title = "HISTORY  ·  NEWEST ON TOP"
+    title = "HISTORY  ·  NEWEST FIRST"
 
     entries: Shown[tuple[Entry, ...]] = Shown(())
     top = Shown(0)
@@ -103,7 +103,7 @@ class HistoryList(Panel):
         u, room = self.look.u, self.inside()
         if not self.entries:
             head = QRectF(room.x(), room.y(), room.width(), 3 * u)
-            painter.write(head, "No offset was changed yet.", 2.0, "soft", bold=False)
+            painter.write(head, "No offset has been changed yet.", 2.0, "soft", bold=False)
         room.setHeight(self.rows * ROW * u)
         room = self.leaf(painter, room, (self.top, self.rows, len(self.entries)), self.leaf_by)
         for place, entry in enumerate(self.entries[self.top : self.top + self.rows]):
@@ -203,7 +203,7 @@ class OffsetPage(ModelPage):
             self.history.leaf_by((1 if key == "Page down" else -1) * self.history.rows)
             return True
         if self.effect_model.open and len(key) == 1 and self.model.takes(key):
-            self.desk.say(tr("VALUES ARE TYPED INTO THE TABLE: PRESS ESC TO SHOW IT"))
+            self.desk.say(tr("VALUES ARE TYPED IN THE TABLE. PRESS ESC TO SHOW IT"))
             return True
         return self.model.typed(key)
 

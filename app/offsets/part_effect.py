@@ -18,7 +18,7 @@ def part_table(part: OtherPart, mode: Mode) -> Sheet:
     """Features from the face on, those that change with a lamp; then findings that come or go."""
     unit = tr("MM") if mode.metric else tr("INCH")
     return Sheet(
-        f"{tr('WHAT IT DOES TO THE PART')}  ·  {unit}",
+        f"{tr('EFFECT ON THE PART')}  ·  {unit}",
         ("FEATURE", "BEFORE", "AFTER", "DIFFERENCE"),
         (0.4, 0.2, 0.2, 0.2),
         tuple(_row(each, mode) for each in part.pairs),
@@ -33,7 +33,7 @@ def _findings(part: OtherPart) -> list[tuple[bool, Diagnostic]]:
 
 def _note(found: Diagnostic, *, gone: bool) -> str:
     if gone:
-        return tr("LINE {line}: {check} IS GONE").format(line=found.line, check=found.code)
+        return tr("LINE {line}: {check} NO LONGER REPORTED").format(line=found.line, check=found.code)
     return tr("LINE {line}: {what}").format(line=found.line, what=tr(found.text))
 
 
@@ -42,7 +42,7 @@ def _row(pair: Pair, mode: Mode) -> Row:
     assert one is not None
     change = pair.difference
     same = change is not None and abs(change) <= SAME
-    told = _NONE if same else tr("NOT BOTH")
+    told = _NONE if same else tr("NOT IN BOTH")
     if change is not None and not same:
         told = signed(change, mode.metric)
     cells = (_name(one, mode), _figure(pair.here, mode), _figure(pair.there, mode), told)
@@ -59,7 +59,7 @@ def _name(feature: Feature, mode: Mode) -> str:
     if feature.kind in {FeatureKind.DIAMETER, FeatureKind.BORE}:
         word = tr("DIAMETER") if feature.kind is FeatureKind.DIAMETER else tr("BORE")
         return f"{word}  Z {_short(a, mode)} … {_short(b, mode)}"
-    word = tr("SHOULDER") if feature.kind is FeatureKind.SHOULDER else tr("SHOULDER IN THE BORE")
+    word = tr("SHOULDER") if feature.kind is FeatureKind.SHOULDER else tr("BORE SHOULDER")
     return f"{word}  Ø {_short(2 * a, mode)} … {_short(2 * b, mode)}"
 
 

@@ -38,7 +38,7 @@ class Presets(CellTable):
     @property
     def title(self) -> str:
         """What the table is, and its units."""
-        return tr("PRESETS  ·  MACHINE POSITION OF THE WORKPIECE'S ZERO, MM AND DEGREES")
+        return tr("PRESETS  ·  WORKPIECE ZERO IN MACHINE COORDINATES, MM AND DEGREES")
 
     def in_force(self, _snapshot: Snapshot) -> int:
         """The preset that was chosen."""
@@ -47,14 +47,16 @@ class Presets(CellTable):
     @property
     def foot(self) -> str:
         """What F2, F3 and Esc do here, and which preset is in force."""
-        told = tr("F2: the tip stands where the part reads what is typed")
+        told = tr("F2: set the current tip position to the typed value")
         if self.name in _ROTARY:
-            told = tr("F2: the axis stands where it shall read what is typed")
+            told = tr("F2: set the current axis position to the typed value")
         elif self.name == "rotation":
-            told = tr("F2 at one point of an edge, then at another: the edge shall read what is typed")
+            told = tr(
+                "F2 at one point of an edge, then at another: set ROT so that the edge has the typed angle"
+            )
         active = self.book.preset
-        now = tr("in force: {preset}").format(preset=active or tr("0, of the machine file"))
-        return f"{told}        {tr('F3: in force')}        {now}"
+        now = tr("active preset: {preset}").format(preset=active or tr("0, from the machine file"))
+        return f"{told}        {tr('F3: make active')}        {now}"
 
     @property
     def row_now(self) -> PresetRow:
@@ -80,7 +82,7 @@ class Presets(CellTable):
         elif self.name == "rotation":
             self._touch_edge()
         else:
-            self.desk.say(tr("CHOOSE X, Y, Z, A ROTARY AXIS OR ROT FIRST: F2 TOUCHES THE WORKPIECE OFF"))
+            self.desk.say(tr("SELECT X, Y, Z, A ROTARY AXIS OR ROT FIRST. F2: TOUCH OFF WORKPIECE"))
 
     @property
     def _reads(self) -> str:
@@ -91,7 +93,9 @@ class Presets(CellTable):
         tip, reads = self._tip(), self._reads
         if tip is not None:
             at = tip["xyz".index(self.name)]
-            self.save(lambda: self.checked(at - value_of(reads)), tr("reads {value}").format(value=reads))
+            self.save(
+                lambda: self.checked(at - value_of(reads)), tr("position set to {value}").format(value=reads)
+            )
 
     def _tip(self) -> Vector | None:
         tip = MillTouch.of(self.desk).tip(zeros_of(self.row_now))
@@ -108,7 +112,7 @@ class Presets(CellTable):
             return
         self.save(
             lambda: self.checked(remainder(at - value_of(reads), 360.0)),
-            tr("reads {value}").format(value=reads),
+            tr("position set to {value}").format(value=reads),
             self._followed,
         )
 
@@ -128,11 +132,11 @@ class Presets(CellTable):
             return
         if self.edge is None:
             self.edge = tip
-            self.desk.say(tr("FIRST POINT TAKEN: TOUCH THE SAME EDGE FURTHER ON, THEN F2 AGAIN"))
+            self.desk.say(tr("FIRST POINT STORED. TOUCH THE SAME EDGE FURTHER ON, THEN F2"))
             return
         first = self.edge
         if self.save(
-            lambda: self._turned(first, tip, value_of(reads)), tr("edge of {value}").format(value=reads)
+            lambda: self._turned(first, tip, value_of(reads)), tr("edge angle {value}").format(value=reads)
         ):
             self.edge = None
 
@@ -140,7 +144,7 @@ class Presets(CellTable):
         """Of an edge that shall read so many degrees from X; it has no beginning, so a half turn is none."""
         dx, dy = last[0] - first[0], last[1] - first[1]
         if hypot(dx, dy) < _APART:
-            raise EntryError(tr("THE TWO POINTS ARE NEARER THAN 1 MM: TOUCH THE EDGE FURTHER ON"))
+            raise EntryError(tr("POINTS LESS THAN 1 MM APART. TOUCH THE EDGE FURTHER ON"))
         return self.checked(remainder(degrees(atan2(dy, dx)) - reads, 180.0))
 
     def activate_barred(self) -> str:
@@ -148,7 +152,7 @@ class Presets(CellTable):
         if why := self.barred(self.desk.snapshot()):
             return why
         if self.stored is None:
-            return tr("PRESET {number} WAS NEVER SET: TOUCH IT OFF OR TYPE IT").format(number=self.number)
+            return tr("PRESET {number} IS NOT SET. TOUCH IT OFF OR TYPE IT").format(number=self.number)
         return ""
 
     def here_barred(self) -> str:
@@ -158,7 +162,7 @@ class Presets(CellTable):
         elif self.name in {"x", "y", "z", "rotation"}:
             place = MillTouch.of(self.desk).tip(zeros_of(self.row_now))
         else:
-            place = tr("CHOOSE X, Y, Z, A ROTARY AXIS OR ROT FIRST: F2 TOUCHES THE WORKPIECE OFF")
+            place = tr("SELECT X, Y, Z, A ROTARY AXIS OR ROT FIRST. F2: TOUCH OFF WORKPIECE")
         return place if isinstance(place, str) else self.barred(self.desk.snapshot())
 
     def activate(self) -> None:

@@ -109,10 +109,8 @@ class SecondaryOffsets(OffsetTable):
     def hint(self, snapshot: Snapshot) -> str:
         """Return what is typed now, or from when a correction counts."""
         if self.step is Step.NUMBER and not counts_from(snapshot):
-            return tr("TYPE THE NUMBER OF AN OFFSET AND PRESS RETURN")
-        return counts_from(snapshot) or tr(
-            "EVERY VALUE TAKES ARITHMETIC, SUCH AS .5-.002; RETURN ALONE KEEPS THE VALUE"
-        )
+            return tr("TYPE AN OFFSET NUMBER AND PRESS ENTER")
+        return counts_from(snapshot) or tr("TYPE A VALUE OR EXPRESSION (.5-.002). ENTER ALONE: KEEP VALUE")
 
     def proposed(self) -> Proposed:
         """The tables as they would be with what is being entered."""
@@ -129,7 +127,7 @@ class SecondaryOffsets(OffsetTable):
         super().look(snapshot)
         if self.mode.metric != before.metric and self.step is not Step.NUMBER:
             self.drop()
-            self.desk.say(tr("THE CONTROL HAS CHANGED ITS UNIT: NOTHING WAS CHANGED, ENTER IT AGAIN"))
+            self.desk.say(tr("THE CONTROL CHANGED ITS UNIT. NOTHING SAVED. ENTER IT AGAIN"))
 
     # --- keys ----------------------------------------------------------------------------------------
 
@@ -160,7 +158,7 @@ class SecondaryOffsets(OffsetTable):
         """C; not in the middle of an entry."""
         whole = self.barred(self.desk.snapshot(), correction=False)
         if not whole and self.step is not Step.NUMBER:
-            self.desk.say(tr("C CLEARS ALL OFFSETS ONLY WHILE Offset Number? IS ASKED; PRESS ESC FIRST"))
+            self.desk.say(tr("C CLEARS ALL OFFSETS ONLY AT THE PROMPT Offset Number? PRESS ESC FIRST"))
         else:
             super().clear()
 
@@ -170,7 +168,7 @@ class SecondaryOffsets(OffsetTable):
             return False
         number = self.number
         self.drop()
-        self.desk.say(tr("D{number} IS AS IT WAS").format(number=number) if number else "")
+        self.desk.say(tr("D{number} NOT CHANGED").format(number=number) if number else "")
         return True
 
     def drop(self) -> None:
@@ -186,7 +184,7 @@ class SecondaryOffsets(OffsetTable):
             self._take_number() if self.step is Step.NUMBER else self._take_value()
         except EntryError as error:
             self.text = refused(self.text)
-            self.desk.say(tr("REFUSED: {why}").format(why=error))
+            self.desk.say(tr("REJECTED: {why}").format(why=error))
 
     def _take_number(self) -> None:
         value = value_of(self.text)
@@ -218,7 +216,7 @@ class SecondaryOffsets(OffsetTable):
 
     def _save(self, new: SecondaryRow, typed: list[str]) -> None:
         if new == self.old:
-            self.desk.say(tr("D{number} IS AS IT WAS").format(number=self.number))
+            self.desk.say(tr("D{number} NOT CHANGED").format(number=self.number))
             self.drop()
             return
         reason = ("MM " if self.mode.metric else "") + " ".join(filter(None, typed))

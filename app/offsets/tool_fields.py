@@ -54,7 +54,7 @@ class ToolFields:
 
     def never_set(self, number: int) -> str:
         """Why a tool that nobody has set has no fields."""
-        text = tr("T{number} WAS NEVER SET: TYPE X AND Z FIRST, OR TOUCH IT OFF ON THE JOG PAGE")
+        text = tr("T{number} IS NOT SET. TYPE X AND Z, OR TOUCH OFF ON THE JOG PAGE")
         return text.format(number=edge_number(number))
 
     def save(self, number: int, name: str, text: str, *, adding: bool = False) -> str:
@@ -64,7 +64,7 @@ class ToolFields:
             return self._first(number, name, value_typed(name, text, mode))
         value = value_added(name, row, text, mode) if adding else value_typed(name, text, mode)
         if value == getattr(row, name):
-            self.history.desk.say(tr("T{number} IS AS IT WAS").format(number=edge_number(number)))
+            self.history.desk.say(tr("T{number} NOT CHANGED").format(number=edge_number(number)))
             return ""
         typed = f"{'MM ' if mode.metric else ''}{word(name)} {'+ ' if adding else ''}{text.strip()}"
         return OffsetQuestions(self.history).change(Kind.TOOL, number, {name: value}, typed)
@@ -75,10 +75,10 @@ class ToolFields:
             return self.never_set(number)
         values = self.new.add(number, name, value)
         if len(values) < 2:
-            text = tr("NOW {axis}: T{number} IS SET WHEN BOTH ARE THERE")
+            text = tr("NOW ENTER {axis}. T{number} IS SET ONCE X AND Z ARE ENTERED")
             self.history.desk.say(text.format(axis=word(self.new.missing), number=edge_number(number)))
             return ""
-        why = OffsetQuestions(self.history).change(Kind.TOOL, number, values, tr("entered by hand"))
+        why = OffsetQuestions(self.history).change(Kind.TOOL, number, values, tr("manual entry"))
         if not why:
             self.new.drop()
         return why
@@ -178,7 +178,7 @@ class ToolEntry(OffsetTable):
     def left_open(self) -> bool:
         """Whether something is typed and not entered, which keeps the cursor where it is; that is said."""
         if self.text or self.writing:
-            self.desk.say(tr("PRESS RETURN TO SET IT, OR ESC TO LEAVE IT AS IT WAS"))
+            self.desk.say(tr("ENTER: SET   ESC: CANCEL"))
         return bool(self.text or self.writing)
 
     def store(self, save: Callable[[], str]) -> bool:
@@ -187,7 +187,7 @@ class ToolEntry(OffsetTable):
         try:
             why = barred or save()
         except EntryError as error:
-            why = tr("REFUSED: {why}").format(why=error)
+            why = tr("REJECTED: {why}").format(why=error)
         if why:
             self.text = self.text if barred else refused(self.text)
             self.desk.say(why)
@@ -205,7 +205,7 @@ class ToolEntry(OffsetTable):
         if not self.entering:
             return False
         self.drop()
-        self.desk.say(tr("T{number} IS AS IT WAS").format(number=edge_number(self.number)))
+        self.desk.say(tr("T{number} NOT CHANGED").format(number=edge_number(self.number)))
         return True
 
     def drop(self) -> None:

@@ -28,7 +28,7 @@ class ToolOffsets(ToolEntry):
     """Where the cursor stands and what is typed there. A remark takes letters once Return has opened it."""
 
     kind = Kind.TOOL
-    to_write = "PRESS RETURN TO WRITE A REMARK"
+    to_write = "PRESS ENTER TO TYPE A REMARK"
 
     def __init__(self, desk: Desk) -> None:
         super().__init__(desk)
@@ -90,18 +90,16 @@ class ToolOffsets(ToolEntry):
         """What F2, F3 and Esc do here."""
         if self.own_key:
             return tr(
-                "F2 adds what is typed; F3: X and Z from the master; F8: shape; D: another edge; Esc leaves"
+                "F2: add typed value   F3: X and Z relative to master   F8: shape   D: other edge   Esc: exit"
             )
-        return tr(
-            "F2 adds what is typed; F3 shows X and Z from the master; F8: shape of the tool; Esc leaves"
-        )
+        return tr("F2: add typed value   F3: X and Z relative to master   F8: tool shape   Esc: exit")
 
     def hint(self, snapshot: Snapshot) -> str:
         """Of an open remark, or of the table."""
         if self.writing:
-            return tr("TYPE THE REMARK; RETURN KEEPS IT, ESC LEAVES IT AS IT WAS; F-KEYS STILL WORK")
+            return tr("TYPE THE REMARK. ENTER: SAVE   ESC: CANCEL   F-KEYS STILL WORK")
         return counts_from(snapshot) or tr(
-            "ARROWS CHOOSE A CELL; TYPE A VALUE OR A SUM; RETURN SETS IT, F2 ADDS IT TO WHAT IS THERE"
+            "TYPE A NUMBER OR EXPRESSION. ENTER: SET   F2: ADD   ARROWS: OTHER CELL"
         )
 
     def proposed(self) -> Proposed:
@@ -123,7 +121,7 @@ class ToolOffsets(ToolEntry):
     def cell_barred(self) -> str:
         """Why the cell under the cursor may not be changed now; empty when it may."""
         if self.relative and self.name in {"x", "z"}:
-            return tr("X AND Z ARE SHOWN FROM THE MASTER: PRESS F3, THEN TYPE THEM FROM HOME")
+            return tr("X AND Z ARE RELATIVE TO THE MASTER. PRESS F3 TO TYPE THEM FROM HOME")
         return super().cell_barred()
 
     def look(self, snapshot: Snapshot) -> None:
@@ -137,9 +135,7 @@ class ToolOffsets(ToolEntry):
         changed = self.mode != before if position else self.mode.metric != before.metric
         if changed and (self.text or self.fields.new.number):
             self.drop()
-            self.desk.say(
-                tr("THE CONTROL HAS CHANGED ITS UNIT OR ITS X: NOTHING WAS CHANGED, ENTER IT AGAIN")
-            )
+            self.desk.say(tr("CONTROL CHANGED UNITS OR DIAMETER/RADIUS. NOTHING SAVED. ENTER IT AGAIN"))
 
     # --- keys ----------------------------------------------------------------------------------------
 
@@ -172,13 +168,13 @@ class ToolOffsets(ToolEntry):
     def add_barred(self) -> str:
         """Return why nothing is added now; empty when it is."""
         if self.tool is None or not self.text.strip():
-            return tr("TYPE WHAT IS TO BE ADDED FIRST, THEN PRESS F2")
+            return tr("TYPE THE VALUE TO ADD, THEN PRESS F2")
         return ""
 
     def relative_barred(self) -> str:
         """Return why X and Z cannot be shown from the master; empty when they can."""
         if not self.relative and not self.book.master:
-            return tr("NO TOOL IS THE MASTER: CHOOSE ONE IN ITS COLUMN WITH RETURN")
+            return tr("NO MASTER TOOL. PRESS ENTER IN THE MASTER COLUMN TO CHOOSE ONE")
         return ""
 
     def turn_relative(self) -> None:
@@ -202,11 +198,11 @@ class ToolOffsets(ToolEntry):
         if tool not in self.book.tools:
             self.desk.say(self.fields.never_set(tool))
         elif not key:
-            self.desk.say(tr("T{number} HAS ALL ITS CUTTING EDGES, D1 TO D9").format(number=tool))
+            self.desk.say(tr("T{number} ALREADY HAS ALL CUTTING EDGES, D1 TO D9").format(number=tool))
         else:
             self.opened_edge = key
             self._go(key, COLUMNS.index("x"))
-            self.desk.say(tr("T{number}: TYPE ITS X AND Z").format(number=edge_number(key)))
+            self.desk.say(tr("T{number}: TYPE X AND Z").format(number=edge_number(key)))
 
     def _go(self, number: int, column: int) -> None:
         """The cursor there; what was typed and not entered stays behind, and that is said."""
@@ -219,7 +215,7 @@ class ToolOffsets(ToolEntry):
         new = self.fields.new
         if new.number and self.number != new.number:
             self.desk.say(
-                tr("T{number} IS NOT SET: X AND Z BELONG TOGETHER").format(number=edge_number(new.number))
+                tr("T{number} IS NOT SET: BOTH X AND Z ARE NEEDED").format(number=edge_number(new.number))
             )
             self.drop()
 

@@ -78,7 +78,7 @@ class ToolTable(Panel):
         x = tr("X IS A DIAMETER") if mode.diameter else tr("X IS A RADIUS")
         title = f"{tr('TOOL OFFSETS')}  ·  {tr('MM') if mode.metric else tr('INCH')}  ·  {x}"
         if model.relative:
-            title += "  ·  " + tr("X AND Z FROM THE MASTER T{number}").format(number=model.book.master)
+            title += "  ·  " + tr("X AND Z RELATIVE TO MASTER T{number}").format(number=model.book.master)
         self.frame(painter, title)
         room = self.inside().adjusted(-0.7 * u, -0.2 * u, 0.7 * u, 0.5 * u)
         body = room.adjusted(0, HEAD * u, 0, 0)

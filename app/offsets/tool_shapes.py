@@ -25,7 +25,7 @@ class ToolShapes(ToolEntry):
     """One tool, and the field under the cursor. Left and Right turn through what a field may be."""
 
     kind = Kind.SHAPE
-    to_write = "PRESS RETURN TO WRITE IT"
+    to_write = "PRESS ENTER TO TYPE THE TEXT"
 
     def __init__(self, desk: Desk) -> None:
         super().__init__(desk)
@@ -91,19 +91,19 @@ class ToolShapes(ToolEntry):
     @property
     def foot(self) -> str:
         """What F3, F8 and Esc do here."""
-        return tr("Page up and Page down: another tool; F3: no shape; F8: the table of tools; Esc leaves")
+        return tr("Page Up, Page Down: other tool   F3: delete shape   F8: tool table   Esc: exit")
 
     def hint(self, _snapshot: Snapshot) -> str:
         """What cannot be in the shape; else how the field under the cursor is entered."""
         if self.mistakes and not (self.text or self.writing):
             return f"{edge_name(self.number)}: {tr(self.mistakes[0].text)}"
         if self.writing:
-            return tr("TYPE IT; RETURN KEEPS IT, ESC LEAVES IT AS IT WAS; F-KEYS STILL WORK")
+            return tr("TYPE THE TEXT. ENTER: SAVE   ESC: CANCEL   F-KEYS STILL WORK")
         if self.chosen_from:
-            return tr("LEFT AND RIGHT, OR A FINGER, TURN THROUGH WHAT THERE IS; RETURN SETS IT")
+            return tr("LEFT/RIGHT: CHANGE    ENTER: ACCEPT")
         if self.is_text:
             return tr(self.to_write)
-        return tr("UP AND DOWN CHOOSE A FIELD; TYPE A VALUE OR A SUM, RETURN SETS IT; 0: NOT STATED")
+        return tr("UP/DOWN: FIELD   TYPE A NUMBER OR EXPRESSION   ENTER: SET   0: NOT SPECIFIED")
 
     @property
     def corrects(self) -> bool:
@@ -127,7 +127,7 @@ class ToolShapes(ToolEntry):
         elif key in {"Page up", "Page down"}:
             self.go_to_tool(tool_of(self.number) + (1 if key == "Page down" else -1))
         elif len(key) == 1 and self.takes(key) and self.chosen_from:
-            self.desk.say(tr("LEFT AND RIGHT TURN THROUGH WHAT THERE IS"))
+            self.desk.say(tr("USE LEFT/RIGHT TO CHANGE"))
         else:
             return super().enter_key(key)
         return True
@@ -189,7 +189,7 @@ class ToolShapes(ToolEntry):
         if of_offset and self.tool is None:
             return ToolFields(self.history).never_set(self.number)
         if (self.row is not None or of_offset) and value == self.value(name):
-            self.desk.say(tr("T{number} IS AS IT WAS").format(number=edge_number(self.number)))
+            self.desk.say(tr("T{number} NOT CHANGED").format(number=edge_number(self.number)))
             return ""
         self._check(name, value)
         typed = f"{'MM ' if self.mode.metric else ''}{word(name)} {self.text.strip()}"
@@ -222,7 +222,7 @@ class ToolShapes(ToolEntry):
             self.desk.say(why)
         else:
             number = self.number
-            question = tr("PRESS Y TO FORGET THE SHAPE OF T{number}, N TO KEEP IT").format(
+            question = tr("PRESS Y TO DELETE THE SHAPE OF T{number}, N TO KEEP IT").format(
                 number=edge_number(number)
             )
             self.desk.ask(question, lambda: self._remove(number))

@@ -91,10 +91,10 @@ class ShapeTable(Panel):
         painter.fill(room, "panel")
         outline = model.outline
         if model.row is None:
-            text = tr("NO SHAPE: THE PROOF TAKES THE NOSE ALONE")
+            text = tr("NO SHAPE: THE PROOF CHECKS ONLY THE TOOL NOSE")
             painter.write(room, text, 1.8, "soft", at=CENTRE, margin=1.0)
         elif outline is None:
-            painter.write(room, tr("THIS SHAPE CANNOT BE"), 1.8, "alarm", at=CENTRE, margin=1.0)
+            painter.write(room, tr("IMPOSSIBLE TOOL SHAPE"), 1.8, "alarm", at=CENTRE, margin=1.0)
         else:
             draw_outline(painter, room.adjusted(0, 0, 0, -2.8 * u), outline)
             if outline.assumed:

@@ -50,13 +50,13 @@ class ZeroOffsets(CellTable):
     def foot(self) -> str:
         """What F2, C and Esc do here."""
         return tr(
-            "F2: where the machine stands reads what is typed        C: clear G54 to G59        Esc: exit"
+            "F2: set the current position to the typed value        C: clear G54 to G59        Esc: exit"
         )
 
     def barred(self, snapshot: Snapshot, *, correction: bool = False) -> str:
         """Nothing here is a correction: part zero changes between cycles only."""
         if snapshot.state in UNDER_WAY - {State.JOG, State.HOME} and not self.book.locked:
-            return tr("A PROGRAM IS UNDER WAY: G54 TO G59 CHANGE BETWEEN CYCLES ONLY")
+            return tr("PROGRAM RUNNING. G54 TO G59 CAN CHANGE ONLY BETWEEN CYCLES")
         return super().barred(snapshot, correction=correction)
 
     def here_barred(self) -> str:
@@ -65,7 +65,7 @@ class ZeroOffsets(CellTable):
         if axis not in snapshot.axes:
             return tr("THIS MACHINE HAS NO AXIS {axis}").format(axis=axis)
         if not snapshot.homed[snapshot.axes.index(axis)]:
-            return tr("{axis} DOES NOT KNOW ITS POSITION: HOME IT FIRST").format(axis=axis)
+            return tr("{axis} IS NOT HOMED. HOME IT FIRST").format(axis=axis)
         return self.barred(snapshot)
 
     def here(self) -> None:
@@ -76,7 +76,7 @@ class ZeroOffsets(CellTable):
         snapshot = self.desk.snapshot()
         place = snapshot.axes.index(self.name.upper())
         reads = self.text.strip() or "0"
-        words = tr("reads {value}").format(value=reads)
+        words = tr("position set to {value}").format(value=reads)
         self.save(lambda: self._touched(snapshot.actual[place], value_of(reads)), words)
 
     def _touched(self, at: float, reads: float) -> float:

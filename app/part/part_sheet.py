@@ -136,7 +136,7 @@ class PartSheet:
             return {
                 "F2": Key("FINDINGS", self.turn),
                 "F4": Key("KIND", self.turn_kind),
-                "F6": Key("FORGET", self.forget),
+                "F6": Key("DELETE", self.forget),
             }
         found = self.finding
         word = "UNDO" if found is not None and found.silenced else "SILENCE"
@@ -246,16 +246,16 @@ class PartSheet:
     def prompt(self) -> str:
         """What the keys do here."""
         if self.silencing:
-            return tr("TYPE THE REASON, RETURN KEEPS IT WITH THE PROGRAM; ESC LEAVES THE CHECK ON")
+            return tr("TYPE THE REASON   ENTER: SILENCE CHECK, SAVE WITH PROGRAM   ESC: LEAVE CHECK ON")
         if self.writing:
-            return tr("TYPE THE NAME OF THE FILE; RETURN TAKES IT, ESC LEAVES IT AS IT WAS")
+            return tr("TYPE THE FILE NAME   ENTER: ACCEPT   ESC: CANCEL")
         if self.section is Section.FINDINGS:
             if self.keys()["F4"].barred:
-                return tr("UP AND DOWN SHOW THE PLACE OF A FINDING; F2: STOCK")
-            return tr("UP AND DOWN SHOW THE PLACE OF A FINDING; F2: STOCK, F4 SILENCES A CHECK")
+                return tr("UP/DOWN: SHOW WHERE EACH FINDING IS   F2: STOCK")
+            return tr("UP/DOWN: SHOW WHERE EACH FINDING IS   F2: STOCK   F4: SILENCE CHECK")
         if self.marked_field is StockField.KIND:
-            return tr("LEFT AND RIGHT TURN THE KIND OF STOCK; F6: NOTHING IS SAID ANY MORE")
-        return tr("TYPE A LENGTH OR A SUM, RETURN KEEPS IT WITH THE PROGRAM; 0: NOT SAID")
+            return tr("LEFT/RIGHT: CHANGE STOCK TYPE   F6: DELETE STOCK DATA")
+        return tr("TYPE A LENGTH OR EXPRESSION   ENTER: SAVE WITH PROGRAM   0: NOT SPECIFIED")
 
     # --- what is said --------------------------------------------------------------------------------
 
@@ -268,11 +268,11 @@ class PartSheet:
     def _locked(self) -> str:
         """Return why nothing may be changed now; empty when it may."""
         if not self.name:
-            return tr("LOAD A PROGRAM FIRST: ITS STOCK IS KEPT WITH IT")
+            return tr("LOAD A PROGRAM FIRST. STOCK IS SAVED WITH IT")
         if self.desk.lathe is not None and self.desk.lathe.kind != "lathe":
-            return tr("NO PART IS PROVED ON A MILL")
+            return tr("ON A MILL, THE PART IS NOT PROVED")
         if self.desk.snapshot().state in UNDER_WAY:
-            return tr("WHAT THE PART IS PROVED ON CHANGES BETWEEN TWO CYCLES ONLY")
+            return tr("PROGRAM RUNNING. CHANGE STOCK AND CHECKS BETWEEN CYCLES")
         if self.worker.busy or self.loaded.busy:
             return tr("THE PROGRAM IS BEING PROVED: WAIT A MOMENT")
         return ""
@@ -294,10 +294,10 @@ class PartSheet:
         if self._barred():
             return
         if not (self.kept.stock or self.kept.stick_out):
-            self.desk.say(tr("NOTHING IS SAID OF THIS PROGRAM'S STOCK"))
+            self.desk.say(tr("NO STOCK IS SPECIFIED FOR THIS PROGRAM"))
             return
         self.entry = StockEntry()
-        self._keep(replace(self.kept, stock="", stick_out=None), tr("NOTHING IS SAID OF THE STOCK ANY MORE"))
+        self._keep(replace(self.kept, stock="", stick_out=None), tr("STOCK DATA DELETED"))
 
     def _take(self) -> None:
         """Return on a field."""
@@ -324,7 +324,7 @@ class PartSheet:
             return str(there)
         path = self.desk.program_folders.find(name) if name else None
         if path is None:
-            raise EntryError(tr("there is no file {name} beside the program").format(name=name or "–"))
+            raise EntryError(tr("file {name} was not found in the program's folder").format(name=name or "–"))
         return str(path)
 
     def _say(self, entry: StockEntry) -> None:
@@ -339,7 +339,7 @@ class PartSheet:
             return
         kept = replace(self.kept, stock=stock, stick_out=entry.stick_out or None)
         if kept != self.kept:
-            self._keep(kept, tr("KEPT WITH {name}").format(name=self.name))
+            self._keep(kept, tr("SAVED WITH {name}").format(name=self.name))
 
     # --- silenced ------------------------------------------------------------------------------------
 
@@ -347,11 +347,11 @@ class PartSheet:
         """Return why the check of the marked finding cannot be silenced; empty when it can."""
         found = self.finding
         if found is None:
-            return tr("MARK THE FINDING WHOSE CHECK IS TO BE SILENCED")
+            return tr("SELECT THE FINDING WHOSE CHECK YOU WANT TO SILENCE")
         if found.check not in self.checks:
-            return tr("ONLY CHECKS OF THE PART ARE SILENCED; THIS IS ONE OF THE PROGRAM")
+            return tr("THIS IS A CHECK OF THE PROGRAM. ONLY PART CHECKS CAN BE SILENCED")
         if found.check in self.of_machine:
-            return tr("THE MACHINE FILE SILENCES {check}: [checks]").format(check=found.check)
+            return tr("{check} IS SILENCED IN THE MACHINE FILE, SECTION [checks]").format(check=found.check)
         return ""
 
     def silence(self) -> None:
@@ -365,7 +365,7 @@ class PartSheet:
             return
         elif found.silenced:
             rest = {check: why for check, why in self.kept.silenced.items() if check != found.check}
-            said = tr("{check} IS LOOKED FOR AGAIN").format(check=found.check)
+            said = tr("{check} IS CHECKED AGAIN").format(check=found.check)
             self._keep(replace(self.kept, silenced=rest), said)
         else:
             self.desk.clear()
@@ -373,11 +373,11 @@ class PartSheet:
 
     def _silence(self, check: str, why: str) -> None:
         if not why:
-            self.desk.refuse(tr("a check is not silenced without a reason"))
+            self.desk.refuse(tr("enter a reason to silence a check"))
         elif not self._barred():
             silenced = {**self.kept.silenced, check: why}
             self.drop()
-            self._keep(replace(self.kept, silenced=silenced), tr("{check} IS SILENCED").format(check=check))
+            self._keep(replace(self.kept, silenced=silenced), tr("{check} SILENCED").format(check=check))
 
     # --- the store -----------------------------------------------------------------------------------
 
@@ -386,9 +386,8 @@ class PartSheet:
         name = self.name
         if self.desk.refused(Act.STOCK):
             return
-        told = (
-            f"{name}: stock {kept.stock or 'not said'}, silenced checks {', '.join(kept.silenced) or 'none'}"
-        )
+        silenced = ", ".join(kept.silenced) or "none"
+        told = f"{name}: stock {kept.stock or 'not specified'}, silenced checks {silenced}"
 
         def done(_none: None) -> None:
             self.keep.note_change(told)
@@ -397,7 +396,7 @@ class PartSheet:
         self.worker.queue(
             partial(self.keep.keep_settings, kept.settings(name)),
             done,
-            lambda why: self.desk.say(tr("NOT KEPT: {why}").format(why=why)),
+            lambda why: self.desk.say(tr("NOT SAVED: {why}").format(why=why)),
         )
 
     def _is_kept(self, name: str, said: str) -> None:

@@ -29,11 +29,11 @@ def _findings_table(page: PartSheet) -> Sheet:
     found = page.findings
     rows = tuple(_finding_row(each) for each in found)
     title = tr("FINDINGS  ·  {name}").format(name=page.loaded.name or tr("NO PROGRAM"))
-    question = tr("WHY IS {check} SILENCED?").format(check=page.silencing) if page.silencing else ""
+    question = tr("REASON FOR SILENCING {check}?").format(check=page.silencing) if page.silencing else ""
     notes = _notes(page)
     return Sheet(
         title,
-        ("LINE", "CHECK", "WHAT"),
+        ("LINE", "CHECK", "DESCRIPTION"),
         (0.12, 0.34, 0.54),
         rows,
         page.marked if rows else -1,
@@ -59,14 +59,14 @@ def _nothing(page: PartSheet) -> str:
     part = loaded.part
     if part is None or part.report is None:
         why = tr(part.trouble) if part is not None else ""
-        return why or tr("NOTHING WAS FOUND; THIS PROGRAM HAS NO PART")
-    return tr("NOTHING WAS FOUND")
+        return why or tr("NO FINDINGS. THIS PROGRAM MAKES NO PART")
+    return tr("NO FINDINGS")
 
 
 def _at(page: PartSheet, found: Diagnostic) -> str:
     if found.silenced:
         of_machine = found.check in page.of_machine
-        return tr("SILENCED BY THE MACHINE FILE") if of_machine else tr("F4 UNDOES IT")
+        return tr("SILENCED BY THE MACHINE FILE") if of_machine else tr("F4: UNDO")
     if not found.n:
         return ""
     return tr("ELEMENTARY BLOCK {n}").format(n=found.n)
@@ -80,7 +80,7 @@ def _stock_table(page: PartSheet) -> Sheet:
     rows = tuple(Row((_word(name), _said(page, name), _assumed(page, name))) for name in entry.fields)
     return Sheet(
         f"{tr('STOCK  ·  {name}').format(name=page.loaded.name or tr('NO PROGRAM'))}  ·  {unit}",
-        ("", "SAID", "ASSUMED"),
+        ("", "SPECIFIED", "ASSUMED"),
         (0.34, 0.33, 0.33),
         rows,
         page.marked,
@@ -117,9 +117,9 @@ def _question(page: PartSheet) -> str:
 def _stock_notes(page: PartSheet) -> tuple[str, ...]:
     lacks = page.entry.lacks
     if lacks is not None:
-        return (tr("{field} IS STILL TO BE SAID").format(field=_word(lacks)),)
+        return (tr("{field} IS STILL MISSING: ENTER IT").format(field=_word(lacks)),)
     if page.marked_field is StockField.STICK_OUT and not page.holds:
-        return (tr("COUNTS ONLY WITH [clamping] IN THE MACHINE FILE"),)
+        return (tr("ONLY USED IF THE MACHINE FILE HAS [clamping]"),)
     part = page.loaded.part
     told = part.report.assumed if part is not None and part.report is not None else ()
     said = (f"{tr('ASSUMED')}: {tr(each)}" for each in told[:3])

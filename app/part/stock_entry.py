@@ -50,7 +50,7 @@ _KINDS = {
     StockKind.BAR: "BAR",
     StockKind.TUBE: "TUBE",
     StockKind.PROFILE: "PROFILE",
-    StockKind.AFTER: "OF A PROGRAM",
+    StockKind.AFTER: "PART FROM A PROGRAM",
 }
 _STICK_OUTS = (0.0, 40.0 * MM_PER_INCH)
 
@@ -97,13 +97,13 @@ class StockEntry:
         """With a length that was typed, in inches or mm. Raises EntryError for what it cannot be."""
         value = value_of(text) * (1.0 if metric else MM_PER_INCH)
         if value < 0.0:
-            raise EntryError("a length of the stock is not negative; 0 takes it back")
+            raise EntryError("a stock length cannot be negative; 0 clears it")
         low, high = _STICK_OUTS
         if name is StockField.STICK_OUT and not low <= value <= high:
-            raise EntryError("the stick-out is more than 0 and up to 40 in")
+            raise EntryError("the stick-out must be more than 0 and at most 40 in")
         changed = replace(self, **{name.value: round(value, _PLACES)})  # type: ignore[arg-type]
         if changed.kind is StockKind.TUBE and changed.diameter and changed.bore >= changed.diameter:
-            raise EntryError("the bore of a tube is less than its diameter")
+            raise EntryError("the bore of a tube must be smaller than its diameter")
         return changed
 
     @property

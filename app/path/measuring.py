@@ -39,15 +39,15 @@ def kind_words(kind: PointKind) -> str:
     """What the cursor stands on."""
     return {
         PointKind.END: tr("END"),
-        PointKind.CENTRE: tr("CENTRE"),
-        PointKind.CROSSING: tr("CROSSING"),
+        PointKind.CENTRE: tr("CENTER"),
+        PointKind.CROSSING: tr("INTERSECTION"),
         PointKind.FREE: tr("FREE"),
     }[kind]
 
 
 def measuring_words() -> str:
     """The prompt line while one measures."""
-    return tr("ARROWS: NEXT POINT   TAB: ALONG THE PATH   RETURN: HOLD, AND MEASURE FROM THERE   ESC: BACK")
+    return tr("ARROWS: NEXT POINT   TAB: ALONG THE PATH   ENTER: MEASURE FROM HERE   ESC: BACK")
 
 
 MOST_CROSSED = 300  # chords in sight up to which crossings are looked for
@@ -193,7 +193,7 @@ def between_on_side(start: Point, end: Point, metric: bool, scale: float) -> lis
     return [
         ("ΔZ", formats.length(dz, metric)),
         ("ΔC", f"{formats.angle(way / scale)}°"),
-        (tr("ROUND"), formats.length(way, metric)),
+        (tr("ARC LENGTH"), formats.length(way, metric)),
         *_straight(dz, way, metric, tr("TO Z")),
     ]
 

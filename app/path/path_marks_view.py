@@ -82,7 +82,7 @@ def draw_buttons(
 def run_legend(look: Look) -> list[LegendEntry]:
     """Of a program that runs or will."""
     todo, done = Ink.TODO.pens(look), Ink.DONE.pens(look)
-    return [(tr("done"), done[2]), (tr("to come"), todo[2]), (tr("rapid"), todo[1])]
+    return [(tr("done"), done[2]), (tr("remaining"), todo[2]), (tr("rapid"), todo[1])]
 
 
 def compared_legend(look: Look) -> list[LegendEntry]:
@@ -214,9 +214,9 @@ def _label(painter: QPainter, look: Look, box: QRectF, text: str) -> None:
 def apart_words(apart: Apart, in_mm: bool) -> str:
     """How far two pictures are apart."""
     if not apart.distance:
-        return tr("NOTHING THAT IS CUT HAS CHANGED")
+        return tr("NO CUTTING MOVE HAS CHANGED")
     length = formats.length(apart.distance, in_mm)
-    return tr("AT MOST {length} {unit} APART  ·  AT THE CIRCLE").format(
+    return tr("LARGEST DIFFERENCE {length} {unit}  ·  MARKED BY THE CIRCLE").format(
         length=length, unit="mm" if in_mm else "in"
     )
 
@@ -233,14 +233,14 @@ def part_words(pane: Pane) -> str:
     shown = pane.player.played if pane.player is not None else None
     if pane.player is None or shown is None:
         trouble = pane.player.trouble if pane.player is not None else ""
-        return trouble or tr("PART  ·  BEING MADE")
+        return trouble or tr("PART  ·  CALCULATING …")
     wrong = errors_of(pane)
     if wrong:
         return tr("LINE {line}: {what}").format(line=wrong[-1].line, what=tr(wrong[-1].message))
     if shown.instant.stock is None:
-        return tr("PART  ·  NOTHING IS CUT")
+        return tr("PART  ·  NOTHING CUT")
     tool = shown.instant.tool
-    return tr("PART  ·  T{tool}").format(tool=tool.number) if tool is not None else tr("PART  ·  THE STOCK")
+    return tr("PART  ·  T{tool}").format(tool=tool.number) if tool is not None else tr("PART  ·  UNCUT STOCK")
 
 
 def pane_words(pane: Pane, in_mm: bool) -> str:
@@ -248,7 +248,7 @@ def pane_words(pane: Pane, in_mm: bool) -> str:
     if pane.aspect in OF_PART:
         return part_words(pane)
     if pane.aspect is Aspect.FACE:
-        return tr("FACE  ·  SEEN FROM THE TAILSTOCK")
+        return tr("FACE  ·  VIEW FROM THE TAILSTOCK")
     diameter = formats.length(pane.polyline.round * 360.0 / math.pi, in_mm)
     return tr("SIDE  ·  UNROLLED AT Ø {diameter}").format(diameter=diameter)
 

@@ -278,7 +278,7 @@ class PathView(Panel):
             "Play": player.play_or_pause,
             "Play fast": player.faster,
             "Step back": partial(player.step, -1),
-            "Step on": partial(player.step, 1),
+            "Step forward": partial(player.step, 1),
         }
 
     def pane_at(self, at: QPointF | None) -> Pane | None:
@@ -391,7 +391,7 @@ class PathView(Panel):
 
         look, panes = self.look, self.panes
         if not panes:
-            why = tr("The path is shown when a program is loaded.")
+            why = tr("Load a program to see its path.")
             marks.draw_nothing(painter, look, self.inside(), why)
             return
         for pane in panes:

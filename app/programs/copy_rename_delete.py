@@ -23,17 +23,17 @@ from core.drawings.drawing_file import is_drawing
 from core.store.program_records import check_name
 from core.store.store_errors import StoreError
 
-SAMPLE = "A SAMPLE IS LEFT AS IT IS: COPY IT FIRST (F4)"
-NONE = "NO PROGRAM IS MARKED"
-BUSY = "STILL AT IT: WAIT UNTIL IT IS DONE"
-COPY, RENAME = "NAME OF THE COPY?", "NEW NAME?"
+SAMPLE = "SAMPLES ARE READ-ONLY. F4: COPY IT FIRST"
+NONE = "SELECT A PROGRAM FIRST"
+BUSY = "STILL WORKING: WAIT UNTIL IT IS DONE"
+COPY, RENAME = "NAME FOR THE COPY?", "NEW NAME?"
 
 
 def checked_name(name: str, like: Path) -> str:
     """``name`` with the ending of ``like`` where it has none. Raises FileError for what names no program."""
     name = name.strip()
     if not name:
-        raise FileError("NOTHING IS ENTERED; TYPE A NAME")
+        raise FileError("TYPE A NAME FIRST")
     if Path(name).suffix.lower() not in ENDINGS - {""} and not is_drawing(name):
         name += like.suffix
     try:
@@ -41,7 +41,7 @@ def checked_name(name: str, like: Path) -> str:
     except StoreError as error:
         raise FileError(str(error)) from error
     if name.startswith("."):
-        raise FileError(f"{name} WOULD BE HIDDEN; TAKE A NAME WITHOUT A POINT IN FRONT")
+        raise FileError(f"{name} WOULD BE HIDDEN. USE A NAME WITHOUT A LEADING PERIOD")
     return name
 
 
@@ -72,7 +72,7 @@ def rename_program(source: Path, name: str, persistence: Persistence) -> str:
     """Another name; versions, count and record go along. Raises FileError."""
     name = checked_name(name, source)
     if name == source.name:
-        raise FileError(f"{name} IS ITS NAME ALREADY")
+        raise FileError(f"THE PROGRAM IS ALREADY NAMED {name}")
     if name.lower() != source.name.lower():
         _free(source.parent, name)
     try:
@@ -81,7 +81,7 @@ def rename_program(source: Path, name: str, persistence: Persistence) -> str:
     except OSError as error:
         raise FileError(f"{source.name} CANNOT BE RENAMED: {error.strerror}") from error
     except StoreError as error:
-        raise FileError(f"RENAMED, BUT ITS VERSIONS STAY UNDER {source.name}: {error}") from error
+        raise FileError(f"RENAMED, BUT ITS VERSIONS ARE STILL STORED UNDER {source.name}: {error}") from error
     return name
 
 
@@ -91,7 +91,7 @@ def delete_program(path: Path, persistence: Persistence) -> str:
         persistence.save_version(path.name, _read(path), "deleted")
         path.unlink()
     except StoreError as error:
-        raise FileError(f"NOT DELETED, BECAUSE ITS TEXT CANNOT BE KEPT: {error}") from error
+        raise FileError(f"NOT DELETED, BECAUSE A VERSION OF IT CANNOT BE SAVED: {error}") from error
     except OSError as error:
         raise FileError(f"{path.name} CANNOT BE DELETED: {error.strerror}") from error
     return path.name
@@ -99,13 +99,13 @@ def delete_program(path: Path, persistence: Persistence) -> str:
 
 def _free(folder: Path, name: str) -> None:
     if other := same_name_in(folder, name):
-        raise FileError(f"{other} IS THERE ALREADY; TAKE ANOTHER NAME")
+        raise FileError(f"{other} ALREADY EXISTS. USE ANOTHER NAME")
 
 
 def _read(path: Path) -> bytes:
     data = present(path)
     if data is None:
-        raise FileError(f"{path.name} IS NOT THERE ANY MORE")
+        raise FileError(f"{path.name} NO LONGER EXISTS")
     return data
 
 
@@ -148,11 +148,11 @@ class CopyRenameDelete:
             return SAMPLE
         found = self.desk.snapshot().interrupted
         if found is not None and found.program == program.name:
-            words = tr("{name} IS INTERRUPTED: FINISH IT, OR GIVE IT UP, FIRST")
+            words = tr("{name} IS INTERRUPTED. FINISH OR CANCEL IT FIRST")
             return words.format(name=program.name)
         state = self.desk.snapshot().state
         if state in UNDER_WAY and self.desk.session.now.path == program.path:
-            return tr("{name} IS UNDER WAY: LET IT END FIRST").format(name=program.name)
+            return tr("{name} IS RUNNING. LET IT END FIRST").format(name=program.name)
         return ""
 
     def answer(self) -> None:
@@ -163,9 +163,9 @@ class CopyRenameDelete:
         elif self.desk.refused(Act.PROGRAMS):
             return  # what is typed stays until somebody has signed in
         elif question == COPY:
-            self._change(lambda: copy_program(here.path, self.own, name), "{name} IS THERE NOW")
+            self._change(lambda: copy_program(here.path, self.own, name), "COPIED AS {name}")
         else:
-            self._change(lambda: rename_program(here.path, name, self.persistence), "ITS NAME IS {name} NOW")
+            self._change(lambda: rename_program(here.path, name, self.persistence), ("RENAMED TO {name}"))
 
     def delete(self) -> None:
         """The marked program, after asking; its text stays among the versions."""
@@ -175,7 +175,7 @@ class CopyRenameDelete:
             return
         if self.desk.refused(Act.PROGRAMS):
             return
-        asked = tr("PRESS Y TO DELETE {name} (ITS VERSIONS ARE KEPT), N TO LEAVE IT")
+        asked = tr("PRESS Y TO DELETE {name} (ITS VERSIONS STAY STORED), N TO KEEP IT")
         self.desk.ask(asked.format(name=here.name), lambda: self._delete(here))
 
     def _delete(self, program: Program) -> None:
@@ -183,7 +183,8 @@ class CopyRenameDelete:
             self.desk.say(self._fixed(program))
             return
         self._change(
-            lambda: delete_program(program.path, self.persistence), "{name} IS DELETED; ITS VERSIONS ARE KEPT"
+            lambda: delete_program(program.path, self.persistence),
+            ("{name} DELETED. ITS VERSIONS STAY STORED"),
         )
 
     def _change(self, work: Callable[[], str], words: str) -> None:

@@ -165,7 +165,7 @@ class FilePrompt(Panel):
             self._not_found(painter)
         else:
             self._list(painter)
-        keys = "RETURN takes the marked program   ESC keeps the present one   F2 shows the list"
+        keys = "ENTER: load the selected program   ESC: keep the current one   F2: show the list"
         painter.write(foot, keys, 1.6, "soft", bold=False, fit=False)
         count = len(self._entries)
         put(painter, foot, RIGHT, tr("1 program") if count == 1 else f"{count} programs")

@@ -31,7 +31,7 @@ LARGEST = 50_000_000  # bytes: no program is larger
 
 Told = Callable[[int, int], None]  # so many of so many are done
 Check = Callable[[Path], str]  # the first error that proving finds in a program; empty: none
-PLACE_FIRST = "OPEN A PLACE FIRST: ARROWS MARK IT, RETURN OPENS IT"
+PLACE_FIRST = "OPEN A PLACE FIRST   ARROWS: SELECT   ENTER: OPEN"
 
 
 # --- the files, on a worker --------------------------------------------------------------------------------
@@ -123,7 +123,7 @@ def _program(path: Path) -> bytes:
     try:
         load_source(path)
     except SourceError as error:
-        raise FileError(f"{path.name} IS NO PROGRAM: {error}") from error
+        raise FileError(f"{path.name} IS NOT A PROGRAM: {error}") from error
     return data
 
 
@@ -131,7 +131,7 @@ def _bytes(path: Path) -> bytes:
     try:
         return input_bytes(path, LARGEST)
     except TooLargeError as error:
-        raise FileError(f"{path.name} IS LARGER THAN ANY PROGRAM ({LARGEST // 1_000_000} MB)") from error
+        raise FileError(f"{path.name} IS TOO LARGE FOR A PROGRAM (LIMIT {LARGEST // 1000000} MB)") from error
     except OSError as error:
         raise FileError(f"{path.name} CANNOT BE READ: {error.strerror}") from error
 
@@ -152,7 +152,9 @@ def _keep_old(target: Path, persistence: Persistence, text: bytes) -> None:
         if old is not None and old != text:
             persistence.save_version(target.name, old, "replaced by an import")
     except (StoreError, FileError) as error:
-        raise FileError(f"{target.name} IS NOT REPLACED, BECAUSE ITS TEXT CANNOT BE KEPT: {error}") from error
+        raise FileError(
+            f"{target.name} NOT REPLACED, BECAUSE ITS PREVIOUS VERSION CANNOT BE SAVED: {error}"
+        ) from error
 
 
 # --- the chooser of folders, and what came of it ----------------------------------------------------------
@@ -208,11 +210,11 @@ class ImportExport:
         """The function keys: copy one, copy all, look again."""
         if self.out:
             return {
-                "F2": Key("LOOK", self._look),
-                "F4": Key("ONE HERE", self._one_here),
-                "F5": Key("ALL HERE", lambda: self._send(self.all)),
+                "F2": Key("REFRESH", self._look),
+                "F4": Key("COPY ONE", self._one_here),
+                "F5": Key("COPY ALL", lambda: self._send(self.all)),
             }
-        return {"F2": Key("LOOK", self._look), "F5": Key("ALL", lambda: self._send(self.chooser.programs))}
+        return {"F2": Key("REFRESH", self._look), "F5": Key("ALL", lambda: self._send(self.chooser.programs))}
 
     def typed(self, key: str) -> bool:
         """Arrows mark, Return opens a folder or takes a program."""
@@ -247,7 +249,7 @@ class ImportExport:
             self.chooser.go(line)
             self._look()
         elif self.out:
-            self.desk.say("F4 EXPORTS TO THE FOLDER THAT IS OPEN; RETURN OPENS FOLDERS")
+            self.desk.say("F4: EXPORT TO THE OPEN FOLDER   ENTER: OPEN A FOLDER")
         else:
             self._send((line.path,))
 
@@ -270,7 +272,7 @@ class ImportExport:
         elif self.chooser.at is None:
             self.desk.say(PLACE_FIRST)
         elif not paths:
-            self.desk.say("NO PROGRAM IS IN THIS FOLDER")
+            self.desk.say("NO PROGRAMS IN THIS FOLDER")
         else:
             self._carry(paths, self.chooser.at, replace=False)
 
@@ -310,7 +312,7 @@ class ImportExport:
         self._done_of = (0, 0)
         if carried.differing:
             names = ", ".join(carried.differing[:3]) + (" …" if len(carried.differing) > 3 else "")
-            asked = tr("{names}: THERE ALREADY WITH ANOTHER TEXT. PRESS Y TO REPLACE, N TO KEEP")
+            asked = tr("{names}: EXISTS WITH DIFFERENT CONTENT. PRESS Y TO REPLACE, N TO KEEP")
             again = partial(self._carry, self._asked, self._at, replace=True)
             self.desk.ask(asked.format(names=names), again)
             return
@@ -319,15 +321,15 @@ class ImportExport:
         if not self.out:
             self.persistence.note_change(f"programs imported: {', '.join(carried.done)}")
         if self.out:
-            words = tr("{count} COPIED, READ BACK AND ON THE DISK: A STICK IS SAFE TO REMOVE").format(
+            words = tr("{count} COPIED TO DISK AND VERIFIED. YOU CAN REMOVE THE USB STICK").format(
                 count=count
             )
         elif carried.findings:
-            words = tr("{count} IMPORTED; NOT ALL PROVE: {found}").format(
+            words = tr("{count} IMPORTED, BUT NOT ALL ARE FREE OF ERRORS: {found}").format(
                 count=count, found=carried.findings[0]
             )
         else:
-            words = tr("{count} IMPORTED AND PROVED WITHOUT AN ERROR").format(count=count)
+            words = tr("{count} IMPORTED AND PROVED, NO ERRORS").format(count=count)
         (self.desk.say if carried.findings else self.desk.done)(words)
         self._look()
         self.finished()
@@ -341,8 +343,8 @@ class ImportExport:
         """What the keys do here, for the prompt line."""
         done, of = self._done_of
         if of:
-            words = tr("COPYING {number} OF {of}: LEAVE THE STICK WHERE IT IS")
+            words = tr("COPYING {number} OF {of}. DO NOT REMOVE THE USB STICK")
             return words.format(number=min(done + 1, of), of=of)
         if self.out:
-            return "RETURN OPENS A PLACE OR FOLDER; F4 COPIES THE MARKED PROGRAM THERE, F5 ALL; ESC GOES BACK"
-        return "RETURN OPENS A PLACE OR FOLDER, ON A PROGRAM IT IMPORTS IT; F5 IMPORTS ALL; ESC GOES BACK"
+            return "ENTER: OPEN PLACE OR FOLDER   F4: COPY SELECTED PROGRAM HERE   F5: COPY ALL   ESC: BACK"
+        return "ENTER: OPEN PLACE OR FOLDER, IMPORT PROGRAM   F5: IMPORT ALL   ESC: BACK"

@@ -21,7 +21,7 @@ from app.programs.import_export import ImportExport
 from app.programs.preview import Preview
 from app.programs.program_rows import ORDERS, Program, list_programs, minute_of, minute_of_file, sorted_by
 
-DRAWING = "{name} IS A DRAWING: F3 MAKES A PROGRAM OF IT"
+DRAWING = "{name} IS A DRAWING. F3: MAKE A PROGRAM FROM IT"
 
 
 @dataclass(slots=True)
@@ -194,14 +194,14 @@ class ProgramList:
         if self.transfer.open:
             return self.transfer.prompt()
         if self.question:
-            return "TYPE A NAME, OR PRESS BACKSPACE TO EDIT THIS ONE. RETURN: ACCEPT    ESC: CANCEL"
+            return "TYPE A NAME, OR PRESS BACKSPACE TO EDIT THE ONE SHOWN   ENTER: ACCEPT   ESC: CANCEL"
         if self.find.text and not self.listed:
-            return tr("NO PROGRAM HAS THAT IN ITS NAME: F3 BEGINS A NEW ONE")
+            return tr("NO PROGRAM NAME CONTAINS THIS TEXT. F3: NEW PROGRAM")
         if self.desk.snapshot().state in BY_HAND:
-            return "TYPE A PART OF A NAME; PAUSE HOLDS THE FEED; ESC FOR AUTOMATIC"
+            return "TYPE PART OF A NAME   PAUSE: FEED HOLD   ESC: AUTOMATIC"
         if self.desk.snapshot().state in UNDER_WAY:
-            return "TYPE A PART OF A NAME; F3 OPENS IT IN THE EDITOR; PAUSE HOLDS THE FEED; ESC FOR AUTOMATIC"
-        return "TYPE A PART OF A NAME, OR MARK IT WITH ARROWS; RETURN LOADS IT; ESC FOR AUTOMATIC"
+            return "TYPE PART OF A NAME   F3: EDIT   PAUSE: FEED HOLD   ESC: AUTOMATIC"
+        return "TYPE PART OF A NAME OR USE THE ARROWS   ENTER: LOAD   ESC: AUTOMATIC"
 
     def close(self) -> None:
         """End the workers of the list and of the preview."""
@@ -222,9 +222,9 @@ def sheet_of(model: ProgramList) -> Sheet:
     )
     question, text = model.question, model.entry.text
     if not question:
-        question, text = "FIND OR NEW NAME", model.find.text
+        question, text = "NAME TO FIND OR CREATE", model.find.text
     return Sheet(
-        f"PROGRAMS  ·  {count}  ·  BY {model.order}",
+        f"PROGRAMS  ·  {count}  ·  SORTED BY {model.order}",
         ("NAME", "CHANGED", "LAST RUN", "PARTS", "BEST"),
         (0.32, 0.25, 0.25, 0.09, 0.09),
         rows,
@@ -250,11 +250,11 @@ def details_of(program: Program) -> tuple[Detail, ...]:
     run = program.run
     return (
         ("SIZE", formats.file_size(program.size)),
-        ("WHERE", "DRAWING" if program.drawing else "SAMPLE" if program.sample else "OWN PROGRAM"),
+        ("PLACE", "DRAWING" if program.drawing else "SAMPLE" if program.sample else "OWN PROGRAM"),
         ("PARTS", str(run.parts)),
         ("BEST CYCLE", _time(run.best)),
         ("LAST CYCLE", _time(run.latest)),
-        ("PLANNED", _time(run.planned)),
+        ("PLANNED TIME", _time(run.planned)),
         (
             "LAST RUN",
             f"{minute_of(run.started)}  ·  {run.outcome}" if run.outcome else minute_of(run.started),

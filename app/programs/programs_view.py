@@ -45,7 +45,7 @@ LONG = 2  # rows at the end that have the whole width
 class RecordPanel(Panel):
     """Two columns: what, and its figure."""
 
-    title = "RECORD"
+    title = "DETAILS"
     program: Shown[Program | None] = Shown(None)
     trouble = Shown("")  # what is wrong with its picture
     part: Shown[Thumbnail | None] = Shown(None)
@@ -199,7 +199,7 @@ class ProgramsPage(ListPage):
             self._lay_out()
         self.record.program = here
         self.record.part = model.preview.part_of(here)
-        self.record.trouble = "DRAWING …" if model.preview.busy else model.preview.trouble
+        self.record.trouble = "DRAWING THE PREVIEW …" if model.preview.busy else model.preview.trouble
 
     def _show_picture(self, picture: Picture | None) -> None:
         scene = picture.scene if picture is not None else None

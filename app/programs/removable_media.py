@@ -143,7 +143,7 @@ class Medium:
         free = _free(self.folder)
         if size > free:
             raise FileError(
-                tr("NOT ENOUGH ROOM ON {place}: {size} ARE NEEDED, {free} FREE; TAKE ANOTHER STICK").format(
+                tr("NOT ENOUGH ROOM ON {place}: {size} NEEDED, {free} FREE. USE ANOTHER USB STICK").format(
                     place=self.folder.name, size=formats.file_size(size), free=formats.file_size(free)
                 )
             )
@@ -151,17 +151,17 @@ class Medium:
 
 def pulled_out(folder: Path) -> str:
     """A stick that is not there any more."""
-    return tr("{place} IS NOT THERE ANY MORE: WAS IT PULLED OUT? PLUG IT IN AND PRESS F2").format(
-        place=folder.name
-    )
+    return tr("{place} IS NOT CONNECTED ANY MORE. PLUG IT IN AGAIN AND PRESS F2").format(place=folder.name)
 
 
 def why_not(error: OSError, folder: Path) -> str:
     """Why nothing can be read from or written to a medium, in the words of who holds it."""
     if error.errno in _FULL:
-        return tr("{place} IS FULL: NOTHING HALF IS LEFT ON IT; TAKE ANOTHER STICK").format(place=folder.name)
+        return tr("{place} IS FULL. NO PARTIAL FILE REMAINS ON IT. USE ANOTHER USB STICK").format(
+            place=folder.name
+        )
     if error.errno == errno.EROFS:
-        words = tr("{place} IS READ-ONLY: SET ITS SWITCH TO WRITE, OR TAKE ANOTHER STICK")
+        words = tr("{place} IS READ-ONLY. UNLOCK ITS WRITE-PROTECT SWITCH OR USE ANOTHER USB STICK")
         return words.format(place=folder.name)
     if error.errno in _GONE:
         return pulled_out(folder)

@@ -89,6 +89,6 @@ def _outcome(snapshot: Snapshot) -> str:
 
 def note_cut_off_runs(store: Store) -> None:
     """At the start, when nothing runs yet: a run without an end is one that the control did not outlive."""
-    told = store.runs_cut_off(CUT_OFF, ": the control ended in the middle of its last run")
+    told = store.runs_cut_off(CUT_OFF, ": the control stopped during its last run")
     with suppress(StoreError):  # a disk that is full gets it later
         told.result()

@@ -35,7 +35,7 @@ def write_whole(path: Path, data: bytes) -> None:
             _fill(draft, data)
             if load_source(draft).text.encode("utf-8", "replace") != data:
                 raise FileError(
-                    "NOT SAVED: THE TEXT HOLDS SIGNS THAT NO PROGRAM FILE CAN KEEP", "unstorable-text"
+                    "NOT SAVED: THE TEXT HAS CHARACTERS THAT A PROGRAM FILE CANNOT STORE", "unstorable-text"
                 )
             if target.exists():
                 shutil.copymode(target, draft)
@@ -53,7 +53,7 @@ def write_out(target: Path, data: bytes) -> None:
             _fill(draft, data)
             if draft.read_bytes() != data:
                 raise FileError(
-                    f"{target.name} DOES NOT READ BACK AS IT WAS WRITTEN: TAKE ANOTHER STICK",
+                    (f"{target.name} READS BACK DIFFERENT FROM WHAT WAS WRITTEN. USE ANOTHER USB STICK"),
                     "read-back-differs",
                 )
             put_in_place(draft, target)
@@ -73,7 +73,7 @@ def write_new(target: Path, data: bytes) -> None:
             target.hardlink_to(draft)  # fails where the name is taken
             folder_to_disk(target.parent)
     except FileExistsError as error:
-        raise FileError(f"{target.name} IS THERE ALREADY; TAKE ANOTHER NAME", "name-in-use") from error
+        raise FileError(f"{target.name} ALREADY EXISTS. USE ANOTHER NAME", "name-in-use") from error
     except OSError as error:
         raise FileError(f"{target} CANNOT BE WRITTEN: {error.strerror}", "cannot-write") from error
 
@@ -83,9 +83,7 @@ def settle(folder: Path) -> None:
     try:
         folder_to_disk(folder)
     except OSError as error:
-        raise FileError(
-            f"{folder} CANNOT BE BROUGHT TO THE DISK: {error.strerror}", "cannot-write"
-        ) from error
+        raise FileError(f"{folder} CANNOT BE SAVED TO THE DISK: {error.strerror}", "cannot-write") from error
     all_to_disk()
 
 

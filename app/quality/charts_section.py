@@ -59,7 +59,7 @@ class ChartsSection(QualitySection):
         of = (self.watch.book.loads, self.program, mode)
         if self._rows[0] != of:
             self._rows = of, tuple(self._row(each) for each in self.data.features)
-        heads = ("FEATURE", "READ", f"MEAN {mode.name}", "Cp", "Cpk", "DRIFT")
+        heads = ("FEATURE", "READINGS", f"MEAN {mode.name}", "Cp", "Cpk", "DRIFT")
         title = f"CONTROL CHARTS  ·  {self.program}" if self.program else "CONTROL CHARTS"
         return Sheet(title, heads, (0.2, 0.08, 0.15, 0.09, 0.09, 0.39), self._rows[1], self.marked,
                      raw=frozenset({0}), figures=frozenset({1}))  # fmt: skip
@@ -68,7 +68,7 @@ class ChartsSection(QualitySection):
         feature, taken = feature_of(row), self._newest(row)
         values = [each.value for each in taken]
         if not values:
-            return Row((row.name, "0", "", "", "", tr("NOTHING IS MEASURED OF THIS FEATURE YET")), None)
+            return Row((row.name, "0", "", "", "", tr("FEATURE NOT MEASURED YET")), None)
         mean = mark_of(row) + size(sum(values) / len(values), self.mode)
         drift = self._drift(row, values)
         try:
@@ -81,7 +81,7 @@ class ChartsSection(QualitySection):
             )
         cp, cpk = (NOTHING if each is None else fixed(each, 2) for each in (found.cp, found.cpk))
         if not drift and found.at_least is not None:
-            drift = tr("none; Cpk is {least} at least (95 %)").format(least=fixed(found.at_least, 2))
+            drift = tr("none; Cpk is at least {least} (95 %)").format(least=fixed(found.at_least, 2))
             return Row((row.name, str(len(values)), mean, cp, cpk, drift), True, Tone.RUN)
         return Row((row.name, str(len(values)), mean, cp, cpk, drift), not drift, _tone(drift))
 
@@ -116,15 +116,14 @@ class ChartsSection(QualitySection):
             pair = charts_of([each.value for each in taken], row.sample)
         except QualityError:
             return ChartDrawing((), of)
-        names = (tr("SINGLE PARTS"), tr("MOVING RANGE")) if row.sample == 1 else (tr("AVERAGE"), tr("RANGE"))
+        names = (tr("INDIVIDUALS"), tr("MOVING RANGE")) if row.sample == 1 else (tr("AVERAGE"), tr("RANGE"))
         titled = (f"{row.name}  {names[0]}", names[1])
         return ChartDrawing(control_plots(pair, parts, feature_of(row).limits, titled, self.mode.unit), of)
 
     def prompt(self) -> str:
         """What the lines are."""
-        return (
-            self.missing()
-            or "THE ARROWS CHOOSE A FEATURE; BROKEN LINES: CONTROL LIMITS, DOTTED: TOLERANCE, RINGS: RULES"
+        return self.missing() or (
+            "ARROWS: FEATURE. DASHED: CONTROL LIMITS, DOTTED: TOLERANCE, CIRCLED: RULE VIOLATIONS"
         )
 
 

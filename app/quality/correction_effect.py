@@ -76,7 +76,7 @@ class CorrectionEffect:
         if effect is None or effect.compare is None or self.desk.session.now.job is None:
             return ""
         if effect.busy:
-            return tr("MAKING THE PART WITH THE OFFSETS BEFORE AND AFTER")
+            return tr("SIMULATING THE PART WITH OLD AND NEW OFFSETS")
         return tr("THE PART CANNOT BE COMPARED: {why}").format(why=effect.trouble) if effect.trouble else ""
 
     def drawing(self, mode: Mode) -> ChartDrawing:
@@ -87,10 +87,8 @@ class CorrectionEffect:
         of = (self.question, self._readings, mode)
         if self._drawn[0] != of:
             change = signed_size(found.expected - found.mean, mode)
-            title = tr("{name}: {change} FROM THE NEXT PART ON").format(
-                name=found.feature.name, change=change
-            )
+            title = tr("{name}: {change} FROM NEXT PART").format(name=found.feature.name, change=change)
             newest = self._readings[-SHOWN:]
-            plot = correction_plot(newest, found, title, (tr("NOW"), tr("THEN")), mode.unit)
+            plot = correction_plot(newest, found, title, (tr("NOW"), tr("AFTER")), mode.unit)
             self._drawn = of, ChartDrawing((plot,), of)
         return self._drawn[1]

@@ -34,15 +34,22 @@ FIELDS = (
     "UPPER DEVIATION",
     "LOWER DEVIATION",
     "CORRECTED BY",
-    "ITS NUMBER",
-    "A LARGER OFFSET MAKES IT",
-    "MEASURE EVERY (0: NO PLAN)",
-    "PARTS IN A SAMPLE",
+    "TOOL OR OFFSET NUMBER",
+    "SIZE WITH A LARGER OFFSET",
+    "MEASURE EVERY N PARTS (0: NO PLAN)",
+    "PARTS PER SAMPLE",
 )
 _OF_OMNITURN = {"CORRECTED BY"}  # its D offsets
-_OF_LATHES = {"ITS NUMBER", "A LARGER OFFSET MAKES IT"}  # a mill's DL and DR are typed into its tool table
-_TURNED = {"MEASURED", "CORRECTED BY", "A LARGER OFFSET MAKES IT"}
-_WHOLE = {"ITS NUMBER": "number", "MEASURE EVERY (0: NO PLAN)": "every", "PARTS IN A SAMPLE": "sample"}
+_OF_LATHES = {
+    "TOOL OR OFFSET NUMBER",
+    "SIZE WITH A LARGER OFFSET",
+}  # a mill's DL and DR are typed into its tool table
+_TURNED = {"MEASURED", "CORRECTED BY", "SIZE WITH A LARGER OFFSET"}
+_WHOLE = {
+    "TOOL OR OFFSET NUMBER": "number",
+    "MEASURE EVERY N PARTS (0: NO PLAN)": "every",
+    "PARTS PER SAMPLE": "sample",
+}
 _LENGTHS = {"NOMINAL": "nominal", "UPPER DEVIATION": "high", "LOWER DEVIATION": "low"}
 
 
@@ -68,8 +75,8 @@ class Draft:
         if field == "MEASURED":
             return tr("DIAMETER") if feature.kind is FeatureKind.DIAMETER else tr("LENGTH")
         if field == "CORRECTED BY":
-            return tr("WEAR OF A TOOL") if feature.by is CorrectedBy.TOOL else tr("SECONDARY OFFSET")
-        if field == "A LARGER OFFSET MAKES IT":
+            return tr("TOOL WEAR") if feature.by is CorrectedBy.TOOL else tr("SECONDARY OFFSET")
+        if field == "SIZE WITH A LARGER OFFSET":
             return tr("LARGER") if feature.grows > 0 else tr("SMALLER")
         if field in _WHOLE:
             return str(getattr(feature, _WHOLE[field]))
@@ -99,7 +106,7 @@ class Draft:
         else:
             value = value_of(text)
             if value != int(value):
-                raise EntryError(f"{value:g} is no whole number")
+                raise EntryError(f"{value:g} is not a whole number")
             self.feature = replace(self.feature, **{_WHOLE[field]: int(value)})  # type: ignore[arg-type]
 
 
@@ -132,16 +139,23 @@ class FeaturesSection(QualitySection):
         mode, rows, lathe = self.mode, [], not self.of_mill
         for each in self.data.features:
             tolerance = f"{signed_size(each.high, mode)}  {signed_size(each.low, mode)}"
-            every = tr("every {count}").format(count=each.every) if each.every else ""
+            every = tr("every {count} parts").format(count=each.every) if each.every else ""
             sample = str(each.sample)
             rows.append(
                 Row((each.name, mark_of(each) + size(each.nominal, mode), tolerance,
                      feature_of(each).corrected_by if lathe else "", every, sample))
             )  # fmt: skip
         heads = ("NAME", f"NOMINAL {mode.name}", "TOLERANCE", tr("BY") if lathe else "", "MEASURED", "SAMPLE")
-        waits = tr("PARTS WAIT UNTIL THE PLAN IS DONE") if self.watch.waits else tr("PARTS GO ON")
+        waits = (
+            tr("PARTS WAIT UNTIL THE SAMPLE PLAN IS DONE")
+            if self.watch.waits
+            else tr("PARTS DO NOT WAIT FOR THE PLAN")
+        )
         notes = (
-            "F2 enters a feature, Return changes the marked one. F5: whether parts wait for the plan.",
+            (
+                "F2 adds a feature, Enter changes the marked one, F5 sets whether parts wait for "
+                "the sample plan."
+            ),
             waits,
         )
         title = f"FEATURES  ·  {self.program}" if self.program else "FEATURES"
@@ -153,10 +167,13 @@ class FeaturesSection(QualitySection):
         rows = tuple(Row((field, draft.cell(field, mode))) for field in draft.fields)
         turned = draft.field in _TURNED
         question = "" if turned else f"{tr(draft.field)}?"
-        way = "Return takes what is typed and goes on; F6 keeps the feature, Esc leaves it as it was."
+        way = (
+            "Enter accepts the entry and goes to the next field. F6 saves the feature, Esc "
+            "discards the changes."
+        )
         return Sheet(
             "FEATURE", ("", mode.name), (0.55, 0.45), rows, draft.at, question, self.entry.text,
-            (tr("RETURN TURNS IT OVER"), way) if turned else (way,),
+            (tr("PRESS ENTER TO SWITCH"), way) if turned else (way,),
             raw=frozenset({1}),
         )  # fmt: skip
 
@@ -168,7 +185,7 @@ class FeaturesSection(QualitySection):
             "F2": Key(tr("NEW"), self.new),
             "F3": Key("CHANGE", self.change),
             "F4": Key("REMOVE", self.remove),
-            "F5": Key("GO ON" if self.watch.waits else "WAIT", self._turn_waits),
+            "F5": Key("NO WAIT" if self.watch.waits else "WAIT", self._turn_waits),
         }
 
     def takes(self, key: str) -> bool:
@@ -263,7 +280,7 @@ class FeaturesSection(QualitySection):
 
     def _kept(self, name: str) -> None:
         self.draft = None
-        self.desk.done(tr("{name} KEPT").format(name=name))
+        self.desk.done(tr("{name} SAVED").format(name=name))
 
     def remove(self) -> None:
         """F4: the marked feature is measured no more, after asking."""
@@ -271,7 +288,7 @@ class FeaturesSection(QualitySection):
         if row is None:
             self.desk.say(self.missing())
             return
-        asked = tr("PRESS Y TO MEASURE {name} NO MORE (ITS READINGS STAY IN THE STORE), N TO KEEP IT")
+        asked = tr("STOP MEASURING {name}? ITS READINGS STAY STORED. Y: STOP   N: KEEP")
         done = partial(self.desk.say, tr("{name} REMOVED").format(name=row.name))
         self.desk.ask(
             asked.format(name=row.name),
@@ -281,7 +298,7 @@ class FeaturesSection(QualitySection):
         )
 
     def _write(self, operation: Callable[..., object], done: Callable[[], None], change: str) -> None:
-        told = f"measured on {self.program}: {change}"
+        told = f"features of {self.program}: {change}"
         self.watch.book.write(Act.FEATURES, operation, done, self.watch.refuse, told)
 
     def _turn_waits(self) -> None:
@@ -295,11 +312,8 @@ class FeaturesSection(QualitySection):
     def prompt(self) -> str:
         """What can be done here."""
         if self.draft is not None:
-            return "ENTER THE FEATURE FIELD BY FIELD; F6 KEEPS IT, ESC LEAVES IT"
-        return (
-            self.missing()
-            or "RETURN CHANGES THE MARKED FEATURE, F2 ENTERS ANOTHER; ESC GOES BACK TO THE LIST"
-        )
+            return "FILL IN THE FIELDS. F6: SAVE   ESC: CANCEL"
+        return self.missing() or ("ENTER: CHANGE FEATURE   F2: NEW FEATURE   ESC: BACK TO LIST")
 
     def escape(self) -> bool:
         """What is typed, then the draft."""

@@ -23,7 +23,7 @@ from core.store.store_rows import Kind, utc
 from core.store.store_writer import Operation
 from core.store.tool_lives import LifeRow
 
-NONE_KEPT = "NO MEASURED PARTS ARE KEPT HERE"
+NONE_KEPT = "MEASURED PARTS ARE NOT STORED HERE"
 _DAYS = timedelta(days=2)
 NEWEST = 1000  # readings, cycles and stops that are looked at
 
@@ -148,7 +148,7 @@ class PartsBook:
         """Why no measured part is kept, in a sentence; empty where they are."""
         if self.store is not None:
             return ""
-        return f"MEASURED PARTS CANNOT BE KEPT: {self.away}" if self.away else NONE_KEPT
+        return f"MEASURED PARTS CANNOT BE SAVED: {self.away}" if self.away else NONE_KEPT
 
     def look(self, program: str) -> None:
         """Take up what the worker has read and what is on the disk; read anew what has changed."""

@@ -17,13 +17,13 @@ class MeasuredPartsFunction(PageFunction):
     name = "MEASURED PARTS"
     use = "features, readings, charts, trends"
     page = PAGE
-    way = "Return opens the page; W of the main menu does so too."
+    way = "Enter opens the page, as does W in the main menu."
 
     def facts(self) -> tuple[Row, ...]:
         """How many there are, and what is due."""
         watch = self.desk.attached(PartsWatch)
         if watch is None or watch.book.locked:
-            return (Row((tr("KEPT"), watch.book.locked if watch is not None else NOTHING)),)
+            return (Row((tr("STORED"), watch.book.locked if watch is not None else NOTHING)),)
         data = watch.book.now
         return (
             Row((tr("FEATURES"), str(len(data.features)))),
@@ -33,4 +33,4 @@ class MeasuredPartsFunction(PageFunction):
 
     def prompt(self) -> str:
         """How the page is opened."""
-        return "PRESS RETURN FOR THE MEASURED PARTS; ESC GOES BACK TO THE LIST"
+        return "ENTER: OPEN MEASURED PARTS   ESC: BACK TO LIST"

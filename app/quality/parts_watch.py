@@ -87,7 +87,7 @@ class PartsWatch:
         self._waits = self.program, on
         persistence = self.desk.counter.persistence
         persistence.save_setting(_key(self.program), on or None)
-        told = "wait to be measured" if on else "do not wait any more"
+        told = "wait to be measured" if on else "no longer wait to be measured"
         persistence.note_change(f"parts of {self.program} {told}")
 
     def due(self) -> str:
@@ -97,7 +97,7 @@ class PartsWatch:
 
     def refuse(self, why: str) -> None:
         """What was not kept, and why."""
-        self.desk.say(tr("NOT KEPT: {why}").format(why=why))
+        self.desk.say(tr("NOT SAVED: {why}").format(why=why))
 
     def close(self) -> None:
         """End the worker; what inserts have cut since it was kept last is handed to the store."""

@@ -50,7 +50,7 @@ class ReadingsSection(QualitySection):
     """A row a feature; what is typed is the size of the marked one at the part that is asked for."""
 
     name = "READINGS"
-    use = "measure a part, see what it asks for"
+    use = "measure a part and see the correction needed"
 
     def __init__(self, desk: Desk, watch: PartsWatch, folder: Path, gauge: Gauge | None = None) -> None:
         super().__init__(desk, watch)
@@ -87,7 +87,7 @@ class ReadingsSection(QualitySection):
         heads = ("FEATURE", f"NOMINAL {mode.name}", "PART", "MEASURED", "DEVIATION", "")
         words = self.effect.words() if self.effect.stands else ""
         way = (
-            "What a feature is off is typed into DL and DR of the tool table, F8 of the main menu."
+            ("Enter the deviation in DL and DR of the tool table (F8 of the main menu).")
             if self.of_mill
             else "F8 proposes a correction, F4 undoes the last one."
         )
@@ -100,7 +100,7 @@ class ReadingsSection(QualitySection):
         mode, feature, taken = self.mode, feature_of(row), self.data.readings_of(row.id)
         nominal = mark_of(row) + size(row.nominal, mode)
         if not taken:
-            return Row((row.name, nominal, "", "", "", tr("NONE YET")), False, Tone.OFF)
+            return Row((row.name, nominal, "", "", "", tr("NOT MEASURED YET")), False, Tone.OFF)
         last = taken[-1]
         good = feature.good(last.value)
         off = signed_size(last.value - feature.middle, mode)
@@ -117,8 +117,8 @@ class ReadingsSection(QualitySection):
         return {
             "F2": Key(tr("PART −"), partial(self._step, -1)),
             "F3": Key(tr("PART +"), partial(self._step, 1)),
-            "F9": Key("TAKE OUT", self.take_out),
-            "F5": Key("NO GAUGE" if self.gauge.open else "GAUGE", self.turn_gauge),
+            "F9": Key("REMOVE", self.take_out),
+            "F5": Key("GAUGE OFF" if self.gauge.open else "GAUGE ON", self.turn_gauge),
             "F6": Key("CSV", self.write_file),
             **({} if self.of_mill else correct),
         }
@@ -131,7 +131,7 @@ class ReadingsSection(QualitySection):
 
     def prompt(self) -> str:
         """How to enter a reading."""
-        return self.missing() or "TYPE THE MEASURED SIZE AND PRESS RETURN; ESC GOES BACK TO THE LIST"
+        return self.missing() or ("TYPE THE MEASURED SIZE AND PRESS ENTER. ESC: BACK TO LIST")
 
     def drawing(self) -> ChartDrawing:
         """What a proposed correction does to the feature."""
@@ -153,9 +153,9 @@ class ReadingsSection(QualitySection):
         """Keep it; what no part of this feature can measure is asked about first."""
         row, feature = taken.feature, feature_of(taken.feature)
         if taken.value <= 0.0:
-            raise EntryError(f"{row.name} is more than 0; type the measured size, not the deviation")
+            raise EntryError(f"{row.name} must be more than 0; type the measured size, not the deviation")
         if abs(taken.value - feature.middle) > FAR * feature.width:
-            asked = tr("{name} {size} IS FAR OFF: PRESS Y TO KEEP IT ALL THE SAME, N TO MEASURE AGAIN")
+            asked = tr("{name} {size} IS FAR OUT OF TOLERANCE. Y: SAVE ANYWAY   N: MEASURE AGAIN")
             shown = size(taken.value, self.mode)
             self.desk.ask(asked.format(name=row.name, size=shown), partial(self._keep, taken))
             return True
@@ -177,7 +177,7 @@ class ReadingsSection(QualitySection):
 
     def _kept(self, taken: NewReading) -> None:
         """It is on the disk: say so, and go on to the next feature."""
-        text = tr("{name} OF PART {part}: {size} KEPT")
+        text = tr("{name} OF PART {part}: {size} SAVED")
         self.desk.say(
             text.format(name=taken.feature.name, part=taken.part, size=size(taken.value, self.mode))
         )
@@ -189,11 +189,11 @@ class ReadingsSection(QualitySection):
         feature = self.feature
         taken = self.data.readings_of(feature.id) if feature is not None else ()
         if feature is None or not taken:
-            self.desk.say(self.missing() or tr("NOTHING IS MEASURED OF THIS FEATURE YET"))
+            self.desk.say(self.missing() or tr("FEATURE NOT MEASURED YET"))
             return
         last = taken[-1]
-        asked = tr("PRESS Y TO TAKE {size} OF PART {part} OUT, N TO KEEP IT")
-        done = partial(self.desk.say, tr("THE READING IS TAKEN OUT"))
+        asked = tr("PRESS Y TO REMOVE {size} OF PART {part}, N TO KEEP IT")
+        done = partial(self.desk.say, tr("READING REMOVED"))
         self.desk.ask(
             asked.format(size=size(last.value, self.mode), part=last.part),
             lambda: self.watch.book.write(
@@ -201,7 +201,7 @@ class ReadingsSection(QualitySection):
                 lambda c: measured_parts.void_reading(c, last.id),
                 done,
                 self.watch.refuse,
-                f"{feature.name} of part {last.part} of {self.data.program} taken out: {last.value:g} mm",
+                (f"{feature.name} of part {last.part} of {self.data.program} removed: {last.value:g} mm"),
             ),
         )
 
@@ -218,7 +218,7 @@ class ReadingsSection(QualitySection):
         """Once a frame: what the gauge has sent goes to the marked feature, where that is seen."""
         for found in self.gauge.received():
             if isinstance(found, Reading) and not seen:
-                self.desk.say(tr("A READING CAME WHILE THE READINGS WERE NOT SHOWN: MEASURE AGAIN"))
+                self.desk.say(tr("GAUGE READING IGNORED: READINGS NOT ON SCREEN. MEASURE AGAIN"))
             elif isinstance(found, Reading):
                 self._measured(found)
             else:
@@ -261,7 +261,7 @@ class ReadingsSection(QualitySection):
         except (QualityError, EntryError) as error:
             self.desk.refuse(str(error))
             return
-        asked = tr("{words}: PRESS Y TO TAKE IT OVER, N TO LEAVE IT").format(words=change.words)
+        asked = tr("{words}. Y: APPLY   N: DO NOT APPLY").format(words=change.words)
         self.desk.ask(asked, partial(self._correct, feature))
         taken = tuple((each.part, each.value) for each in self.data.readings_of(feature.id))
         self.effect.show(self.desk.notice, found, change, taken)
@@ -270,7 +270,7 @@ class ReadingsSection(QualitySection):
         """Whether what is known is what is kept: a change that is on its way would be proposed once more."""
         settled = self.watch.book.settled and not self.desk.book.busy
         if not settled:
-            self.desk.say(tr("STILL READING WHAT WAS KEPT: PRESS F8 AGAIN"))
+            self.desk.say(tr("STILL READING STORED DATA. PRESS F8 AGAIN"))
         return settled
 
     def _correct(self, feature: FeatureRow) -> None:
@@ -287,7 +287,7 @@ class ReadingsSection(QualitySection):
             self.desk.say(why)
             return
         self._last = change.kind, change.number, change.why
-        self.desk.done(tr("{words}; IT COUNTS FROM THE NEXT PART").format(words=change.words))
+        self.desk.done(tr("{words}; APPLIES FROM NEXT PART").format(words=change.words))
 
     def undo(self) -> None:
         """F4: ask whether the last accepted correction is taken back, while no other change came after it."""
@@ -295,18 +295,18 @@ class ReadingsSection(QualitySection):
         if not why and self._last is not None:
             kind, number, _reason = self._last
             questions = OffsetQuestions(OffsetHistory(self.desk, kind, self.mode))
-            why = questions.undo(kind, number, tr("THE CORRECTION IS TAKEN BACK"))
+            why = questions.undo(kind, number, tr("CORRECTION UNDONE"))
         if why:
             self.desk.say(why)
 
     def _undo_barred(self) -> str:
         """Why nothing is taken back here; empty when it is."""
         if self._last is None:
-            return tr("NO CORRECTION WAS TAKEN OVER HERE; F8 AND F9 OF THE MAIN MENU HAVE THE HISTORY")
+            return tr("NO CORRECTION APPLIED HERE. HISTORY: MAIN MENU, F8 OR F9")
         kind, _number, reason = self._last
         last = self.desk.book.history(kind, 1)
         if not last or last[0].why != reason:
-            return tr("ANOTHER CHANGE CAME AFTER IT; F8 AND F9 OF THE MAIN MENU HAVE THE HISTORY")
+            return tr("CANNOT UNDO: A LATER CHANGE EXISTS. HISTORY: MAIN MENU, F8 OR F9")
         return refusal(self.desk.snapshot(), correction=True)
 
     # --- file ----------------------------------------------------------------------------------------
@@ -320,4 +320,4 @@ class ReadingsSection(QualitySection):
         self.watch.book.worker.queue(lambda: write_readings(data, folder), self._written, self.watch.refuse)
 
     def _written(self, path: Path) -> None:
-        self.desk.done(tr("WRITTEN: {path}").format(path=path))
+        self.desk.done(tr("SAVED: {path}").format(path=path))

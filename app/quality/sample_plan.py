@@ -25,7 +25,7 @@ def notice(found: dict[str, int]) -> str:
 def bar(found: dict[str, int]) -> str:
     """Why no other part begins where parts wait for the plan; empty where nothing is due."""
     part, names = _newest(found)
-    return f"part {part} is to be measured first: {names}" if found else ""
+    return f"part {part} must be measured first: {names}" if found else ""
 
 
 def _newest(found: dict[str, int]) -> tuple[int, str]:

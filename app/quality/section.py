@@ -11,8 +11,8 @@ from app.quality.plots import ChartDrawing
 from app.special.special_functions import FigureFunction
 from core.store.measured_parts import FeatureRow
 
-NO_PROGRAM = "CHOOSE A PROGRAM FIRST: EVERY PROGRAM HAS ITS OWN FEATURES"
-NO_FEATURE = "NO FEATURE IS ENTERED YET: SECTION 1, F2"
+NO_PROGRAM = "SELECT A PROGRAM FIRST. EACH PROGRAM HAS ITS OWN FEATURES"
+NO_FEATURE = "NO FEATURES YET. ADD ONE IN SECTION 1 WITH F2"
 
 
 class QualitySection(FigureFunction):

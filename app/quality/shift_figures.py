@@ -161,20 +161,26 @@ def _within(stops: Iterable[Stop], start: float, end: float) -> list[Stop]:
 def _notes(shift: Shift, until: float, now: float, cycles: Sequence[CycleRow]) -> Iterable[str]:
     """What a reader must know of the times."""
     if now < shift.start:
-        yield tr("The shift has not begun.")
+        yield tr("The shift has not started.")
     elif until < shift.end:
-        yield tr("The shift is still on: figures up to {time}.").format(
+        yield tr("The shift is still running: values up to {time}.").format(
             time=datetime.fromtimestamp(until).astimezone().strftime("%H:%M")
         )
     moved = shift.clock_moved
     if moved:
-        words = tr("The clock was put forward by {time} within the shift: it was so much shorter.")
+        words = tr(
+            "The clock was set forward by {time} during the shift, which made the shift shorter by that time."
+        )
         if moved < 0:
-            words = tr("The clock was put back by {time} within the shift: it was so much longer.")
+            words = tr(
+                "The clock was set back by {time} during the shift, which made the shift longer by that time."
+            )
         yield words.format(time=duration(abs(moved)))
     for before, after in pairwise(cycles):
         if stamp(after.started) < stamp(before.started) - _SET_BACK:
-            words = tr("The clock was set back after {time}: times of day overlap there, lengths are right.")
+            words = tr(
+                "The clock was set back after {time}: times of day overlap there, but durations are correct."
+            )
             yield words.format(time=local_time(before.started))
     if not cycles and now >= shift.start:
-        yield tr("No part was begun in this time.")
+        yield tr("No part was started in this period.")

@@ -30,7 +30,7 @@ class ShiftReport(SpecialFunction):
     """Made on the worker when it is opened, and every minute while it is shown."""
 
     name = "SHIFT REPORT"
-    use = "parts, times, stops, alarms; on paper"
+    use = "parts, times, stops and alarms, for printing"
 
     def __init__(self, desk: Desk, machine: str, worker: Latest, folder: Path) -> None:
         super().__init__(desk)
@@ -57,7 +57,7 @@ class ShiftReport(SpecialFunction):
             return self._sheet_of_places()
         found = self.found
         if found is None:
-            why = self.trouble or tr("Making the report …")
+            why = self.trouble or tr("Creating the report …")
             return Sheet("SHIFT REPORT", ("", ""), (0.4, 0.6), (), notes=(why,))
         rows = tuple(Row(each) for each in _rows(found))
         notes = (title_of(found, ""), *found.notes[:2])
@@ -65,15 +65,15 @@ class ShiftReport(SpecialFunction):
 
     def _sheet_of_places(self) -> Sheet:
         rows = tuple(Row((place.label, str(place.path))) for place in self.places)
-        notes = ("Return writes it there as HTML.",)
-        title, heads = "SHIFT REPORT  ·  WRITE TO WHERE?", ("WHERE", "FOLDER")
+        notes = ("Enter saves the report there as HTML.",)
+        title, heads = "SHIFT REPORT  ·  SAVE TO:", ("PLACE", "FOLDER")
         return Sheet(title, heads, (0.35, 0.65), rows, self.marked, notes=notes, raw=frozenset({0, 1}))
 
     def _make(self) -> None:
         wanted = (self.back, int(datetime.now().timestamp() // 60))
         store = self._store()
         if store is None:
-            self.trouble = tr("NOT KEPT HERE: THERE IS NO STORE")
+            self.trouble = tr("JOBS CANNOT BE SAVED: NO DATA STORE")
         elif wanted != self._asked:
             self._asked = wanted
             self.worker.queue(partial(_made, store, self.desk, self.back), self._take, self._failed)
@@ -87,7 +87,7 @@ class ShiftReport(SpecialFunction):
     def keys(self) -> Mapping[str, Key]:
         """Earlier, later, written."""
         if self.places:
-            return {"F4": Key("LOOK", self.look)}
+            return {"F4": Key("REFRESH", self.look)}
         return {
             "F2": Key("EARLIER", partial(self._go, 1)),
             "F3": Key("LATER", partial(self._go, -1)),
@@ -97,7 +97,7 @@ class ShiftReport(SpecialFunction):
     def _go(self, by: int) -> None:
         back = max(0, min(_OLDEST, self.back + by))
         if back == self.back:
-            self.desk.done("THERE IS NO LATER SHIFT" if by < 0 else "NO EARLIER SHIFT IS LOOKED AT HERE")
+            self.desk.done("NO LATER SHIFT YET" if by < 0 else "NO EARLIER SHIFT AVAILABLE HERE")
         else:
             self.desk.clear()
             self.back, self.found = back, None
@@ -119,7 +119,7 @@ class ShiftReport(SpecialFunction):
         """Look what is plugged in; the answer comes with a later frame."""
         self.desk.clear()
         if self.found is None:
-            self.desk.say("THE REPORT IS STILL BEING MADE: WAIT A MOMENT")
+            self.desk.say("REPORT IS NOT READY YET. WAIT A MOMENT")
         else:
             self.worker.queue(lambda: _places(self.folder, sticks()), self._places_found, self.desk.refuse)
 
@@ -138,13 +138,13 @@ class ShiftReport(SpecialFunction):
         return True
 
     def _done(self, name: str) -> None:
-        self.desk.done(tr("{name} IS WHOLE AND ON THE DISK: A STICK MAY BE REMOVED").format(name=name))
+        self.desk.done(tr("{name} SAVED COMPLETELY. A USB STICK CAN NOW BE REMOVED").format(name=name))
 
     def prompt(self) -> str:
         """What the keys do."""
         if self.places:
-            return "RETURN WRITES THE REPORT TO THE MARKED PLACE; F4 LOOKS FOR STICKS AGAIN"
-        return "F2 AND F3 GO TO ANOTHER SHIFT, F6 WRITES THE REPORT AS HTML; ESC GOES BACK TO THE LIST"
+            return "ENTER: SAVE REPORT TO THE MARKED PLACE   F4: SEARCH AGAIN FOR USB STICKS"
+        return "F2, F3: OTHER SHIFT   F6: SAVE REPORT AS HTML   ESC: BACK TO LIST"
 
 
 def _rows(found: ShiftFigures) -> list[tuple[str, str]]:

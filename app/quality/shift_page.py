@@ -42,7 +42,7 @@ def facts(found: ShiftFigures) -> list[tuple[str, str]]:
     rows = [(tr("Parts"), str(found.parts))]
     share = found.availability
     if share is not None:
-        words = tr("{share} %: cycles ran {run} of {planned}").format(
+        words = tr("{share} %: in cycle {run} of {planned}").format(
             share=fixed(100.0 * share.share, 1),
             run=duration(share.producing),
             planned=duration(share.planned),
@@ -64,14 +64,21 @@ def _sections(found: ShiftFigures, *, metric: bool) -> Iterator[tuple[str, str]]
     yield (
         tr("Parts by program"),
         _table(
-            (tr("PROGRAM"), tr("PARTS"), tr("NO PART"), tr("SHORTEST"), tr("MEAN"), tr("LONGEST")),
+            (
+                tr("PROGRAM"),
+                tr("PARTS"),
+                tr("CYCLES WITHOUT A PART"),
+                tr("SHORTEST"),
+                tr("MEAN"),
+                tr("LONGEST"),
+            ),
             [_program(each) for each in found.programs],
         ),
     )
     yield (
         tr("Stops by reason"),
         _table(
-            (tr("REASON"), tr("TIMES"), tr("TIME"), tr("SHARE")),
+            (tr("REASON"), tr("OCCURRENCES"), tr("TIME"), tr("SHARE")),
             [
                 (tr(r.reason), str(r.times), duration(r.seconds), f"{fixed(100 * r.share, 0)} %")
                 for r in found.stood
@@ -79,9 +86,9 @@ def _sections(found: ShiftFigures, *, metric: bool) -> Iterator[tuple[str, str]]
         ),
     )
     yield (
-        tr("Every stop"),
+        tr("All stops"),
         _table(
-            (tr("SINCE"), tr("TIME"), tr("REASON"), tr("PROGRAM"), tr("LINE")),
+            (tr("START TIME"), tr("TIME"), tr("REASON"), tr("PROGRAM"), tr("LINE")),
             [
                 (local_time(r.at), duration(r.seconds), tr(r.reason), r.program, str(r.line or ""))
                 for r in found.stops
@@ -91,15 +98,15 @@ def _sections(found: ShiftFigures, *, metric: bool) -> Iterator[tuple[str, str]]
     yield (
         tr("Alarms and E-stops"),
         _table(
-            (tr("TIME"), tr("WHAT"), tr("LINE")),
+            (tr("TIME"), tr("DESCRIPTION"), tr("LINE")),
             [(local_time(row.at), row.text, str(row.line or "")) for row in found.alarms],
         ),
     )
-    yield tr("Tool life used, as of now"), _lives(found)
+    yield tr("Tool life used so far"), _lives(found)
     yield (
         tr("Offsets changed"),
         _table(
-            (tr("TIME"), tr("OFFSET"), tr("BEFORE"), tr("AFTER"), tr("WHY"), tr("WHO")),
+            (tr("TIME"), tr("OFFSET"), tr("BEFORE"), tr("AFTER"), tr("REASON"), tr("WHO")),
             [_change(each, metric=metric) for each in found.offsets],
         ),
     )
@@ -129,14 +136,14 @@ def _program(row: ProgramFigures) -> tuple[str, ...]:
 
 def _lives(found: ShiftFigures) -> str:
     now = _table(
-        (tr("TOOL"), tr("USED"), tr("OF ITS LIFE")),
+        (tr("TOOL"), tr("USED"), tr("LIFE USED")),
         [
             (f"T{row.number}", life_of(row).words, f"{fixed(100 * life_of(row).share, 0)} %")
             for row in found.lives
         ],
     )
     changed = _table(
-        (tr("TIME"), tr("INSERT OF"), tr("HAD MADE"), tr("WHY")),
+        (tr("TIME"), tr("TOOL"), tr("USAGE"), tr("REASON")),
         [
             (
                 local_time(r.at),
@@ -147,7 +154,7 @@ def _lives(found: ShiftFigures) -> str:
             for r in found.inserts
         ],
     )
-    return f"{now}<h3>{escape(tr('Inserts changed in this time'))}</h3>{changed}"
+    return f"{now}<h3>{escape(tr('Inserts changed in this shift'))}</h3>{changed}"
 
 
 def _change(row: Change, *, metric: bool) -> tuple[str, ...]:

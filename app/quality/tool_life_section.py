@@ -36,7 +36,7 @@ class ToolLifeSection(QualitySection):
     """A row for each tool that is set, has a limit or has cut; the typed limit is of the marked one."""
 
     name = "TOOL LIFE"
-    use = "parts and minutes of an insert"
+    use = "insert life in parts and minutes"
 
     def __init__(self, desk: Desk, watch: PartsWatch) -> None:
         super().__init__(desk, watch)
@@ -67,7 +67,10 @@ class ToolLifeSection(QualitySection):
         question = tr("T{number} {limit}?").format(number=tool.number, limit=tr(self.limit)) if tool else ""
         heads = ("T", "PARTS", "MINUTES", "STOPS", "LEFT", "USED")
         notes = (
-            "Minutes are those at feed. 0 takes a limit away. STOP: no other part begins when it is gone.",
+            (
+                "Minutes count only time at feed. 0 removes a limit. STOP: no new part starts "
+                "once the life is used up."
+            ),
         )
         return Sheet("TOOL LIFE", heads, (0.1, 0.13, 0.14, 0.13, 0.17, 0.33), rows, self.marked, question,
                      self.entry.text, notes)  # fmt: skip
@@ -103,7 +106,7 @@ class ToolLifeSection(QualitySection):
             return False
         value = value_of(text)
         if self.limit == "PARTS" and value != int(value):
-            raise EntryError(f"{value:g} is no number of parts; type a whole number")
+            raise EntryError(f"{value:g} is not a number of parts; type a whole number")
         wanted = {
             "PARTS": lambda: replace(tool, limit_parts=int(value)),
             "MINUTES": lambda: replace(tool, limit_seconds=60.0 * value),
@@ -125,7 +128,7 @@ class ToolLifeSection(QualitySection):
             lambda c: tool_lives.set_limits(c, row),
             done,
             self.watch.refuse,
-            f"{told}, {'stops' if row.stops else 'does not stop'}",
+            f"{told}, {'stops' if row.stops else 'no stop at end of life'}",
         )
         return True
 
@@ -141,7 +144,7 @@ class ToolLifeSection(QualitySection):
         tool = self.tool
         if tool is None:
             return
-        asked = tr("PRESS Y WHEN T{number} HAS A FRESH INSERT ({words} ARE ON THE OLD ONE), N IF NOT")
+        asked = tr("NEW INSERT IN T{number}? OLD INSERT USED: {words}. Y: YES   N: NO")
         self.desk.ask(
             asked.format(number=tool.number, words=tool.words),
             lambda: self.watch.lives.change_insert(tool.number, tool.words, self.desk.say),
@@ -150,5 +153,5 @@ class ToolLifeSection(QualitySection):
     def prompt(self) -> str:
         """What can be done here."""
         return self.watch.book.locked or (
-            "TYPE THE LIMIT AND PRESS RETURN; F2 CHOOSES WHICH, F4 WHEN THE INSERT IS CHANGED"
+            "TYPE THE LIMIT AND PRESS ENTER. F2: OTHER LIMIT   F4: INSERT CHANGED"
         )

@@ -131,9 +131,9 @@ class ToolLifeWatch:
             self.counted[number] = max(0, more_parts - parts), max(0.0, more_seconds - seconds)
             self._kept[number] = 0.0
             self._changes += 1
-            words = tr("T{number}: A FRESH INSERT, ITS LIFE BEGINS AT NOUGHT")
+            words = tr("T{number}: NEW INSERT, TOOL LIFE STARTS AT ZERO")
             if self.book.tools is Kind.MILL_TOOL:
-                words = tr("T{number}: A FRESH TOOL, ITS LIFE BEGINS AT NOUGHT")
+                words = tr("T{number}: NEW TOOL, TOOL LIFE STARTS AT ZERO")
             said(words.format(number=number))
 
         self.book.write(Act.INSERTS, operation, done, said)
@@ -156,7 +156,7 @@ class ToolLifeWatch:
             lambda connection: tool_lives.set_use(connection, number, parts, seconds, self.book.tools),
             done,
             said,
-            f"T{number} has cut {seconds / 60.0:.1f} min",
+            f"T{number} has cut for {seconds / 60.0:.1f} min",
         )
 
     def forget(self) -> None:
@@ -192,13 +192,15 @@ _WORTH_TELLING = frozenset({LifeState.WARNED, LifeState.SPENT})
 def notice(life: ToolLife) -> str:
     """What the operator reads of a life that ends."""
     if life.state is LifeState.SPENT:
-        return tr("T{number}: ITS LIFE IS GONE, {words}").format(number=life.number, words=tr(life.words))
-    return tr("T{number}: {words} OF ITS LIFE ARE GONE").format(number=life.number, words=tr(life.words))
+        return tr("TOOL {number} LIFE USED UP: {words}").format(number=life.number, words=tr(life.words))
+    return tr("TOOL {number} LIFE: {words} USED").format(number=life.number, words=tr(life.words))
 
 
 def spent(life: ToolLife, tools: Kind) -> str:
     """Why no part begins with it."""
     if tools is Kind.MILL_TOOL:
-        how = "put a fresh tool in and set its CUR.TIME to 0 in the tool table (F8)"
-        return f"the life of T{life.number} is gone, {life.words}: {how}"
-    return f"the life of T{life.number} is gone, {life.words}: change the insert and tell it in TOOL LIFE"
+        how = "fit a new tool and set its CUR.TIME to 0 in the tool table (F8)"
+        return f"the life of T{life.number} is used up, {life.words}: {how}"
+    return (
+        f"the life of T{life.number} is used up, {life.words}: change the insert and confirm it in TOOL LIFE"
+    )

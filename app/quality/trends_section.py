@@ -77,7 +77,7 @@ class TrendsSection(QualitySection):
         of = (self.watch.book.loads, self.program, self.mode, minute, self.shift)
         if self._rows[0] != of:
             self._rows = of, tuple(Row((kind, self._figure(kind))) for kind in self.kinds)
-        question = tr("SHIFT FROM-TO, SUCH AS 6-14?") if self.kind == "AVAILABILITY" else ""
+        question = tr("SHIFT HOURS, FOR EXAMPLE 6-14?") if self.kind == "AVAILABILITY" else ""
         title = f"TRENDS  ·  {self.program}" if self.program else "TRENDS"
         return Sheet(title, ("", ""), (0.25, 0.75), self._rows[1], self.marked, question, self.entry.text,
                      raw=frozenset({1}))  # fmt: skip
@@ -96,7 +96,7 @@ class TrendsSection(QualitySection):
     def _cycle_words(self) -> str:
         times = [row.seconds for row in self.data.whole_cycles]
         if not times:
-            return tr("no part was made yet")
+            return tr("no part made yet")
         text = tr("last {last}, shortest {best}, mean {mean} of {count} parts")
         figures = (fixed(each, 1) + " s" for each in (times[-1], min(times), sum(times) / len(times)))
         last, best, mean = figures
@@ -108,7 +108,7 @@ class TrendsSection(QualitySection):
             return tr("no correction yet")
         last, metric = rows[-1], self.mode.metric
         letter, factor = ("T", 2.0) if last.kind == "tool" else ("D", 1.0)
-        text = tr("{count} corrections; last {offset}: X {x} Z {z} behind part {part}")
+        text = tr("{count} corrections; last {offset}: X {x} Z {z} after part {part}")
         return text.format(
             count=len(rows),
             offset=f"{letter}{last.number}",
@@ -121,10 +121,10 @@ class TrendsSection(QualitySection):
         stops = stops_of(self.data.stops)
         rows = pareto(stops)
         if not rows:
-            return tr("no stop yet")
+            return tr("no stops yet")
         between = times_between(stops)
         mean = duration(sum(between) / len(between)) if between else NOTHING
-        text = tr("{count} stops, {mean} between them; {reason}: {time}")
+        text = tr("{count} stops, on average {mean} apart; {reason}: {time}")
         return text.format(
             count=len(stops), mean=mean, reason=tr(rows[0].reason), time=duration(rows[0].seconds)
         )
@@ -132,7 +132,7 @@ class TrendsSection(QualitySection):
     def _load_words(self) -> str:
         loads = [row.load for row in self.data.cycles if row.load is not None]
         if not loads:
-            return tr("no drive of this machine tells its load")
+            return tr("no drive on this machine reports its load")
         return tr("last {last} %, highest {most} %").format(
             last=fixed(loads[-1], 0), most=fixed(max(loads), 0)
         )
@@ -141,8 +141,8 @@ class TrendsSection(QualitySection):
         first, last = self.shift
         found = self.of_shift()
         if found is None:
-            return tr("{first}–{last}: the shift has not begun").format(first=first, last=last)
-        text = tr("{first}–{last}: {share} %, {run} of {planned}")
+            return tr("{first}–{last}: the shift has not started").format(first=first, last=last)
+        text = tr("{first}–{last}: {share} %, {run} of {planned} in cycle")
         return text.format(
             first=first,
             last=last,
@@ -213,7 +213,7 @@ class TrendsSection(QualitySection):
             (f"{tr(row.reason)}  {row.times} ×  {fixed(100 * row.together, 0)} %", row.seconds / 60.0)
             for row in rows
         )
-        return (Plot(tr("MINUTES BY REASON; TOGETHER WITH THOSE ABOVE"), bars=bars),)
+        return (Plot(tr("MINUTES BY REASON, WITH CUMULATIVE SHARE"), bars=bars),)
 
     def _load_plots(self) -> tuple[Plot, ...]:
         rows = [row for row in self.data.cycles if row.load is not None]
@@ -227,7 +227,7 @@ class TrendsSection(QualitySection):
         if found is None:
             return ()
         stood = found.planned - found.producing
-        bars = ((tr("CYCLES RAN"), found.producing / 60.0), (tr("STOOD"), stood / 60.0))
+        bars = ((tr("IN CYCLE"), found.producing / 60.0), (tr("NOT IN CYCLE"), stood / 60.0))
         return (Plot(tr("MINUTES OF THE SHIFT"), bars=bars),)
 
     # --- the shift -----------------------------------------------------------------------------------
@@ -256,18 +256,18 @@ class TrendsSection(QualitySection):
         """First and last hour. Raises EntryError."""
         first, _, last = text.partition("-")
         if not (first.isdigit() and last.isdigit() and int(first) < 24 and int(last) <= 24):
-            raise EntryError(tr("a shift is two hours of the day, such as 6-14"))
+            raise EntryError(tr("enter the shift as two hours of the day, such as 6-14"))
         if self.desk.refused(Act.FEATURES):
             return False
         self._shift = int(first), int(last)
         hours = list(self._shift)
-        self.desk.counter.persistence.note_change(f"hours of a shift: {first} to {last}")
+        self.desk.counter.persistence.note_change(f"shift hours: {first} to {last}")
         self.desk.keep(lambda: self.desk.counter.persistence.save_setting(SETTING, hours))
         return True
 
     def prompt(self) -> str:
         """What can be done here."""
-        return self.watch.book.locked or "THE ARROWS CHOOSE A TREND; ESC GOES BACK TO THE LIST"
+        return self.watch.book.locked or ("ARROWS: SELECT TREND   ESC: BACK TO LIST")
 
 
 def _numbers(count: int) -> np.ndarray[tuple[int], np.dtype[np.float64]]:

@@ -27,7 +27,9 @@ def proposal(data: PartsData, row: FeatureRow, mode: Mode) -> Proposal:
     sizes = [each.value for each in data.since_correction(row)]
     if not sizes and data.readings_of(row.id):
         name = feature.corrected_by
-        raise QualityError(f"{row.name}: no part begun since the last change of {name} is measured yet")
+        raise QualityError(
+            f"{row.name}: no part started since the last change of {name} has been measured yet"
+        )
     return propose(feature, sizes, RESOLUTION[mode.metric])
 
 
@@ -71,7 +73,7 @@ def correction(found: Proposal, desk: Desk, mode: Mode) -> Correction:
 def _tool_value(name: str, row: object, found: Proposal, mode: Mode, number: int) -> Value:
     """As F2 of the tool table adds what is typed."""
     if not isinstance(row, ToolRow):
-        raise EntryError(tr("T{number} WAS NEVER SET").format(number=number))
+        raise EntryError(tr("T{number} IS NOT SET").format(number=number))
     return value_added(name, row, fixed(found.change / mode.unit, 10), mode)
 
 

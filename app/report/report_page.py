@@ -174,7 +174,7 @@ class ProgramReport:
     def _shape(self, shape: ToolShape | None) -> str:
         """A tool in words: what of it is stated."""
         if shape is None:
-            return "not known"
+            return "unknown"
         sizes = (
             ("Ø", shape.diameter), ("width", shape.width), ("nose radius", shape.nose_radius),
             ("pitch", shape.pitch), ("cuts", shape.length), ("stick-out", shape.stick_out),

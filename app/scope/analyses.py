@@ -148,7 +148,7 @@ class Analyses:
                     begin, end = frozen.zero + window.begin, frozen.zero + window.end
                     return analysed(kind, frozen.record.between(begin, end), arc, drives, spindle)
                 if live is None or not math.isfinite(live.last):
-                    return Found(kind, tr("NOTHING IS RECORDED ON THIS MACHINE: OPEN A RECORD WITH F9"))
+                    return Found(kind, tr("NOTHING IS RECORDED ON THIS MACHINE. F9: OPEN A RECORD"))
                 names = {each.name for each in live.channels if each.unit in {"mm", "deg"}}
                 names |= {"line", "spindle turns", "spindle speed", "spindle command"}
                 record = live.between(live.last - live.lasts, live.last, names)
@@ -185,7 +185,7 @@ class Analyses:
         found, metric = self.found, self.scope.metric
         title = tr(self.kind.value)
         if found is None:
-            return Sheet(title, ("",), (1.0,), (), notes=(tr("WORKED OUT …"),))
+            return Sheet(title, ("",), (1.0,), (), notes=(tr("CALCULATING …"),))
         if found.path is not None:
             return _path_sheet(title, found, metric, self.marked)
         if found.thread is not None:
@@ -199,14 +199,14 @@ class Analyses:
         """What is looked at, above the drawing."""
         found = self.found
         if found is None:
-            return tr("WORKED OUT …")
+            return tr("CALCULATING …")
         if found.why:
             return found.why
         if found.thread is not None:
-            return tr("passes over each other by the spindle's angle: way beside the thread, and speed")
+            return tr("passes overlaid by spindle angle: deviation from the thread, and speed")
         if found.kind in {Kind.RESPONSE, Kind.SPINDLE}:
             return _response_words(found, self.scope.metric)
-        return tr("error drawn {times} times as large; Z changes that").format(times=f"{self.magnified:g}")
+        return tr("error drawn {times} times larger; Z changes the scale").format(times=f"{self.magnified:g}")
 
 
 def last_run(record: Record) -> Record:
@@ -242,7 +242,7 @@ def _analysed(kind: Kind, record: Record, arc: int, drives: Mapping[str, Axis]) 
     columns = record.columns
     letters = [each.name[0] for each in record.channels if each.name[1:] == " demand" and each.unit == "mm"]
     if len(letters) < 2 or not len(record.times):
-        raise AnalysisError(tr("the record has no two slides, and so no path"), "no-path")
+        raise AnalysisError(tr("the record has fewer than two linear axes, so it has no path"), "no-path")
     slides = ("Z", "X") if set(letters) == {"X", "Z"} else tuple(sorted(letters))
     demand = np.column_stack([columns[f"{each} demand"] for each in slides])
     actual = np.column_stack([columns[f"{each} actual"] for each in slides])
@@ -272,7 +272,7 @@ def _ball_bar_found(
     ]
     if not arcs:
         raise AnalysisError(
-            tr("there is no arc of 60 degrees or more in this time: record while one is cut"), "no-arc"
+            tr("no arc of 60 degrees or more in this time; record while one is cut"), "no-arc"
         )
     arcs.sort(key=itemgetter(0))
     number = arc % len(arcs)
@@ -324,7 +324,7 @@ def _thread_drawing(found: Found) -> Drawing:
         for each, speed in zip(found.thread.passes[:8], found.speeds, strict=False)
         if np.isfinite(speed).all()
     )
-    names = tr("WAY BESIDE THE THREAD") + "  {unit}", tr("SPINDLE") + "  rpm", tr("turns")
+    names = tr("THREAD DEVIATION") + "  {unit}", tr("SPINDLE") + "  rpm", tr("turns")
     return Drawing(curves=curves, below=below, equal=False, names=names)
 
 
@@ -360,12 +360,12 @@ def _path_sheet(title: str, found: Found, metric: bool, marked: int) -> Sheet:
     )
     lathe = len(found.slides) == 2
     notes = (
-        tr("Greatest: {far}").format(far=_length(path.greatest, metric)),
-        *((tr("Positive lies to the left of the way the tool goes."),) if lathe else ()),
-        tr("The worst place of each line."),
-        tr("Slides are counted from home, X as a radius.") if lathe else tr("Slides are counted from home."),
+        tr("Largest error: {far}").format(far=_length(path.greatest, metric)),
+        *((tr("Positive values are to the left of the direction of travel."),) if lathe else ()),
+        tr("The table shows the worst point of each line."),
+        tr("Axis positions are from home, X as a radius.") if lathe else tr("Axis positions are from home."),
     )
-    heads = (tr("LINE"), tr("OFF THE PATH"), *found.slides)
+    heads = (tr("LINE"), tr("PATH DEVIATION"), *found.slides)
     shares = (0.16, 0.3, 0.27, 0.27) if lathe else (0.11, 0.23, 0.22, 0.22, 0.22)
     figures = frozenset(range(1, len(heads)))
     return Sheet(title, heads, shares, rows, min(marked, len(rows) - 1), notes=notes, figures=figures)
@@ -386,12 +386,12 @@ def _thread_sheet(title: str, thread: Thread, vmax: float, metric: bool, marked:
     )
     limit = fastest(thread.lead, vmax) if vmax else math.inf
     notes = (
-        tr("Lead: {lead} a turn").format(lead=_length(abs(thread.lead), metric)),
-        tr("Entry angles lie within {angle}°").format(angle=formats.fixed(thread.entry_spread, 2)),
-        tr("Infeed along a flank shifts the entry, by its depth."),
-        tr("The slide can follow this lead up to {rpm} rpm").format(rpm=formats.rpm(limit)),
+        tr("Lead: {lead} per revolution").format(lead=_length(abs(thread.lead), metric)),
+        tr("Entry angles agree within {angle}°").format(angle=formats.fixed(thread.entry_spread, 2)),
+        tr("Flank infeed shifts the entry angle with the depth."),
+        tr("The axis can follow this lead up to {rpm} rpm").format(rpm=formats.rpm(limit)),
     )
-    heads = (tr("PASS"), tr("DEEPER"), tr("ENTRY"), tr("LEAD OFF"), tr("RPM LOST"))
+    heads = (tr("PASS"), tr("ADDED DEPTH"), tr("ENTRY"), tr("LEAD ERROR"), tr("RPM DROP"))
     shares = (0.12, 0.24, 0.2, 0.24, 0.2)
     figures = frozenset({1, 2, 3, 4})
     return Sheet(title, heads, shares, rows, min(marked, len(rows) - 1), notes=notes, figures=figures)
@@ -411,8 +411,8 @@ def _response_words(found: Found, metric: bool) -> str:
     if found.test is not None:
         return shown_words(found.test.path, metric)
     if found.spindle is not None:
-        return tr("asked and turned of the last run-up, over seconds")
-    return tr("asked and done of the last move, and its following error, over seconds")
+        return tr("last run-up: commanded and actual speed over time in seconds")
+    return tr("last move: commanded, actual and following error over time in seconds")
 
 
 def _ball_sheet(title: str, ball: BallBar, found: Found, metric: bool) -> Sheet:
@@ -432,7 +432,7 @@ def _ball_sheet(title: str, ball: BallBar, found: Found, metric: bool) -> Sheet:
         Row((tr("REVERSAL SPIKE {axis}").format(axis=v), told(ball.spike[1]))),
         Row((tr("OUT OF SQUARE"), lean(ball.squareness))),
         Row((tr("SCALE {u} TO {v}").format(u=u, v=v), lean(ball.scale))),
-        Row((tr("RADIUS OFF"), told(ball.size))),
+        Row((tr("RADIUS ERROR"), told(ball.size))),
     )
     number, count, line = found.arc
     notes = (
@@ -443,8 +443,8 @@ def _ball_sheet(title: str, ball: BallBar, found: Found, metric: bool) -> Sheet:
             radius=_length(ball.radius, metric),
             angle=formats.fixed(ball.covered, 0),
         ),
-        tr("A dash: the arc is too short to tell it."),
-        tr("Play behind the encoder is not seen by it."),
+        tr("A dash means that the arc is too short for a result."),
+        tr("The encoder cannot measure play between itself and the tool."),
     )
     return Sheet(title, ("", ""), (0.52, 0.48), rows, notes=notes, figures=frozenset({1}))
 

@@ -149,7 +149,7 @@ class _Keys:
 
     def prompt(self) -> str:
         """What keys do now."""
-        return tr("ARROWS MARK A ROW; Z AND THE WHEEL MAGNIFY; THE SAME KEY AGAIN TAKES NEWER SAMPLES")
+        return tr("ARROWS: SELECT ROW   Z, WHEEL: MAGNIFY   SAME KEY AGAIN: NEW SAMPLES")
 
     def leave(self) -> None:
         """Nothing stays open."""

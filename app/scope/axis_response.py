@@ -174,27 +174,27 @@ def window_rows(found: Moved, units: Units) -> list[tuple[str, str, str]]:
 
     def trips(error: FloatArray, window: float) -> str:
         at = would_trip(times, error, window, axis.following_time)
-        return tr("holds") if at is None else tr("trips at {at}").format(at=units.ms(at))
+        return tr("no trip") if at is None else tr("trips at {at}").format(at=units.ms(at))
 
     limit, greatest = axis.following_limit(found.speed), float(np.abs(error).max())
     least = narrowest_window(times, error, axis.following_time)
     reached = speed_of_window(abs(found.lag), axis.still_window, axis.following_window, axis.vmax)
     rows = [
-        (tr("LAG BEHIND THE SPEED"), "", units.ms(found.lag)),
-        (tr("GREATEST ERROR"), "", units.way(greatest)),
-        (tr("WINDOW AT THIS SPEED"), trips(error, limit), units.way(limit)),
-        (tr("NARROWEST THAT HOLDS"), "", units.way(least)),
+        (tr("FOLLOWING LAG"), "", units.ms(found.lag)),
+        (tr("LARGEST ERROR"), "", units.way(greatest)),
+        (tr("ERROR LIMIT AT THIS SPEED"), trips(error, limit), units.way(limit)),
+        (tr("SMALLEST LIMIT WITHOUT A TRIP"), "", units.way(least)),
     ]
     for share in WINDOWS:
-        name = tr("WITH {share} OF THE WINDOW").format(share=formats.percent(share))
+        name = tr("WITH {share} OF THE LIMIT").format(share=formats.percent(share))
         rows.append((name, trips(error, share * limit), units.way(share * limit)))
     for factor in FACTORS:
         faster = found.faster(factor)
-        name = tr("AT {share} OF THE SPEED").format(share=formats.percent(factor))
+        name = tr("AT {share} SPEED").format(share=formats.percent(factor))
         verdict = trips(faster, axis.following_limit(factor * found.speed))
         rows.append((name, verdict, units.way(float(np.abs(faster).max()))))
-    at = units.speed(reached) if reached is not None else tr("no speed it has")
-    rows.append((tr("LAG MEETS WINDOW AT"), "", at))
+    at = units.speed(reached) if reached is not None else tr("not within its speed range")
+    rows.append((tr("SPEED WHERE LAG EQUALS LIMIT"), "", at))
     return rows
 
 
@@ -202,13 +202,13 @@ def response_sheet(title: str, found: AxisResponse, metric: bool) -> Sheet:
     """Its figures, and what other windows and speeds would do."""
     units = Units(metric)
     rows = [
-        Row((tr("WAY"), "", units.way(found.step.way))),
-        Row((tr("GREATEST SPEED"), "", units.speed(found.speed))),
+        Row((tr("TRAVEL"), "", units.way(found.step.way))),
+        Row((tr("MAXIMUM SPEED"), "", units.speed(found.speed))),
         *(Row((name, "", figure)) for name, figure in step_rows([found.step], units)),
         *map(Row, window_rows(found, units)),
     ]
     notes = (
-        tr("Of the last move of {axis}; worked out, nothing was changed.").format(axis=found.letter),
-        tr("A step of the Jog page is a good one; F9 has drive tests."),
+        tr("Last move of {axis}. Calculated only, nothing was changed.").format(axis=found.letter),
+        tr("A single step on the Jog page gives a good result; F9 has drive tests."),
     )
     return Sheet(title, ("", "", ""), SHARES, tuple(rows), notes=notes, figures=frozenset({1, 2}))

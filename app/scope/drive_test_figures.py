@@ -76,7 +76,8 @@ def drive_test_figures(record: Record, path: DriveTestPath, drives: Mapping[str,
     ways = len(path.frequencies) if path.shape is Shape.SINE else 2
     if len(found) < ways:
         raise AnalysisError(
-            tr("the test was let go before its end: hold the key until it has come back"), "test-broken-off"
+            tr("the key was released before the test ended; hold it until the axis is back"),
+            "test-broken-off",
         )
     found = found[-ways:]
     times, zero = record.times, float(record.times[found[0][0]])
@@ -141,7 +142,7 @@ def figures_sheet(title: str, found: DriveTestFigures, metric: bool, part: Part 
     units = Units(metric)
     rows = [Row(cells) for cells in _responses(found, units)] if part is not Part.WINDOW else []
     rows += map(Row, window_rows(found.move, units)) if part is not Part.RESPONSE else ()
-    heads = ("", tr("GAIN"), tr("LATE")) if found.sines else ("", tr("OUT"), tr("BACK"))
+    heads = ("", tr("GAIN"), tr("PHASE LAG")) if found.sines else ("", tr("OUT"), tr("BACK"))
     if part is Part.WINDOW:
         heads = ("", "", "")
     notes = (shown_words(found.path, metric), tr("Nothing was written to the drive."))
@@ -154,8 +155,8 @@ def _responses(found: DriveTestFigures, units: Units) -> list[tuple[str, ...]]:
     rows: list[tuple[str, ...]] = [*step_rows(found.steps, units)]
     if found.ramps:
         rows += [
-            (tr("LAG OF THE EVEN PART"), *(units.way(abs(each.error)) for each in found.ramps)),
-            (tr("SPEED OVER LAG"), *(_gain(each) for each in found.ramps)),
+            (tr("LAG AT CONSTANT SPEED"), *(units.way(abs(each.error)) for each in found.ramps)),
+            (tr("SPEED / LAG (GAIN)"), *(_gain(each) for each in found.ramps)),
         ]
     return rows
 
@@ -180,11 +181,11 @@ def _sine_rows(found: DriveTestFigures) -> list[tuple[str, ...]]:
         return (
             f"{formats.fixed(hertz, 1)} Hz"
             if hertz is not None
-            else tr("not up to {most} Hz").format(most=f"{most:g}")
+            else tr("not reached up to {most} Hz").format(most=f"{most:g}")
         )
 
     if len(found.sines) > 1:
-        rows += [(tr("BANDWIDTH, −3 dB"), "", at(seen.down)), (tr("90° LATE"), "", at(seen.quarter))]
+        rows += [(tr("BANDWIDTH, −3 dB"), "", at(seen.down)), (tr("90° PHASE LAG"), "", at(seen.quarter))]
     late = found.sines[0].late
-    rows.append((tr("LATE BY"), "", f"{formats.fixed(1000.0 * late, 2)} ms" if math.isfinite(late) else ""))
+    rows.append((tr("DELAY"), "", f"{formats.fixed(1000.0 * late, 2)} ms" if math.isfinite(late) else ""))
     return rows

@@ -129,9 +129,7 @@ class RecordShelf:
         def carefully() -> None:
             self.folder.mkdir(parents=True, exist_ok=True)
             if shutil.disk_usage(self.folder).free < _ROOM:
-                raise ShelfError(
-                    f"{path.name} IS NOT WRITTEN: THE DISK IS FULL; DELETE RECORDS OR PROGRAMS", "disk-full"
-                )
+                raise ShelfError(f"{path.name} NOT SAVED: DISK FULL. DELETE RECORDS OR PROGRAMS", "disk-full")
             write()
 
         self._told(path, carefully)

@@ -14,21 +14,21 @@ class ScopeFunction(PageFunction):
     """What is recorded, and how much of it."""
 
     name = "SCOPE"
-    use = "axes and spindle as curves"
+    use = "axis and spindle curves"
     page = PAGE
-    way = "Return opens the page; Shift+F10 does so from every page, and goes back."
+    way = "Enter opens the page. Shift+F10 opens it from any page and returns."
 
     def facts(self) -> tuple[Row, ...]:
         """How long and how many channels."""
         scope = self.desk.attached(Scope)
         live = scope.live if scope is not None else None
         if live is None:
-            return (Row((tr("RECORDED"), tr("NOTHING ON THIS MACHINE"))),)
+            return (Row((tr("RECORDED"), tr("NOTHING RECORDED ON THIS MACHINE"))),)
         return (
-            Row((tr("KEPT"), tr("THE LAST {minutes} MINUTES").format(minutes=f"{live.lasts / 60.0:g}"))),
+            Row((tr("STORED"), tr("THE LAST {minutes} MINUTES").format(minutes=f"{live.lasts / 60.0:g}"))),
             Row((tr("CHANNELS"), str(len(live.channels)))),
         )
 
     def prompt(self) -> str:
         """How the page is opened."""
-        return "PRESS RETURN FOR THE SCOPE; ESC GOES BACK TO THE LIST"
+        return "ENTER: OPEN SCOPE   ESC: BACK TO LIST"

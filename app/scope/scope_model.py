@@ -29,8 +29,8 @@ MOST_LOGIC = 12
 FROZEN = 60.0  # s that are taken when the curves are frozen, or three windows
 LEVEL_FOR = 1.0  # s after which level lines are looked at again where nothing seems to have happened
 ZOOM = 1.5  # a step of a lane's range
-FORGOTTEN = tr("THE CURVES ARE LIVE: PRESS F2 TO FREEZE THEM FIRST")
-NO_SAMPLES = tr("NOTHING IS RECORDED ON THIS MACHINE: OPEN A RECORD WITH F9")
+FORGOTTEN = tr("CURVES ARE LIVE. PRESS F2 TO FREEZE THEM FIRST")
+NO_SAMPLES = tr("NOTHING IS RECORDED ON THIS MACHINE. F9: OPEN A RECORD")
 
 
 class Side(Enum):
@@ -220,7 +220,7 @@ class Scope:
     def show_record(self, record: Record, name: str, window: tuple[float, float] | None = None) -> None:
         """Look at a record from now on; ``window`` in seconds of its instant 0, else all of it."""
         if not len(record.times):
-            self.desk.say(tr("THE RECORD IS EMPTY: NOTHING WAS SAMPLED IN THAT TIME"))
+            self.desk.say(tr("RECORD IS EMPTY: NO SAMPLES IN THAT TIME"))
             return
         zero = instant_of(record)
         self.frozen, self.name, self._drawn = RecordCurves(record, zero), name, None
@@ -252,7 +252,7 @@ class Scope:
         alike = [each for each in self.shown if (each.quantity is Quantity.LOGIC) is logic]
         most = MOST_LOGIC if logic else MOST_SHOWN
         if len(alike) >= most:
-            text = tr("{most} CURVES ARE SHOWN, AND NO MORE CAN BE TOLD APART: TAKE ONE AWAY FIRST")
+            text = tr("{most} CURVES IS THE MAXIMUM. REMOVE ONE FIRST")
             self.desk.say(text.format(most=most))
             return
         self.chosen = (*self.chosen, signal.key)
@@ -355,7 +355,7 @@ class Scope:
             return ""
         if self._released is not None:
             return tr("TRIGGERED")
-        return tr("ARMED") if self.armed else tr("TRIGGER HELD: F2 ARMS IT")
+        return tr("ARMED") if self.armed else tr("TRIGGER NOT ARMED. F2: ARM")
 
     # --- files ---------------------------------------------------------------------------------------
 
@@ -368,7 +368,7 @@ class Scope:
         begin, end = frozen.zero + self.window.begin, frozen.zero + self.window.end
         cut = frozen.record.between(begin, end)
         if not len(cut.times):
-            self.desk.say(tr("THE RECORD IS EMPTY: NOTHING WAS SAMPLED IN THAT TIME"))
+            self.desk.say(tr("RECORD IS EMPTY: NO SAMPLES IN THAT TIME"))
             return None
         told = {**cut.about, INSTANT: f"{frozen.zero - float(cut.times[0]):.6f}"}
         return replace(cut, about=told)
@@ -386,7 +386,7 @@ class Scope:
             self.filing.queue(lambda: self.shelf.write_csv(record), self._written, self.desk.refuse)
 
     def _written(self, path: object) -> None:
-        self.desk.say(tr("WRITTEN: {path}").format(path=path))
+        self.desk.say(tr("SAVED: {path}").format(path=path))
         self.list_files()
 
     def list_files(self) -> None:

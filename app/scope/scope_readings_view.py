@@ -26,7 +26,7 @@ _READ = 0.1  # s that a live figure stands
 class Readings(Panel):
     """A row a curve; a finger marks it."""
 
-    title = "FIGURES"
+    title = "VALUES"
     mark: Shown[object] = Shown(None)
 
     def __init__(self, look: Look, scope: Scope, choose: Callable[[int], None], parent: QWidget) -> None:
@@ -82,7 +82,7 @@ class Readings(Panel):
             room = self._between(painter, room)
         if not shown:
             row = QRectF(room.x(), room.y(), room.width(), 3 * u)
-            painter.write(row, "F4 chooses curves.", 1.8, "soft", bold=False)
+            painter.write(row, "Press F4 to select curves.", 1.8, "soft", bold=False)
             return
         fits = max(1, int(room.height() / self.high))
         marked = min(self.scope.marked, len(shown) - 1)

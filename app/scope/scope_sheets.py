@@ -61,7 +61,7 @@ class ScopeSheets:
         rows = tuple(
             Row((each.title, each.quantity.unit(metric)), each.key in scope.chosen) for each in scope.signals
         )
-        notes = (tr("Velocities and ripple are taken over a span: it stands beside them."),)
+        notes = (tr("Velocities and ripple are calculated over the time shown next to them."),)
         return Sheet(tr("CURVES"), ("", ""), (0.78, 0.22), rows, self.at, notes=notes, raw=frozenset({0}))
 
     def _trigger(self) -> Sheet:
@@ -75,10 +75,10 @@ class ScopeSheets:
         elif trigger.when is When.LINE:
             what = str(trigger.line)
         rows = (
-            Row(("RELEASED BY", tr(trigger.when.value))),
+            Row(("TRIGGER EVENT", tr(trigger.when.value))),
             Row(("SIGNAL", signal.title if trigger.when.by_level and signal is not None else "")),
             Row(("LINE" if trigger.when is When.LINE else "LEVEL", f"{what} {unit}".strip())),
-            Row(("LIES IN THE WINDOW AT", formats.percent(trigger.before))),
+            Row(("TRIGGER POSITION IN WINDOW", formats.percent(trigger.before))),
         )
         asked = self.at == _LEVEL and bool(what)
         return Sheet(
@@ -89,7 +89,7 @@ class ScopeSheets:
             self.at,
             question=("LINE?" if trigger.when is When.LINE else "LEVEL?") if asked else "",
             text=self.entry.text,
-            notes=("When it is released the curves are frozen: once.",),
+            notes=("The trigger freezes the curves once.",),
             raw=frozenset({1}),
         )
 
@@ -98,8 +98,8 @@ class ScopeSheets:
         rows = tuple(
             Row((each.path.stem, each.when, each.size_words), self._lit(each.path.name)) for each in files
         )
-        notes = () if files else (tr("No record is kept yet: F2 saves what is seen."),)
-        heads = (tr("NAME"), tr("WRITTEN"), tr("SIZE"))
+        notes = () if files else (tr("No records yet. F2 saves the current view."),)
+        heads = (tr("NAME"), tr("SAVED ON"), tr("SIZE"))
         return Sheet(tr("RECORDS"), heads, (0.55, 0.3, 0.15), rows, self.at, notes=notes, raw=frozenset({0}))
 
     def _lit(self, name: str) -> bool:
@@ -209,7 +209,7 @@ class ScopeSheets:
             line = line_of(self.entry.text)
             if line is None:
                 self.entry.text = refused(self.entry.text)
-                scope.desk.refuse(tr("a line of the program is a whole number from 1 on"))
+                scope.desk.refuse(tr("enter the program line as a whole number, 1 or more"))
                 return
             scope.set_trigger(replace(trigger, line=line))
             self.entry.text = ""
@@ -243,12 +243,12 @@ class ScopeSheets:
         """What keys do now."""
         if self.scope.side is Side.READINGS:
             if self.scope.cursors.shown:
-                return tr("ARROWS MOVE THE CURSOR, TAB TAKES THE OTHER; Z ZOOMS, CTRL+ARROWS PAN AND STRETCH")
+                return tr("ARROWS: MOVE CURSOR   TAB: OTHER CURSOR   Z: ZOOM   CTRL+ARROWS: PAN, STRETCH")
             if not self.scope.has_samples:
                 return NO_SAMPLES
-            return tr("UP AND DOWN CHOOSE A CURVE; Z ZOOMS, CTRL+ARROWS PAN AND STRETCH; F2 FREEZES")
+            return tr("UP/DOWN: SELECT CURVE   Z: ZOOM   CTRL+ARROWS: PAN, STRETCH   F2: FREEZE")
         if self.scope.side is Side.CURVES:
-            return tr("RETURN SHOWS THE MARKED CURVE, OR TAKES IT AWAY; ESC GOES BACK TO THE CURVES")
+            return tr("ENTER: SHOW OR HIDE CURVE   ESC: BACK TO CURVES")
         if self.scope.side is Side.TRIGGER:
-            return tr("RETURN GOES ON TO THE NEXT CHOICE; A LEVEL IS TYPED; ESC GOES BACK TO THE CURVES")
-        return tr("F2 SAVES WHAT IS SEEN; RETURN OPENS A RECORD; ESC GOES BACK TO THE CURVES")
+            return tr("ENTER: NEXT CHOICE   LEVEL: TYPE IT   ESC: BACK TO CURVES")
+        return tr("F2: SAVE THE VIEW   ENTER: OPEN RECORD   ESC: BACK TO CURVES")

@@ -16,12 +16,12 @@ FloatArray = npt.NDArray[np.float64]
 class When(Enum):
     """What releases it."""
 
-    OFF = tr("OFF: THE CURVES ROLL")
-    RISES = tr("RISES THROUGH A LEVEL")
-    FALLS = tr("FALLS THROUGH A LEVEL")
-    BEYOND = tr("GOES BEYOND ± A LEVEL")
-    ALARM = tr("AN ALARM OR E-STOP")
-    LINE = tr("A LINE OF THE PROGRAM BEGINS")
+    OFF = tr("OFF: CURVES KEEP RUNNING")
+    RISES = tr("SIGNAL RISES THROUGH LEVEL")
+    FALLS = tr("SIGNAL FALLS THROUGH LEVEL")
+    BEYOND = tr("SIGNAL EXCEEDS ± LEVEL")
+    ALARM = tr("ALARM OR E-STOP")
+    LINE = tr("A PROGRAM LINE STARTS")
 
     @property
     def by_level(self) -> bool:

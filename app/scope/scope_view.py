@@ -279,10 +279,10 @@ class ScopePage(ListPage):
             return NO_SAMPLES, "", True
         if self.curves.chart is None:
             return tr("OPENING …"), "", False
-        rate = tr("{rate} samples a second").format(rate=f"{sight.rate:g}")
+        rate = tr("{rate} samples per second").format(rate=f"{sight.rate:g}")
         span = tr("window {span}").format(span=span_words(scope.window.span))
         what = tr("LIVE") if scope.is_live else scope.name or tr("FROZEN")
-        over = "  ·  " + tr("over it {name}").format(name=scope.over_name) if scope.over_name else ""
+        over = "  ·  " + tr("overlay: {name}").format(name=scope.over_name) if scope.over_name else ""
         return f"{what}  ·  {rate}  ·  {span}{over}", scope.trigger_words, scope.armed
 
     def dress(self) -> None:

@@ -29,11 +29,11 @@ class Quantity(Enum):
     ACCELERATION = ("ACCELERATION", "mm/s²", tr("in/s²"), 10.0)
     ANGLE = ("ANGLE", "°", "°", 0.1)
     ANGLE_ERROR = ("FOLLOWING ERROR", "°", "°", 0.01)
-    TURNING = ("TURNING SPEED", "°/s", "°/s", 1.0)
-    TURNING_CHANGE = ("TURNING ACCELERATION", "°/s²", "°/s²", 10.0)
+    TURNING = ("ANGULAR SPEED", "°/s", "°/s", 1.0)
+    TURNING_CHANGE = ("ANGULAR ACCELERATION", "°/s²", "°/s²", 10.0)
     SPINDLE = ("SPINDLE", "rpm", "rpm", 10.0)
     RIPPLE = ("SPINDLE RIPPLE", "rpm", "rpm", 1.0)
-    TURNS = ("SPINDLE TURNS", tr("turns"), tr("turns"), 1.0)
+    TURNS = ("SPINDLE REVOLUTIONS", tr("turns"), tr("turns"), 1.0)
     LOAD = ("LOAD", "%", "%", 10.0)
     OVERRIDE = ("OVERRIDE", "%", "%", 10.0)
     QUEUE = ("QUEUE", "ms", "ms", 10.0)
@@ -147,10 +147,10 @@ def _of_axis(letter: str, rotary: bool) -> list[Signal]:
     demand, actual = f"{letter} demand", f"{letter} actual"
     span = derived_figures.ACCELERATION_SPAN
     return [
-        Signal(demand, tr("commanded"), place, demand, letter),
-        Signal(actual, tr("measured"), place, actual, letter),
+        Signal(demand, tr("commanded position"), place, demand, letter),
+        Signal(actual, tr("measured position"), place, actual, letter),
         Signal(f"{letter} following error", tr("following error"), off, f"{letter} following error", letter),
-        _speed(f"{letter} demand velocity", tr("velocity commanded"), letter, demand, fast),
+        _speed(f"{letter} demand velocity", tr("commanded velocity"), letter, demand, fast),
         _speed(f"{letter} velocity", tr("velocity"), letter, actual, fast),
         Signal(
             f"{letter} acceleration",
@@ -166,8 +166,8 @@ def _of_axis(letter: str, rotary: bool) -> list[Signal]:
 
 
 _MACHINE = (
-    Signal("spindle command", tr("Spindle commanded"), Quantity.SPINDLE, "spindle command"),
-    Signal("spindle speed", tr("Spindle measured"), Quantity.SPINDLE, "spindle speed"),
+    Signal("spindle command", tr("Commanded spindle speed"), Quantity.SPINDLE, "spindle command"),
+    Signal("spindle speed", tr("Measured spindle speed"), Quantity.SPINDLE, "spindle speed"),
     Signal(
         "spindle ripple",
         tr("Spindle ripple"),
@@ -177,7 +177,7 @@ _MACHINE = (
         derived_figures.ripple,
         derived_figures.RIPPLE_SPAN,
     ),
-    Signal("spindle turns", tr("Spindle turns"), Quantity.TURNS, "spindle turns"),
+    Signal("spindle turns", tr("Spindle revolutions"), Quantity.TURNS, "spindle turns"),
     Signal("spindle load", tr("Spindle load"), Quantity.LOAD, "spindle load"),
     Signal("feed override", tr("Feed override"), Quantity.OVERRIDE, "feed override"),
     Signal("spindle override", tr("Spindle override"), Quantity.OVERRIDE, "spindle override"),

@@ -58,7 +58,7 @@ def last_run_up(record: Record, model: SpindleModel | None) -> SpindleResponse:
     nothing = np.full(len(record.times), np.nan)
     asked, turned = (record.columns.get(f"spindle {name}", nothing) for name in ("command", "speed"))
     if not np.isfinite(turned).any():
-        raise AnalysisError(tr("nobody tells the spindle's measured speed here"), "no-measured-speed")
+        raise AnalysisError(tr("no device reports the measured spindle speed here"), "no-measured-speed")
     known = np.isfinite(asked) & np.isfinite(turned)
     times, asked, turned = record.times[known], asked[known], turned[known]
     changes = np.flatnonzero(np.abs(np.diff(asked)) > _CHANGE)
@@ -71,7 +71,7 @@ def last_run_up(record: Record, model: SpindleModel | None) -> SpindleResponse:
         end = float(times[groups[number + 1][0]]) if number + 1 < len(groups) else np.inf
         return _response(times, asked, turned, first, last, min(end, times[last] + _MOST), model)
     raise AnalysisError(
-        tr("the spindle was not brought to another speed in this time: start it by a program or in MDI"),
+        tr("the spindle speed did not change in this time; start the spindle by program or in MDI"),
         "no-step",
     )
 
@@ -129,15 +129,18 @@ def spindle_sheet(title: str, found: SpindleResponse) -> Sheet:
             (tr("WITHIN {share} AFTER").format(share=formats.percent(share)), _seconds(each.settling))
             for share, each in zip(_shares(model), found.steps, strict=True)
         ),
-        (tr("OFF IN THE MEAN"), f"{formats.fixed(found.off, 1)} rpm"),
-        (tr("SWING"), f"{formats.fixed(found.swing, 1)} rpm"),
+        (tr("MEAN SPEED ERROR"), f"{formats.fixed(found.off, 1)} rpm"),
+        (tr("SPEED VARIATION"), f"{formats.fixed(found.swing, 1)} rpm"),
     )
     notes = (
-        tr("The machine file counts on {accel} rpm/s and calls {share} at speed.").format(
-            accel=formats.fixed(model.accel, 0), share=formats.percent(model.at_speed)
+        tr(
+            "The machine file assumes {accel} rpm/s; a speed within {share} of the target counts as reached."
+        ).format(accel=formats.fixed(model.accel, 0), share=formats.percent(model.at_speed)),
+        tr(
+            "Mean error and variation are from the last second. A dash: the speed did not stay "
+            "within the band."
         ),
-        tr("Mean and swing are of the last second. A dash: it did not stay there."),
-        tr("Of the last run-up; worked out, nothing was changed."),
+        tr("Last run-up. Calculated only, nothing was changed."),
     )
     return Sheet(title, ("", ""), _SHARES, tuple(map(Row, rows)), notes=notes, figures=frozenset({1}))
 

@@ -72,7 +72,7 @@ class Notice(Panel):
         high = room.height()
         causes = "\n".join(tr(each) for each in dict.fromkeys((alarm.cause, *alarm.causes)))
         for label, text, y, part in (
-            ("CAUSE, THE LIKELIEST FIRST", causes, 0.0, 0.62),
+            ("CAUSES, MOST LIKELY FIRST", causes, 0.0, 0.62),
             ("WHAT TO DO", tr(alarm.remedy), 0.64, 0.36),
         ):
             box = QRectF(room.x(), room.y() + y * high, room.width(), part * high)
@@ -107,7 +107,7 @@ class Notice(Panel):
 class AlarmList(Panel):
     """Every alarm, E-stop and stop, newest on top: when, what, why, what to do."""
 
-    title = "ALARMS AND STOPS  ·  ESC CLOSES  ·  CTRL+ARROWS MARK  ·  SHIFT+F10: ITS RECORD"
+    title = "ALARMS AND STOPS  ·  ESC: CLOSE  ·  CTRL+ARROWS: SELECT  ·  SHIFT+F10: SCOPE RECORD"
     _top, _marked = Shown(0), Shown(0)
 
     def __init__(self, look: Look, open_record: Callable[[str], None], parent: QWidget | None = None) -> None:
@@ -153,7 +153,7 @@ class AlarmList(Panel):
         room = self.inside()
         if not self.entries:
             room.setHeight(3 * u)
-            painter.write(room, "No alarm and no stop yet.", 2.0, "soft", bold=False)
+            painter.write(room, "No alarms or stops yet.", 2.0, "soft", bold=False)
             return
         for number, entry in enumerate(self.entries[self._top : self._top + self.rows]):
             y = room.y() + number * _HIGH * u

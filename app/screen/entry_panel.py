@@ -102,7 +102,7 @@ _KEYS = (
     ("0", ".", "(", "+"),
     ("C", "Esc", ")", "Back"),
 )
-_SHOWN = {"-": "−", "*": "×", "/": "÷", "Back": "DEL", "Enter": "RETURN"}
+_SHOWN = {"-": "−", "*": "×", "/": "÷", "Back": "DEL", "Enter": "ENTER"}
 _FREE = "C"  # the place that a page gives its own meaning
 
 

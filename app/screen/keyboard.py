@@ -320,7 +320,7 @@ class Keyboard(QObject):
         holds = key in {Key.Key_Pause, Key.Key_Cancel} or place == "hold"
         holds = holds or self._stops_by(letter == "H" or key == Key.Key_Space)
         if key == Key.Key_Escape and self._behind.esc_holds():
-            return partial(self._behind.hold, "Esc at the screen")
+            return partial(self._behind.hold, "Esc key at the screen")
         return self._behind.hold if holds else None
 
     def _stops_by(self, key_of_stop: bool) -> bool:

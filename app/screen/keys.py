@@ -43,7 +43,7 @@ NAMES: dict[tuple[int, Qt.KeyboardModifier], str] = {
     (Key.Key_J, NONE): "Step back",
     (Key.Key_K, NONE): "Play",
     (Key.Key_K, SHIFT): "Play fast",
-    (Key.Key_L, NONE): "Step on",
+    (Key.Key_L, NONE): "Step forward",
     (Key.Key_N, NONE): "To line",
     (Key.Key_W, NONE): "W",
     (Key.Key_Left, CTRL): "Pan left",
@@ -65,7 +65,7 @@ OF_MENU = {"J": "Step back"}
 """Letters of the main menu that are called otherwise, by what they do where a part is played."""
 REPEATING = frozenset(
     {"+", "-", ",", ".", "Zoom in", "Zoom out", "Page up", "Page down"}
-    | {"Pan left", "Pan right", "Pan up", "Pan down", "Step back", "Step on"}
+    | {"Pan left", "Pan right", "Pan up", "Pan down", "Step back", "Step forward"}
 )
 # What stops the machine does so with any modifier.
 _STOPS = {Key.Key_H: "H", Key.Key_Space: "H", Key.Key_E: "E"}

@@ -23,6 +23,6 @@ def catalogue(language: str) -> Catalogue:
     folder = files("resources") / "translations"
     translator = QTranslator()
     if not translator.load(str(folder / f"turndesk_{language}.qm")):
-        raise FileNotFoundError(f"there is no catalogue turndesk_{language}.qm in {folder}")
+        raise FileNotFoundError(f"catalog turndesk_{language}.qm not found in {folder}")
     templates = (folder / "templates.txt").read_text(encoding="utf-8").splitlines()
     return Catalogue(lambda text: translator.translate(CONTEXT, text) or "", templates)

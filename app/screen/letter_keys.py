@@ -72,7 +72,7 @@ class LetterPad(Panel):
                 self._key(painter, QRectF(column * wide, row * high, wide - gap, high - gap), key)
 
     def _key(self, painter: Painter, box: QRectF, key: str) -> None:
-        words = {"Esc": "ESC", "Back": tr("DEL"), "Enter": tr("RETURN"), " ": tr("SPACE"), **_ARROWS}
+        words = {"Esc": "ESC", "Back": tr("DEL"), "Enter": tr("ENTER"), " ": tr("SPACE"), **_ARROWS}
         shown = words.get(key, key)
         ink = "text" if key.isalnum() and len(key) == 1 else "accent"
         self.key(painter, box, shown, 2.8, partial(self._press, key), ink=ink, raw=True, margin=0.4)

@@ -65,7 +65,7 @@ class MenuPage(Page):
 
     def prompt(self) -> str:
         """How a page is chosen."""
-        return "PRESS A FUNCTION KEY OR TOUCH A PAGE; ESC FOR AUTOMATIC"
+        return "PRESS A FUNCTION KEY OR TAP A PAGE. ESC: AUTOMATIC"
 
     def esc_holds(self) -> bool:
         """Return False: Esc opens the Automatic page, also while something moves."""

@@ -293,7 +293,7 @@ class MainWindow(QWidget):
     def forgotten(self, seconds: float) -> None:
         """Show that what was pressed while the screen stood still does nothing."""
         if self.frame is not None:
-            text = tr("NOT RESPONDING FOR {seconds} S: KEYS WERE DROPPED. WAIT A SECOND, THEN PRESS AGAIN")
+            text = tr("SCREEN FROZE {seconds} S. KEYS IGNORED. WAIT A SECOND, THEN PRESS AGAIN")
             self.frame.desk.warn(text.format(seconds=f"{seconds:.1f}"))
 
     def stops_at(self, event: QInputEvent) -> bool:
@@ -341,7 +341,7 @@ class MainWindow(QWidget):
         """Return whether a key that changes how a cycle runs is typed on another page; say so."""
         if name not in OF_AUTOMATIC or frame.page is frame.automatic or name in frame.page.key_actions():
             return False
-        frame.desk.say(tr("{key} IS A KEY OF THE AUTOMATIC PAGE: PRESS F1, THEN F2").format(key=name))
+        frame.desk.say(tr("{key} WORKS ON THE AUTOMATIC PAGE: PRESS F1, THEN F2").format(key=name))
         self.refresh()
         return True
 
@@ -365,7 +365,7 @@ class MainWindow(QWidget):
         if not text.isprintable() or not text or not frame.has_field():
             return frame.has_field() and name_of(key_of(event), event.modifiers()) in STOP_LETTERS
         if not event.isAutoRepeat():
-            self._untaken = tr("AN ENTRY HAS THE KEYBOARD, AND DOES NOT TAKE {key} HERE").format(key=text)
+            self._untaken = tr("{key} CANNOT BE ENTERED IN THIS FIELD").format(key=text)
             frame.desk.say(self._untaken)
             self.refresh()
         return True
@@ -436,12 +436,12 @@ class MainWindow(QWidget):
         """Not while a program is under way."""
         frame = self.frame
         if self.kiosk and frame is not None and not self._meant:
-            frame.desk.say(tr("THE DESK WAS STARTED AS A KIOSK: IT ENDS WITH THE COMPUTER OR BY SIGTERM"))
+            frame.desk.say(tr("KIOSK MODE: TURNDESK CLOSES WHEN THE COMPUTER SHUTS DOWN OR ON SIGTERM"))
             self.refresh()
             event.ignore()
             return
         if frame is not None and frame.desk.snapshot().state in UNDER_WAY:
-            frame.desk.say("A PROGRAM IS UNDER WAY: STOP IT AND PRESS R BEFORE LEAVING")
+            frame.desk.say("PROGRAM RUNNING. STOP IT AND PRESS R FIRST")
             self.refresh()
             event.ignore()
             return

@@ -74,7 +74,7 @@ PAGES = (
     PageEntry(
         MDI, "app.mdi.mdi_view.MdiPage", "app.mdi.mdi_model.MdiModel", "F4", "MDI", "one line at a time"
     ),
-    PageEntry(JOG, "app.jog.jog_view.JogPage", "", "F5", "JOG", "move by hand: axes, steps, home"),
+    PageEntry(JOG, "app.jog.jog_view.JogPage", "", "F5", "JOG", "jog: axes, steps, homing"),
     PageEntry(
         PROGRAMS,
         "app.programs.programs_view.ProgramsPage",
@@ -89,7 +89,7 @@ PAGES = (
         "",
         "F8",
         "TOOLS",
-        "T1…T32: position and nose radius",
+        "T1…T32: tool offset and nose radius",
         _LATHES,
     ),
     PageEntry(
@@ -98,7 +98,7 @@ PAGES = (
         "",
         "F8",
         "TOOLS",
-        "L, R, R2, oversizes, teeth, life; length touched off",
+        "L, R, R2, oversizes, teeth, tool life; touch off length",
         _MILLS,
     ),
     PageEntry(
@@ -107,7 +107,7 @@ PAGES = (
         "",
         "F9",
         "SECCMP",
-        "D1…D32: corrections of wear and size",
+        "D1…D32: wear and size offsets",
         _OMNITURN,
     ),
     PageEntry(
@@ -116,7 +116,7 @@ PAGES = (
         "",
         "F9",
         "PRESETS",
-        "where the workpiece lies: X Y Z, rotary axes, basic rotation",
+        "workpiece position: X Y Z, rotary axes, basic rotation",
         _MILLS,
     ),
     PageEntry(
@@ -125,7 +125,7 @@ PAGES = (
         "",
         "G",
         "ZERO",
-        "G54…G59: where SINUMERIK programs have their zero",
+        "G54…G59: zero offsets for SINUMERIK programs",
         _LATHES,
     ),
     PageEntry(
@@ -142,7 +142,7 @@ PAGES = (
         "app.part.part_sheet.PartSheet",
         "B",
         "PART",
-        "findings of the program, its stock, silenced checks",
+        "program findings, stock, silenced checks",
         _LATHES,
     ),
     PageEntry(
@@ -151,7 +151,7 @@ PAGES = (
         "app.scope.scope_model.Scope",
         "Q",
         "SCOPE",
-        "axes and spindle as curves: following error, speed, load",
+        "axis and spindle plots: following error, speed, load",
         later=("app.scope.scope_chart_view.ScopeChart",),
     ),
     PageEntry(
@@ -169,7 +169,7 @@ PAGES = (
         "app.jobs.jobs_model.JobsModel",
         "J",
         "JOBS",
-        "what is made next, how many, what it needs",
+        "which job is next, how many parts, what it needs",
     ),
     PageEntry(
         SHARED,
@@ -177,7 +177,7 @@ PAGES = (
         "app.sharing.sharing_model.SharingModel",
         "X",
         "SHARED",
-        "programs of other desks: what is newer, taken when asked",
+        "programs from other TurnDesks: newer versions, copied on request",
     ),
     PageEntry(
         ANALYSES, "app.scope.analyses_view.AnalysesPage", "app.scope.analyses.Analyses", later=_ANALYSIS

@@ -93,7 +93,7 @@ class Listing(Panel):
         u = self.look.u
         count = len(self._lines)
         title = f"PROGRAM  ·  {count} LINES" if count else "PROGRAM"
-        self.frame(painter, title if self.follows else f"{title}  ·  HOME FOLLOWS AGAIN")
+        self.frame(painter, title if self.follows else f"{title}  ·  HOME: FOLLOW")
         row = QRectF(0.3 * u, 2.5 * u, self.width() - 0.6 * u, self._high)
         number = self.top + 1
         for _ in range(self.rows):
@@ -113,7 +113,7 @@ class Listing(Panel):
         room, high = self.inside(), ROW * self.look.u
         room.setHeight(high)
         wide = max(10, int(room.width() / (_LETTER * self.look.u)))
-        for row in wrap(tr(self.trouble or "No program."), wide):
+        for row in wrap(tr(self.trouble or "No program loaded."), wide):
             painter.write(room, row, 2.0, "text" if self.trouble else "soft", bold=False, raw=True)
             room.translate(0, high)
 

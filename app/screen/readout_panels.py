@@ -177,7 +177,7 @@ class SpindleGauge(Gauge):
         """Nobody knows whether it stands: that is said instead of any figure."""
         for row, size, text in (
             (self.row(2.6, 4.0), 3.6, "UNKNOWN"),
-            (self.row(7.0, 3.0), 2.4, "SPINDLE MAY TURN"),
+            (self.row(7.0, 3.0), 2.4, "SPINDLE MAY BE TURNING"),
             (self.row(10.6, 3.0), 2.4, "PRESS E-STOP"),
         ):
             painter.fill(row, "alarm")
@@ -185,7 +185,7 @@ class SpindleGauge(Gauge):
 
     def _switch(self, painter: Painter, box: QRectF, view: SpindleFigures) -> None:
         painter.fill(box, "key" if view.auto else "alarm")
-        text = "AUTO" if view.auto else "SWITCH OFF"
+        text = "AUTO" if view.auto else "SWITCH: OFF"
         painter.write(box, text, 1.5, "text" if view.auto else "on_state", at=CENTRE, margin=0.4)
 
 

@@ -79,7 +79,7 @@ class _Start:
         """A mistake of the screen, raised into Qt's loop: to the log whole, to the operator in a sentence."""
         _log.error("the screen has failed", exc_info=(kind, error, trace))
         if self._desk is not None:
-            self._desk.say(f"A MISTAKE OF THE SCREEN; THE MACHINE IS NOT CONCERNED: {kind.__name__}: {error}")
+            self._desk.say(f"SCREEN FAULT (MACHINE OK): {kind.__name__}: {error}")
 
     def close(self) -> None:
         """Stop the machine, end the threads, tell what went wrong."""

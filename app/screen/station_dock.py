@@ -93,7 +93,7 @@ class StationDock(FingerPanel):
         inset = (2.0 if pressed else 0.8) * u
         painter.setBrush(look.colour("estop"))
         painter.drawEllipse(head.adjusted(inset, inset, -inset, -inset))
-        for text, size, down in (("STOP", 2.2, -1.4), ("IS IN" if pressed else "SCR LOCK", 1.6, 1.6)):
+        for text, size, down in (("STOP", 2.2, -1.4), ("PRESSED" if pressed else "SCR LOCK", 1.6, 1.6)):
             painter.write(head.translated(0, down * u), text, size, "estop_ink", at=CENTRE, margin=2.4)
         self.controls.append(Control(head, self._struck, always=True))
         out = QRectF(head.right() + 0.6 * u, box.y() + 0.8 * u, 0, box.height() - 1.6 * u)
@@ -185,9 +185,9 @@ class StationDock(FingerPanel):
     def _start(self, painter: Painter) -> None:
         desk = self._desk
         head = self._row(54.2, 2.4)
-        text = "CYCLE START: BOTH PALMS" if desk.two_hand else "CYCLE START"
+        text = "CYCLE START: PRESS BOTH" if desk.two_hand else "CYCLE START"
         if self._latches:
-            text = "CYCLE START: ONE BY ONE"
+            text = "CYCLE START: ONE, THEN THE OTHER"
         painter.write(head, text, 1.6, "pause" if self._latches else "soft")
         box = self._row(56.8, 13.6)
         if not desk.two_hand:

@@ -166,7 +166,7 @@ class Frame(QWidget):
         if name:
             self.open_record(name)
         else:
-            self.desk.say(tr("NOTHING WAS RECORDED BEFORE THIS ONE: ALARMS AND E-STOPS HAVE A RECORD"))
+            self.desk.say(tr("NO SCOPE RECORD FOR THIS ENTRY: ONLY ALARMS AND E-STOPS HAVE ONE"))
 
     def toggle_log(self) -> None:
         """The log of alarms over the page, or away again."""
@@ -282,7 +282,7 @@ class Frame(QWidget):
         self.strip.mute = frozenset(lamp.key for lamp in lamps if self._is_dead(lamp.key))
         if self.page is self.automatic:
             self._show_readouts(snapshot, view, loaded)
-            go_on = tr("{start} TO GO ON").format(start=tr(self.desk.start_words))
+            go_on = tr("{start} TO CONTINUE").format(start=tr(self.desk.start_words))
             self.notice.show_notice(view.message, go_on, view.alarms)
         else:
             self.head.show_view(view)
@@ -352,7 +352,7 @@ class Frame(QWidget):
 
     def _lamps_of(self, snapshot: Snapshot, view: MachineStatus) -> tuple[Lamp, ...]:
         """The lit words, from left to right."""
-        kept = (Lamp("NOT KEPT", lit=True, warn=True),) if self.desk.not_kept() else ()
+        kept = (Lamp("NOT SAVED", lit=True, warn=True),) if self.desk.not_kept() else ()
         return (*view.modes, *view.lamps, *kept, drives_lamp(snapshot, "D"), Lamp("RESET", False, "R"))
 
     def _notices_of(self, snapshot: Snapshot, loaded: Loaded, *, here: bool) -> tuple[NoticeRow, ...]:
@@ -374,10 +374,8 @@ class Frame(QWidget):
             rows.append(offered_job)
         if desk.not_kept():
             held = desk.waiting()
-            waits = (
-                tr("ONLY IN MEMORY, AND LOST IF TURNDESK ENDS NOW: {what}").format(what=held) if held else ""
-            )
-            rows.append(NoticeRow(tr("NOT KEPT: {why}").format(why=desk.not_kept()), waits))
+            waits = tr("IN MEMORY ONLY, LOST IF TURNDESK EXITS NOW: {what}").format(what=held) if held else ""
+            rows.append(NoticeRow(tr("NOT SAVED: {why}").format(why=desk.not_kept()), waits))
         return tuple(rows)
 
     def _keys_of(self, snapshot: Snapshot, loaded: Loaded) -> tuple[tuple[str, str], ...]:

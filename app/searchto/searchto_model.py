@@ -25,7 +25,7 @@ from core.language.source import Source
 if TYPE_CHECKING:
     from app.searchto.searchto_finder import Search
 
-WAY_OUT = "(WAY OUT OF THE PART)"
+WAY_OUT = "(RETRACT FROM THE PART)"
 
 
 class SearchtoStage(Enum):
@@ -140,7 +140,7 @@ class SearchtoModel:
     def turn_pass(self, by: int) -> None:
         """To a later or an earlier pass of a line that is run more than once."""
         if self.count < 2:
-            self.say(tr("ENTER FIRST; ONLY A LINE IN A LOOP OR A SUBROUTINE HAS PASSES"))
+            self.say(tr("PRESS ENTER FIRST. ONLY LINES IN LOOPS OR SUBROUTINES HAVE PASSES"))
             return
         number = max(1, min(self.number + by, self.count))
         if number != self.number:
@@ -202,9 +202,9 @@ class SearchtoModel:
         self._forget()
         self.clear()
         if not self._has_text:
-            self.say(tr("TYPE A TEXT FIRST; A QUOTATION MARK BEFORE FIGURES MAKES THEM ONE"))
+            self.say(tr("TYPE A TEXT FIRST. TO FIND A NUMBER AS TEXT, TYPE A QUOTATION MARK BEFORE IT"))
         elif not self.cursor.find(way):
-            self.say(tr("{text} IS IN NO LINE").format(text=self.cursor.wanted))
+            self.say(tr("{text} NOT FOUND IN ANY LINE").format(text=self.cursor.wanted))
 
     def search(self) -> None:
         """Rebuild the state of the cursor's line."""
@@ -230,7 +230,7 @@ class SearchtoModel:
         self.clear()
         if self._out_by_hand:
             self.say(
-                tr("ON A MILL THE TOOL IS DRAWN OUT ALONG ITS AXIS BEFORE EVERY RESTART, OR BY HAND IN JOG")
+                tr("ON A MILL, EVERY RESTART FIRST RETRACTS THE TOOL ALONG ITS AXIS. YOU CAN ALSO JOG IT OUT")
             )
         elif (job := self.session.now.job) is not None:
             self.stage, self._of = SearchtoStage.SEARCHING, job
@@ -250,7 +250,7 @@ class SearchtoModel:
             self._confirm_out(snapshot, self._cut, whole)
             return
         if self.stage is not SearchtoStage.SHOWN or plan is None or whole is None:
-            self.say(tr("CHOOSE A GOOD LINE FIRST"))
+            self.say(tr("CHOOSE A VALID RESTART LINE FIRST"))
             return
         if snapshot.state is not State.IDLE:
             self.say(tr("SWITCH THE DRIVES ON FIRST (D)"))
@@ -273,7 +273,7 @@ class SearchtoModel:
             return
         setup = replace(whole.setup, start=snapshot.demand, begin=out.begin)
         self.stage = SearchtoStage.PROVING
-        self.finder.check(make_job(Source("WAY OUT", WAY_OUT), setup))
+        self.finder.check(make_job(Source("RETRACT", WAY_OUT), setup))
 
     def escape(self) -> bool:
         """One step back; False when there is none to go."""
@@ -319,7 +319,7 @@ class SearchtoModel:
         """Why the palms start nothing now; empty when they may."""
         if self.stage is SearchtoStage.READY or self.snapshot().state in CYCLE:
             return ""
-        return tr("NO START: SEARCH A LINE AND CONFIRM IT FIRST (F10)")
+        return tr("CANNOT START: SEARCH FOR A LINE AND CONFIRM IT FIRST (F10)")
 
     def _see_start(self, snapshot: Snapshot) -> None:
         waits = self._job is not None and snapshot.prepared == self._job.digest
@@ -335,7 +335,7 @@ class SearchtoModel:
 
     def _not_searched(self, why: str) -> None:
         self.stage = SearchtoStage.CHOOSE
-        self.say(tr("THE LINE CANNOT BE SEARCHED: {why}").format(why=why))
+        self.say(tr("SEARCH FAILED: {why}").format(why=why))
 
     def _found(self, answer: Answer) -> None:
         if isinstance(answer, RestartPoint):
@@ -375,23 +375,23 @@ def searchto_prompt(
     """``start`` names what starts a cycle here; ``trouble`` keeps the plan from being started; ``out``: it is
     the way out of the part alone."""
     if out and stage is SearchtoStage.SHOWN and not trouble:
-        return tr("LOOK AT THE WAY OUT OF THE PART; F10 CONFIRMS IT")
+        return tr("CHECK THE RETRACT PATH. F10: CONFIRM")
     if out and stage is SearchtoStage.READY:
-        return tr("TO TAKE THE TOOL OUT OF THE PART {start}; ESC TAKES IT BACK").format(start=start)
+        return tr("RETRACT THE TOOL FROM THE PART: {start}. ESC: CANCEL").format(start=start)
     words = {
-        SearchtoStage.SEARCHING: tr("GOING THROUGH THE PROGRAM; ESC GIVES UP"),
-        SearchtoStage.PROVING: tr("PROVING THE RESTART; ESC GIVES UP"),
-        SearchtoStage.SHOWN: trouble or tr("COMPARE; LOOK AT THE WAY AND AT WHAT WILL START; F10 CONFIRMS"),
-        SearchtoStage.REFUSED: tr("NO START FROM THIS LINE: F8 OR F9 GOES TO THE NEAREST GOOD ONE"),
-        SearchtoStage.READY: tr("TO START THE RESTART {start}; ESC TAKES IT BACK").format(start=start),
+        SearchtoStage.SEARCHING: tr("SEARCHING THE PROGRAM. ESC: CANCEL"),
+        SearchtoStage.PROVING: tr("PROVING THE RESTART. ESC: CANCEL"),
+        SearchtoStage.SHOWN: trouble or tr("CHECK STATE, PATH AND STARTS. F10: CONFIRM"),
+        SearchtoStage.REFUSED: tr("CANNOT START FROM THIS LINE. F8, F9: NEAREST VALID LINE"),
+        SearchtoStage.READY: tr("RESUME AT THIS LINE: {start}. ESC: CANCEL").format(start=start),
     }
     return words.get(stage) or _choose(snapshot)
 
 
 def _choose(snapshot: Snapshot) -> str:
     if not snapshot.interrupted_line:
-        return tr("TYPE A LINE NUMBER OR A TEXT, OR CHOOSE BY THE ARROWS; ENTER REBUILDS THE STATE")
+        return tr("TYPE A LINE NUMBER OR TEXT, OR USE THE ARROWS   ENTER: REBUILD STATE")
     words = tr(
-        "LINE {line} WAS RUNNING WHEN THE PROGRAM BROKE OFF; ENTER REBUILDS ITS STATE, F4 ONLY LEADS OUT"
+        "LINE {line} WAS RUNNING WHEN THE PROGRAM STOPPED. ENTER: REBUILD ITS STATE   F4: RETRACT ONLY"
     )
     return words.format(line=snapshot.interrupted_line)

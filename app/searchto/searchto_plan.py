@@ -54,7 +54,7 @@ def way_out_of(cut: CutRecord, snapshot: Snapshot, job: Job, choices: Choices) -
     feed = f"{formats.feed(choices.modest, metric, False)} {formats.feed_unit(metric, False)}"
     trouble = jog_words(found, tool)
     if not trouble and not steps:
-        trouble = tr("T{tool} STANDS CLEAR OF THE PART ALREADY").format(tool=tool)
+        trouble = tr("T{tool} IS ALREADY CLEAR OF THE PART").format(tool=tool)
     return WayOut(begin, drawn(steps, snapshot, cut.offsets.get(tool, (0.0, 0.0))), feed, trouble)
 
 
@@ -90,11 +90,13 @@ def jog_words(found: Retract, tool: int) -> str:
     if found.known:
         return ""
     if found.tool_place is ToolPlace.TAP:
-        words = tr("T{tool} IS A TAP IN ITS THREAD: TURN IT OUT BY HAND WITH THE SPINDLE, Z FOLLOWING")
+        words = tr(
+            "T{tool} IS A TAP IN ITS THREAD: BACK IT OUT BY TURNING THE SPINDLE BY HAND, WITH Z FOLLOWING"
+        )
     elif found.tool_place is ToolPlace.THREAD:
-        words = tr("T{tool} STANDS IN A THREAD: JOG X OFF THE THREAD FIRST, NOT Z")
+        words = tr("T{tool} IS IN A THREAD: JOG X OUT OF THE THREAD FIRST, NOT Z")
     elif found.tool_place is ToolPlace.TURNED:
-        words = tr("C HAS TURNED SINCE T{tool} WENT IN: TURN THE SPINDLE FREE BY HAND AND JOG T{tool} OUT")
+        words = tr("C HAS TURNED SINCE T{tool} WENT IN: TURN THE SPINDLE FREE BY HAND, THEN JOG T{tool} OUT")
     else:
         words = _towards(*found.away)
     return words.format(tool=tool, x="X+" if found.away[0] > 0 else "X-")
@@ -102,12 +104,12 @@ def jog_words(found: Retract, tool: int) -> str:
 
 def _towards(x: int, z: int) -> str:
     if x and z:
-        return tr("T{tool} STANDS IN THE PART: JOG IT OUT BY THE WAY IT CAME, {x} AND Z+ TOGETHER")
+        return tr("T{tool} IS IN THE PART: JOG IT BACK OUT ALONG ITS ENTRY PATH, {x} AND Z+ TOGETHER")
     if x:
-        return tr("T{tool} STANDS IN THE PART: JOG {x} OUT OF IT FIRST, NOT Z")
+        return tr("T{tool} IS IN THE PART: JOG {x} UNTIL CLEAR FIRST, NOT Z")
     if z:
-        return tr("T{tool} STANDS IN THE PART: JOG Z+ OUT OF IT FIRST, NOT X")
-    return tr("HOW T{tool} CAME TO STAND HERE IS NOT KNOWN: JOG IT CLEAR OF THE PART BY THE WAY IT CAME")
+        return tr("T{tool} IS IN THE PART: JOG Z+ UNTIL CLEAR FIRST, NOT X")
+    return tr("HOW T{tool} ENTERED THE PART IS UNKNOWN: JOG IT BACK OUT THE SAME PATH")
 
 
 TURNED = 0.01  # degrees
@@ -170,12 +172,10 @@ def _on_mill(
     begin = begin_on_mill(found, now, choices, machine)
     goal = goal_of(found, now, machine)
     places = tuple(
-        StateRow(tr("{axis} MACHINE").format(axis=name), _place(name, goal[name]), _place(name, at))
+        StateRow(tr("MACHINE {axis}").format(axis=name), _place(name, goal[name]), _place(name, at))
         for name, at in zip(machine.names, now.at, strict=True)
     )
-    no_way = tr(
-        "ON THIS MACHINE THE SLIDES HAVE NO LIMITS, SO NO SAFE WAY IS KNOWN: START FROM THE FIRST LINE"
-    )
+    no_way = tr("NO SAFE PATH: THE AXES OF THIS MACHINE HAVE NO LIMITS. START FROM THE FIRST LINE")
     return Plan(
         found=found,
         begin=begin,
@@ -196,7 +196,7 @@ def _turned(found: RestartPoint, now: MachineNow, machine: Kinematics) -> str:
     names = {axis.name for axis in machine.rotaries}
     for name, wanted, at in zip(machine.names, found.axes, now.at, strict=True):
         if name in names and wanted is None and abs(at) > TURNED:
-            return tr("LOOK: {axis} STANDS AT {at} AND NO LINE BEFORE HAS TURNED IT; IT STAYS THERE").format(
+            return tr("CHECK {axis}: IT IS AT {at} AND NO EARLIER LINE POSITIONED IT. IT STAYS THERE").format(
                 axis=name, at=formats.angle(at)
             )
     return ""
@@ -217,7 +217,7 @@ def _passes(found: RestartPoint) -> tuple[StateRow, ...]:
 
 def _pass(wanted: LoopPass | Called, was: LoopPass | Called | None) -> StateRow:
     if isinstance(wanted, Called):
-        label = tr("CALLED ON LINE")
+        label = tr("CALLED FROM LINE")
         now = str(was.line) if isinstance(was, Called) else NONE
         return StateRow(label, str(wanted.line), now)
     label = tr("PASS OF LINES {first}-{last}").format(first=wanted.first, last=wanted.last)
@@ -233,9 +233,7 @@ def _left_out(found: RestartPoint) -> str:
     first, last = found.left_out
     if not first:
         return ""
-    return tr("LOOK: LINES {first} TO {last} ARE LEFT OUT AND THEIR METAL IS STILL THERE").format(
-        first=first, last=last
-    )
+    return tr("LINES {first} TO {last} SKIPPED. MATERIAL REMAINS").format(first=first, last=last)
 
 
 def _rows(point: Checkpoint, snapshot: Snapshot, language: str) -> tuple[StateRow, ...]:
@@ -274,9 +272,9 @@ def _words(step: ApproachStep, point: Checkpoint, language: str) -> str:
             speed = next(row.value for row in rows_of(point, language) if row.key == "speed")
             return f"{way} {speed}"
         case SpindleLock():
-            return tr("SPINDLE LOCKED AS C, TURNED TO ITS ANGLE")
+            return tr("SPINDLE LOCKED AS C AXIS, TURNED TO ITS ANGLE")
         case SpindleOrient(angle=angle):
-            return tr("SPINDLE TURNED TO {angle} AND HELD").format(angle=formats.angle(angle))
+            return tr("SPINDLE ORIENTED AT {angle}").format(angle=formats.angle(angle))
         case Coolant():
             return tr("COOLANT")
         case Output(name=name):
@@ -290,5 +288,5 @@ def _collet(point: Checkpoint, snapshot: Snapshot) -> str:
     if wanted == now:
         return ""
     if wanted:
-        return tr("THE COLLET IS OPEN AND MUST BE CLOSED AT THIS LINE: M12 IN MDI")
-    return tr("THE COLLET IS CLOSED AND MUST BE OPEN AT THIS LINE: M13 IN MDI")
+        return tr("COLLET IS OPEN BUT MUST BE CLOSED AT THIS LINE: RUN M12 IN MDI")
+    return tr("COLLET IS CLOSED BUT MUST BE OPEN AT THIS LINE: RUN M13 IN MDI")

@@ -92,7 +92,7 @@ class StatePanel(Panel):
             return
         foot = QRectF(room.x(), room.y() + len(rows) * high, room.width(), high if shown.whole else fold)
         if not other:
-            painter.write(foot, tr("NOTHING DIFFERS FROM NOW"), 2.2, "text")
+            painter.write(foot, tr("NO DIFFERENCES FROM CURRENT STATE"), 2.2, "text")
             foot.translate(0, foot.height())
         self._fold(painter, foot, equal)
         for number, row in enumerate(equal if shown.whole else (), start=1):
@@ -102,7 +102,7 @@ class StatePanel(Panel):
         """The row of what is equal, by name; a finger opens and closes it."""
         u = self.look.u
         painter.fill(box.adjusted(0, 0.2 * u, 0, -0.2 * u), "key")
-        words = tr("{count} EQUAL").format(count=len(equal))
+        words = tr("{count} IDENTICAL").format(count=len(equal))
         sign = "▲" if self.shown.whole else "▼"
         painter.write(box.adjusted(u, 0, 0, 0), f"{sign}  Tab  {words}", 1.7, "accent", raw=True)
         names = ", ".join(tr(row.label) for row in equal)

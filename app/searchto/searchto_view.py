@@ -91,7 +91,7 @@ class StartsPanel(Panel):
         self.trouble, self.confirmed = trouble, confirmed
 
     def draw(self, painter: Painter) -> None:
-        title = tr("CONFIRMED: CYCLE START BEGINS IT") if self.confirmed else tr("WILL START")
+        title = tr("CONFIRMED: READY FOR CYCLE START") if self.confirmed else tr("WILL START")
         self.frame(painter, title, "lit" if self.confirmed else "frame", 0.3 if self.confirmed else 0.16)
         u, room = self.look.u, self.inside()
         lines = [(text, "text", True) for text in self.starts]
@@ -114,7 +114,7 @@ class SearchtoPage(ModelPage):
         "MENU",
         "NEXT",
         "PREVIOUS",
-        "WAY OUT",
+        "RETRACT",
         "COOLANT",
         "SEARCH",
         "ALARMS",
@@ -287,17 +287,17 @@ class SearchtoPage(ModelPage):
         model, line = self.model, self.model.cursor.line
         answer, plan = model.answer, model.plan
         if answer is not None:
-            title = tr("LINE {line} IS NOT GOOD").format(line=answer.line)
-            near = (("F8", tr("GOOD BEFORE"), answer.before), ("F9", tr("GOOD AFTER"), answer.after))
+            title = tr("CANNOT START FROM LINE {line}").format(line=answer.line)
+            near = (("F8", tr("PREVIOUS VALID"), answer.before), ("F9", tr("NEXT VALID"), answer.after))
             return StateShown(title, (), answer.why, tuple(self._near(*each) for each in near))
         if plan is not None:
             return self._state(plan)
         if model.leaving is not None:
-            return StateShown(tr("THE WAY OUT OF THE PART"), (), model.leaving.trouble)
+            return StateShown(tr("RETRACT PATH"), (), model.leaving.trouble)
         if model.stage is SearchtoStage.SEARCHING:
-            words = tr("GOING THROUGH THE PROGRAM TO LINE {line}").format(line=line)
+            words = tr("SEARCHING UP TO LINE {line}").format(line=line)
             return StateShown(f"{words}  ·  {model.finder.worker.reached}")
-        return StateShown(tr("ENTER OR A TOUCH REBUILDS THE STATE OF LINE {line}").format(line=line))
+        return StateShown(tr("ENTER OR TAP: REBUILD STATE OF LINE {line}").format(line=line))
 
     def _state(self, plan: Plan) -> StateShown:
         title, visit = tr("STATE AT LINE {line}").format(line=plan.found.line), plan.found.visit
@@ -324,11 +324,15 @@ class SearchtoPage(ModelPage):
         self.path.show_approach(plan.legs)
         choices: list[str] = []
         if plan.found.checkpoint.modal.coolant:
-            choices.append(tr("F5: WITH COOLANT") if model.choices.coolant else tr("F5: WITHOUT COOLANT"))
+            choices.append(
+                tr("COOLANT WILL START. F5: CHANGE")
+                if model.choices.coolant
+                else tr("COOLANT WILL NOT START. F5: CHANGE")
+            )
         if plan.way:
-            choices.append(tr("WAY: {legs}").format(legs=", ".join(plan.way)))
+            choices.append(tr("PATH: {legs}").format(legs=", ".join(plan.way)))
         trouble = plan.trouble or plan.warning
-        starts = plan.starts or (tr("NOTHING BUT THE SLIDES"),)
+        starts = plan.starts or (tr("AXES ONLY"),)
         self.starts.show_starts(starts, choices, trouble, confirmed=model.stage is SearchtoStage.READY)
 
     def _show_stock(self, loaded: Loaded) -> None:
@@ -344,10 +348,10 @@ class SearchtoPage(ModelPage):
 
     def _show_leaving(self, leaving: WayOut) -> None:
         self.path.show_approach(leaving.legs)
-        told = tr("THE TOOL LEAVES THE PART AT {feed}").format(feed=leaving.feed)
-        choices = () if leaving.trouble else (told, tr("H HOLDS IT ON ITS WAY"))
+        told = tr("RETRACT FROM PART AT {feed}").format(feed=leaving.feed)
+        choices = () if leaving.trouble else (told, tr("H: FEED HOLD DURING RETRACT"))
         ready = self.model.stage is SearchtoStage.READY
-        only = () if leaving.trouble else (tr("NOTHING BUT THE SLIDES"),)
+        only = () if leaving.trouble else (tr("AXES ONLY"),)
         self.starts.show_starts(only, choices, leaving.trouble, confirmed=ready)
 
     def resizeEvent(self, _event: QResizeEvent) -> None:

@@ -21,8 +21,8 @@ from core.shapes.shape_fields import Field, Kind, Value, Values, text
 from core.shapes.shape_setting import Setting
 from core.shapes.sketch import Dim, Sketch, cut, part, sketch
 
-NO_DRAWINGS = "There is no drawing beside the programs: copy a DXF or SVG there by F6, F8."
-CANCELED = "Reading was canceled: press F6 to read the drawing again."
+NO_DRAWINGS = "No drawings in the program folder: copy a DXF or SVG file into it with F6, F8."
+CANCELED = "Reading was canceled. Press F6 to read the drawing again."
 _WORDS = {"DUNIT": (*UNITS, OWN), "LAYER": (ALL,)}  # choices of a drawing that are words of ours
 
 
@@ -58,25 +58,25 @@ def _written(filled: Filled, _setting: Setting, code: Code) -> None:
 
 PROFILE = Shape(
     "DRAWING",
-    "a profile out of a DXF or SVG drawing: faced, roughed, finished, grooved",
+    "a profile from a DXF or SVG drawing: faced, roughed, finished, grooved",
     (
         Field("FILE", "DRAWING", Kind.CHOICE),
-        Field("DUNIT", "UNIT OF THE DRAWING", Kind.CHOICE),
+        Field("DUNIT", "DRAWING UNIT", Kind.CHOICE),
         Field("LAYER", "LAYER", Kind.CHOICE),
         Field("CONTOUR", "CONTOUR", Kind.CHOICE),
         Field("AXIS", "AXIS", Kind.CHOICE),
         Field("SIDE", "SIDE", Kind.CHOICE, str(Side.OUTSIDE), (Side.OUTSIDE, Side.INSIDE)),
-        Field("FRONT", "FACE IS AT THE", Kind.CHOICE, str(Front.RIGHT), tuple(Front)),
-        Field("ZERO", "Z0 IS AT THE", Kind.CHOICE, str(Zero.FACE), tuple(Zero)),
-        Field("SHIFT", "Z OF THAT PLACE", Kind.COORDINATE, 0.0, zero=True),
+        Field("FRONT", "FACE END", Kind.CHOICE, str(Front.RIGHT), tuple(Front)),
+        Field("ZERO", "Z REFERENCE POINT", Kind.CHOICE, str(Zero.FACE), tuple(Zero)),
+        Field("SHIFT", "Z OF REFERENCE POINT", Kind.COORDINATE, 0.0, zero=True),
         Field("MATERIAL", "MATERIAL", Kind.CHOICE, "STEEL", tuple(MATERIALS)),
-        Field("FROM", "DIAMETER OF THE STOCK", Kind.DIAMETER, zero=True),
-        Field("HOLE", "DIAMETER OF THE HOLE", Kind.DIAMETER, only=_inside),
-        Field("STOCK", "STOCK BEFORE THE FACE", Kind.LENGTH, zero=True, only=_outside),
+        Field("FROM", "STOCK DIAMETER", Kind.DIAMETER, zero=True),
+        Field("HOLE", "HOLE DIAMETER", Kind.DIAMETER, only=_inside),
+        Field("STOCK", "STOCK ON THE FACE", Kind.LENGTH, zero=True, only=_outside),
         Field("T", "TOOL", Kind.TOOL, most=32),
-        Field("ROUGH", "DEPTH OF A ROUGH PASS", Kind.LENGTH, zero=True),
+        Field("ROUGH", "ROUGHING DEPTH OF CUT", Kind.LENGTH, zero=True),
         Field("COMP", "NOSE COMPENSATION D", Kind.OFFSET, zero=True, most=32),
-        Field("BLADE", "GROOVE TOOL", Kind.TOOL, 0.0, zero=True, most=32),
+        Field("BLADE", "GROOVING TOOL", Kind.TOOL, 0.0, zero=True, most=32),
     ),
     _written,
     _picture,

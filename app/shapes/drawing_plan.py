@@ -164,7 +164,7 @@ class _Making:
         self.choices["LAYER"] = (ALL, *(layer for layer in self.drawing.layers if layer and layer != ALL))
         layer = self.word("LAYER", ALL)
         if layer not in self.choices["LAYER"]:
-            raise DrawingError(f"{self.drawing.name} has no layer {layer}: choose another.", "no-layer")
+            raise DrawingError(f"{self.drawing.name} has no layer {layer}: choose another layer.", "no-layer")
         return "" if layer == ALL else layer
 
     def _unit(self) -> float:
@@ -175,7 +175,9 @@ class _Making:
             own = OWN
         said = self.word("DUNIT", own)
         if not said:
-            raise DrawingError(f"{self.drawing.name} does not say its unit: choose MM or INCH.", "no-unit")
+            raise DrawingError(
+                f"{self.drawing.name} does not specify its unit: choose MM or INCH.", "no-unit"
+            )
         return UNITS.get(said, self.drawing.unit)
 
     def _view(self, layer: str, unit: float) -> None:
@@ -192,7 +194,7 @@ class _Making:
 
     def _net(self, layer: str) -> Net:
         if not self.nets or self.view is None:
-            where = f"on layer {layer}" if layer else "beside this axis"
+            where = f"on layer {layer}" if layer else "next to this axis"
             raise DrawingError(
                 f"{self.drawing.name} has no contour {where}: choose another layer or axis.", "no-contour"
             )
@@ -210,7 +212,7 @@ class _Making:
         if "DUNIT" in self.asked.values:
             return
         if (wrong := wrong_unit(net, self.view.unit, self.asked.setting.shop.travel)) is not None:
-            words = f"{self.drawing.name} is {wrong[0]}: in {wrong[1]} it would fit: choose {wrong[1]}."
+            words = f"{self.drawing.name} is {wrong[0]}, but would fit in {wrong[1]}: choose {wrong[1]}."
             raise DrawingError(words, "wrong-unit")
 
     def _chosen(self, net: Net) -> Profile:
@@ -226,7 +228,7 @@ class _Making:
         now = asked.setting
         fields = proposed_fields(chosen, given, now.shop.tools, metric=now.metric, dialect=now.dialect)
         if chosen.side is Side.INSIDE and not given.get("HOLE"):
-            raise DrawingError("A bore begins with a hole: type its diameter.", "no-hole")
+            raise DrawingError("Boring needs a predrilled hole: enter its diameter.", "no-hole")
         return profile_program(chosen, fields, asked.lines, asked.setting), fields
 
 

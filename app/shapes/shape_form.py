@@ -103,7 +103,7 @@ class ShapeForm:
             return self.one.refusals(self.setting)
         except ArithmeticError:
             word = self.fields[min(self.marked, len(self.fields) - 1)].word
-            return [Refusal(word, "These figures make no shape: look at the last that was typed.")]
+            return [Refusal(word, ("These values do not make a shape: check the last one that you entered."))]
 
     def _with_own_label(self, refused: Refusal) -> str:
         """A sentence that begins with the field's label calls it as the form does, in its language."""

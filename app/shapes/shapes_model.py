@@ -100,7 +100,7 @@ class Shapes:
         ``table``: the forms of the list; of calculators and templates no piece of the text is opened.
         """
         if not written_in(name):
-            return tr("SHAPES ARE WRITTEN IN OMNITURN OR SINUMERIK: THIS PROGRAM SPEAKS ANOTHER LANGUAGE")
+            return tr("SHAPES NEED OMNITURN OR SINUMERIK: THIS PROGRAM IS IN ANOTHER LANGUAGE")
         dialect = dialect_of(name)
         table = (HELPERS_OF if table is HELPERS else FORMS_OF)[dialect]
         self.new = replace(self.new, dialect=dialect)
@@ -122,7 +122,7 @@ class Shapes:
         if found is not None and line < len(self.lines):
             at, shape = found
             text = tr(
-                "LINE {line}: THE COMMENT OF THIS {shape} WAS CHANGED AND CANNOT BE READ ANY MORE; UNDO IT"
+                "LINE {line}: THE COMMENT OF THIS {shape} WAS EDITED AND IS NOT READABLE. UNDO THE EDIT"
             )
             self.notice = text.format(line=at + 1, shape=tr(shape.name))
 
@@ -157,7 +157,7 @@ class Shapes:
             self._preview()
 
     def _no_shop(self, why: str) -> None:
-        self.notice = tr("THE TOOL SHEETS CANNOT BE READ: {why}").format(why=why)
+        self.notice = tr("TOOL DATA CANNOT BE READ: {why}").format(why=why)
 
     def piece_at(self, line: int) -> Piece | None:
         """The piece that this line, from 0, belongs to."""
@@ -210,7 +210,7 @@ class Shapes:
         elif shape is PROFILE and not self.lines:
             self.at = 0  # it writes a head of its own
         elif not begun(self.lines, self.new.dialect):
-            self.notice = tr("A PROGRAM BEGINS WITH ITS HEAD: PRESS N, THEN WRITE IT")
+            self.notice = tr("THE PROGRAM NEEDS A HEAD FIRST. PRESS N AND WRITE THE HEAD")
             return
         setting = setting_at(self.lines, self.at, self.shop, self.new)
         if shape is PROFILE:
@@ -235,9 +235,13 @@ class Shapes:
         self.notice, self.asked = "", None
         if piece.taken:
             words = ", ".join(each.label for each in piece.filled.fields if each.word in piece.taken)
-            self.notice = tr("CHANGED BY HAND IN THE TEXT, AND TAKEN OVER: {fields}").format(fields=words)
+            self.notice = tr("EDITED BY HAND IN THE TEXT, NOW USED IN THE FORM: {fields}").format(
+                fields=words
+            )
         elif piece.foreign >= 0:
-            text = tr("LINE {line} WAS CHANGED BY HAND: THE FORM HAS WHAT THE COMMENT SAYS, F2 ASKS FIRST")
+            text = tr(
+                "LINE {line} WAS EDITED BY HAND. THE FORM SHOWS THE VALUES OF THE COMMENT. F2 ASKS FIRST"
+            )
             self.notice = text.format(line=piece.foreign + 1)
         self.form = ShapeForm(piece.filled.shape, piece.setting, piece)
         self._preview()
@@ -246,7 +250,7 @@ class Shapes:
 
     def keys(self) -> dict[int, Key]:
         """The function keys."""
-        pad = Key("PAD", self.turn_pad)
+        pad = Key("KEYPAD", self.turn_pad)
         if self.form is None:
             return {2: Key("OPEN", self.open_marked), 9: pad}
         found = {2: Key("WRITE", self.write), 8: Key("LIST", self.to_list), 9: pad}
@@ -361,9 +365,7 @@ class Shapes:
             self._to_trouble(form)
         elif form.instead is not None and form.instead.foreign >= 0 and self.asked is None:
             count = form.instead.count
-            text = tr(
-                "F6 REPLACES {count} LINES THAT WERE CHANGED BY HAND, FROM LINE {line}; ESC LEAVES THEM"
-            )
+            text = tr("F6: REPLACE {count} LINES EDITED BY HAND, FROM LINE {line}   ESC: KEEP THEM")
             self.notice = text.format(count=count, line=form.instead.first + 1)
             self.asked = self._write
         else:
@@ -389,9 +391,9 @@ class Shapes:
             moved = [_moved(each, grown) for each in self.pieces if each.filled.shape is not form.shape]
             text, stay = renewed(text, self.shop, moved)
             if stay == 1:
-                said = tr("1 SHAPE WAS CHANGED BY HAND AND STAYS AS IT IS")
+                said = tr("1 SHAPE WAS EDITED BY HAND AND IS NOT CHANGED")
             elif stay:
-                said = tr("{count} SHAPES WERE CHANGED BY HAND AND STAY AS THEY ARE").format(count=stay)
+                said = tr("{count} SHAPES WERE EDITED BY HAND AND ARE NOT CHANGED").format(count=stay)
         self.form, self.notice, self.asked = None, said, None
         self._take("\n".join(text) + "\n")
         self.at = behind
@@ -403,7 +405,7 @@ class Shapes:
         form = self.form
         if form is None or form.instead is None:
             return
-        self.notice = tr("F6 TAKES THE {count} LINES OF THIS SHAPE OUT OF THE TEXT; ESC LEAVES THEM").format(
+        self.notice = tr("F6: DELETE THE {count} LINES OF THIS SHAPE FROM THE TEXT   ESC: KEEP THEM").format(
             count=form.instead.count
         )
         self.asked = self._delete
@@ -468,7 +470,7 @@ class Shapes:
         self.planning.ask(lambda watch: self.planner.plan(asked, watch), planned, self._no_plan)
 
     def _no_plan(self, why: str) -> None:
-        self.notice = tr("THE DRAWING CANNOT BE WORKED OUT: {why}").format(why=why)
+        self.notice = tr("THE DRAWING CANNOT BE PROCESSED: {why}").format(why=why)
 
     def _try(self, form: DrawingForm, plan: Plan) -> None:
         if not form.lines:
@@ -491,26 +493,24 @@ class Shapes:
         if self.notice:
             return self.notice
         if self.form is None and not self.of_shapes:
-            return tr("A LETTER OPENS A CALCULATOR OR A TEMPLATE; F10: TO THE TEXT")
+            return tr("PRESS A LETTER: OPEN CALCULATOR OR TEMPLATE   F10: TO THE TEXT")
         if self.form is None:
-            return tr("A LETTER OPENS A SHAPE, RIGHT LEADS TO THOSE OF THIS PROGRAM; F10: TO THE TEXT")
+            return tr("PRESS A LETTER: OPEN SHAPE   RIGHT: SHAPES OF THIS PROGRAM   F10: TO THE TEXT")
         return self._waiting() if self.form.waits else tr(self.form.trouble or _keys_of(self.form))
 
     def _waiting(self) -> str:
         if not self.planner.reading:
-            return tr("WORKING OUT THE CONTOUR. PRESS F6 TO CANCEL")
+            return tr("CALCULATING THE CONTOUR. PRESS F6 TO CANCEL")
         words = tr("READING THE DRAWING: {seconds} s. PRESS F6 TO CANCEL")
         return words.format(seconds=self.planning.reached)
 
 
 def _keys_of(form: ShapeForm) -> str:
     if form.shape is PROFILE:
-        return tr(
-            "LEFT AND RIGHT CHOOSE; A FINGER ON THE DRAWING PICKS THE CONTOUR, OR THE AXIS; F2 WRITES IT"
-        )
+        return tr("LEFT/RIGHT: CHANGE   TAP THE DRAWING: PICK CONTOUR OR AXIS   F2: WRITE TO PROGRAM")
     if form.point >= 0:
-        return tr("X Z C R A LEAD TO A COLUMN, RETURN TO THE NEXT POINT; F2 WRITES IT INTO THE PROGRAM")
-    return tr("TYPE A FIGURE OR A SUM, RETURN: NEXT FIELD; F2 WRITES IT INTO THE PROGRAM")
+        return tr("X Z C R A: GO TO COLUMN   ENTER: NEXT POINT   F2: WRITE TO PROGRAM")
+    return tr("TYPE A NUMBER OR EXPRESSION   ENTER: NEXT FIELD   F2: WRITE TO PROGRAM")
 
 
 def _moved(piece: Piece, by: int) -> Piece:

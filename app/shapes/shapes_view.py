@@ -266,7 +266,7 @@ class ShapesView(QWidget):
             for each in model.listed
         ]
         self.rows.heading = tr(
-            "SHAPES  ·  THOSE OF THIS PROGRAM BY LINE" if model.of_shapes else "CALCULATORS AND TEMPLATES"
+            "SHAPES  ·  IN THIS PROGRAM, BY LINE" if model.of_shapes else "CALCULATORS AND TEMPLATES"
         )
         self.rows.rows, self.rows.marked, self.rows.column = (*shapes, *there), model.marked, 0
         place = model.marked

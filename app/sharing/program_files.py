@@ -85,7 +85,7 @@ def _program_files(folder: Path) -> list[Path]:
 
 def _why_not(name: str, size: int, *, twice: bool) -> str:
     if twice:
-        return "another program here has this name in other letters, large or small: rename one"
+        return "another program here has the same name except for upper and lower case: rename one"
     if size > MOST_BYTES:
         return f"it is larger than {MOST_BYTES // 2**20} MB"
     try:

@@ -229,12 +229,12 @@ class Sharing:
             self._note(store, settled=False)
             family = _family(store, version.key)
             if version.id == family.here:
-                raise TakeError(f"{version.program} is that version already", "already-current")
+                raise TakeError(f"{version.program} is already that version", "already-current")
             name = self._free_name(version)
             taken = version
             if not family.newer(version):
                 follows = (family.here, version.id)
-                why = f"taken from {version.desk}"
+                why = f"copied from {version.desk}"
                 taken = new_version(name, text, follows, self.desk, utc_now(), why)
             store.write(partial(_keep, name, taken, text)).result()
             try:
@@ -257,14 +257,14 @@ class Sharing:
             here, others = family.versions.get(family.here), [each.id for each in family.elsewhere]
             if here is None or not others:
                 raise TakeError(
-                    "there is nothing to settle: no other desk has changed it too", "nothing-to-settle"
+                    "nothing to decide: no other control has changed this program", "nothing-to-settle"
                 )
             follows = (here.id, *others)
             with store.read() as connection:
                 text = shared_versions.text_of(connection, here.text)
             if text is None:
                 raise TakeError(
-                    f"the text of {here.program} is not as it was saved; save it again", "damaged-text"
+                    f"the text of {here.program} differs from what was saved; save it again", "damaged-text"
                 )
             kept = new_version(here.program, text, follows, self.desk, utc_now(), "kept")
             store.write(partial(_kept, kept)).result()

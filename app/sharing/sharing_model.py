@@ -20,15 +20,17 @@ from core.access.access_table import Act
 from core.store.shared_versions import Family, SharedVersion, key_of
 from core.store.store_rows import VersionRow
 
-NO_PLACE = "NO PLACE IS NAMED: [sharing] OF THE MACHINE FILE HAS A FOLDER, A GIT REMOTE OR A DATABASE"
-NOTHING_YET = "NO PROGRAM IS SHARED YET: WHAT LIES IN THE PROGRAM FOLDER IS PUBLISHED WITH THE NEXT LOOK"
-MARK_ONE = "MARK A PROGRAM FIRST"
-BUSY = "STILL AT IT: WAIT UNTIL IT IS DONE"
+NO_PLACE = (
+    "NO SHARING PLACE IS SET. NAME A FOLDER, GIT REMOTE OR DATABASE UNDER [sharing] IN THE MACHINE FILE"
+)
+NOTHING_YET = "NO PROGRAM IS SHARED YET. PROGRAMS IN THE PROGRAM FOLDER ARE PUBLISHED AT THE NEXT CHECK"
+MARK_ONE = "SELECT A PROGRAM FIRST"
+BUSY = "STILL WORKING: WAIT UNTIL IT IS DONE"
 _STATES = {
-    "new": ("NOT HERE", Tone.READY),
-    "newer": ("NEWER ELSEWHERE", Tone.PAUSE),
-    "both": ("CHANGED HERE AND ELSEWHERE", Tone.ALARM),
-    "same": ("THE NEWEST", Tone.RUN),
+    "new": ("NOT ON THIS CONTROL", Tone.READY),
+    "newer": ("NEWER ON ANOTHER CONTROL", Tone.PAUSE),
+    "both": ("CHANGED HERE AND ON ANOTHER CONTROL", Tone.ALARM),
+    "same": ("UP TO DATE", Tone.RUN),
 }
 _ORDER = tuple(_STATES)
 _WIDE = 110  # letters of a note
@@ -41,17 +43,17 @@ class VersionsElsewhere(VersionHistory):
 
     def heading(self) -> str:
         """What the lines of the comparison are."""
-        return "WHAT TAKING THE MARKED VERSION CHANGES"
+        return "CHANGES IF YOU USE THE SELECTED VERSION"
 
     def words(self) -> str:
         """What is to be said of the marked version."""
         if self.trouble:
             return self.trouble
         if not self.rows:
-            return "READING" if self.worker.busy else "NO OTHER DESK HAS A NEWER VERSION"
+            return "READING" if self.worker.busy else "NO OTHER CONTROL HAS A NEWER VERSION"
         if self.text is None:
             return "COMPARING"
-        return "" if self.changes else "THE SAME TEXT AS HERE"
+        return "" if self.changes else "SAME TEXT AS ON THIS CONTROL"
 
     def between(self, marked: str, now: str) -> tuple[str, str]:
         """From the text here to the marked one."""
@@ -164,12 +166,12 @@ class SharingModel:
             notes = [NO_PLACE]
         elif not rows and not notes:
             notes = [NOTHING_YET]
-        waiting = tr("{count} WAIT").format(count=self.shared.waiting) if self.shared.waiting else ""
+        waiting = tr("{count} WAITING").format(count=self.shared.waiting) if self.shared.waiting else ""
         where = self.sharing.place.name if self.sharing is not None else ""
         title = "  ·  ".join(filter(None, (tr("SHARED PROGRAMS"), where, waiting)))
         return Sheet(
             title,
-            ("PROGRAM", "STATE", "BY", "SAVED", "WHO HAS IT"),
+            ("PROGRAM", "STATE", "BY", "SAVED", "CONTROLS THAT HAVE IT"),
             (0.24, 0.26, 0.14, 0.16, 0.2),
             rows,
             self.marked if rows else -1,
@@ -183,7 +185,7 @@ class SharingModel:
         if self.sharing is None or seconds < _PATIENCE:
             return ""
         words = tr(
-            "{name} HAS NOT ANSWERED FOR {seconds} S: PROGRAMS ARE SAVED HERE, AND SHARED WHEN IT DOES"
+            "{name} HAS NOT RESPONDED FOR {seconds} S. PROGRAMS ARE SAVED LOCALLY AND SHARED WHEN IT RESPONDS"
         )
         return words.format(name=self.sharing.place.name, seconds=f"{seconds:.0f}")
 
@@ -203,19 +205,17 @@ class SharingModel:
         if self.sharing is None:
             return NO_PLACE
         if self.version is None:
-            return "UP AND DOWN MARK A PROGRAM, F5 LOOKS AGAIN; ESC FOR AUTOMATIC"
+            return "UP/DOWN: SELECT PROGRAM   F5: REFRESH   ESC: AUTOMATIC"
         if not self._both:
-            return "F2 TAKES THE MARKED VERSION; NOTHING IS TAKEN UNASKED; ESC FOR AUTOMATIC"
-        return (
-            "F2 TAKES THE MARKED VERSION, F3 KEEPS WHAT IS HERE; NOTHING IS TAKEN UNASKED; ESC FOR AUTOMATIC"
-        )
+            return "F2: USE SELECTED VERSION (ASKS FIRST)   ESC: AUTOMATIC"
+        return "F2: USE SELECTED VERSION   F3: KEEP LOCAL VERSION   BOTH ASK FIRST   ESC: AUTOMATIC"
 
     # --- keys ----------------------------------------------------------------------------------------
 
     def keys(self) -> Mapping[str, Key]:
         """Function keys of this moment."""
         return {
-            "F2": Key("TAKE", self.take, barred=self.version is None or self.program is None),
+            "F2": Key("USE", self.take, barred=self.version is None or self.program is None),
             "F3": Key("KEEP", self.keep, barred=not self._both),
             "F4": Key("VERSION", self.next_version),
             "F5": Key("LOOK", self.ask_for_a_look, barred=self.sharing is None),
@@ -225,14 +225,14 @@ class SharingModel:
         """The marked version into the program folder; asked first where a program is replaced."""
         version, here = self.version, self.program
         if version is None or here is None:
-            self.desk.say(MARK_ONE if here is None else "NO OTHER DESK HAS A NEWER VERSION")
+            self.desk.say(MARK_ONE if here is None else "NO OTHER CONTROL HAS A NEWER VERSION")
         elif self.desk.refused(Act.PROGRAMS):
             return
         elif why := self._silence() or self._in_use(version.key):
             self.desk.say(why)
         elif here[1].here:
             words = tr(
-                "PRESS Y TO TAKE {name} AS {desk} HAS IT (WHAT IS HERE STAYS A VERSION), N TO LEAVE IT"
+                "PRESS Y TO USE {name} FROM {desk} (THE LOCAL TEXT STAYS STORED AS A VERSION), N TO CANCEL"
             )
             self.desk.ask(words.format(name=version.program, desk=version.desk), lambda: self._take(version))
         else:
@@ -245,8 +245,8 @@ class SharingModel:
             self.desk.say(why)
             return
         sharing = self.sharing
-        done = tr("{name} IS AS {desk} HAS IT NOW").format(name=version.program, desk=version.desk)
-        change = f"program {version.program} taken as {version.desk} has it"
+        done = tr("{name} IS NOW THE VERSION FROM {desk}").format(name=version.program, desk=version.desk)
+        change = f"program {version.program}: version from {version.desk} now in use"
         self._work(lambda: sharing.take(version), done, change)
 
     @property
@@ -259,19 +259,19 @@ class SharingModel:
         """What is here stands against what was changed elsewhere, after asking."""
         here = self.program
         if here is None or not self._both:
-            self.desk.say("THERE IS NOTHING TO SETTLE: NO OTHER DESK HAS CHANGED IT TOO")
+            self.desk.say("NOTHING TO DECIDE: NO OTHER CONTROL HAS CHANGED THIS PROGRAM")
             return
         if self.desk.refused(Act.PROGRAMS):
             return
         key, name = here[0], here[1].versions[here[1].here].program
-        words = tr("PRESS Y TO KEEP {name} AS IT IS HERE (THE OTHERS STAY VERSIONS), N TO LEAVE IT")
+        words = tr("PRESS Y TO KEEP THE LOCAL {name} (OTHERS STAY STORED AS VERSIONS), N TO CANCEL")
         self.desk.ask(words.format(name=name), lambda: self._keep(key, name))
 
     def _keep(self, key: str, name: str) -> None:
         if self.sharing is not None and not self.desk.refused(Act.PROGRAMS):
             sharing = self.sharing
-            said = tr("{name} STANDS AS IT IS HERE").format(name=name)
-            self._work(lambda: sharing.keep(key), said, f"program {name} kept as it is here")
+            said = tr("{name}: LOCAL VERSION RETAINED").format(name=name)
+            self._work(lambda: sharing.keep(key), said, f"program {name}: local version retained")
 
     def _work(self, work: Callable[[], object], words: str, change: str) -> None:
         if self.worker.busy or self._silence():
@@ -291,14 +291,14 @@ class SharingModel:
         """Why a program stays as it is; empty when it may be replaced."""
         snapshot, loaded = self.desk.snapshot(), self.desk.session.now
         if snapshot.interrupted is not None and key_of(snapshot.interrupted.program) == key:
-            words = tr("{name} IS INTERRUPTED: FINISH IT, OR GIVE IT UP, FIRST")
+            words = tr("{name} IS INTERRUPTED. FINISH OR CANCEL IT FIRST")
             return words.format(name=snapshot.interrupted.program)
         names = [Path(snapshot.program).name, loaded.name]
         if loaded.source is not None:
             names += [each.name for each in loaded.source.subprograms]
         used = next((name for name in names if key_of(name) == key), "")
         if used and snapshot.state in UNDER_WAY:
-            return tr("{name} IS UNDER WAY: LET IT END FIRST").format(name=used)
+            return tr("{name} IS RUNNING. LET IT END FIRST").format(name=used)
         return ""
 
     def next_version(self) -> None:
@@ -315,7 +315,7 @@ class SharingModel:
         elif self._silence():
             self.desk.say(self._silence())
         else:
-            self.desk.done("LOOKING")
+            self.desk.done("CHECKING …")
             self.look_now()
 
     def typed(self, key: str) -> bool:

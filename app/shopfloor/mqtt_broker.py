@@ -25,10 +25,10 @@ ONLINE, OFFLINE = "online", "offline"
 _SURE = 1  # quality of service: at least once
 KEEP_ALIVE = 15  # s; half as much again without a sign of us, and the broker tells our last will
 _SILENT = "Keep alive timeout"  # as paho calls it
-_NO_WORD = "it ended the connection without an MQTT answer; is this its port without TLS?"
+_NO_WORD = "it closed the connection without an MQTT response; check whether this is its port without TLS"
 _REFUSALS = {
-    "Not authorized": "it refuses the user or the password of [announce] (Not authorized)",
-    "Bad user name or password": "it refuses the user or the password of [announce]",
+    "Not authorized": "it rejects the user or the password of [announce] (Not authorized)",
+    "Bad user name or password": "it rejects the user or the password of [announce]",
 }
 _log = logging.getLogger(__name__)
 

@@ -24,15 +24,15 @@ def cause_of(error: Exception) -> str:
         case ssl.SSLCertVerificationError():
             words = f"its certificate cannot be verified: {cause.verify_message}"
         case ssl.SSLError() if cause.reason in _NO_TLS:
-            words = "it speaks no TLS: its address begins with http://"
+            words = "it does not support TLS; use an address that begins with http://"
         case RemoteDisconnected():
-            words = "it ended the connection without an answer"
+            words = "it closed the connection without a response"
         case BadStatusLine() if str(cause).startswith(_TLS_ALERT):
-            words = "it accepts TLS only: its address begins with https://"
+            words = "it accepts TLS only; use an address that begins with https://"
         case BadStatusLine():
-            words = "what it answers is not HTTP"
+            words = "its response is not HTTP"
         case InvalidURL():  # its sentence has the address with the token
-            words = "its address has signs that no address may have"
+            words = "its address contains characters that are not allowed in an address"
         case _:
             words = str(getattr(cause, "strerror", None) or cause)
     return one_line(words)

@@ -68,15 +68,15 @@ def answered(address: str, question: str, most: int, read: Callable[[bytes], Ans
     except (URLError, HTTPException, OSError) as error:
         return OtherDesk(name, trouble=cause_of(error))
     except (ValueError, RecursionError):
-        return OtherDesk(name, trouble=tr("what answers there is no desk"))
+        return OtherDesk(name, trouble=tr("the server at this address is not a TurnDesk"))
     shown = {key: value for key, value in status.items() if _fits(key, value)} if status is not None else None
     return OtherDesk(name, shown, one_line(trouble))
 
 
 def _refused(error: HTTPError) -> str:
     if error.code in {HTTPStatus.FORBIDDEN, HTTPStatus.UNAUTHORIZED}:
-        return tr("it wants another token")
-    return one_line(tr("it answers {answer}").format(answer=f"{error.code} {error.reason}"))
+        return tr("access token rejected")
+    return one_line(tr("the server responds with {answer}").format(answer=f"{error.code} {error.reason}"))
 
 
 _TEXTS = frozenset({"machine", "state", "execution", "program", "stop", "waiting_for"})
@@ -157,4 +157,4 @@ def _if_fresh(desk: OtherDesk, age: float) -> OtherDesk:
     """Of a desk that was not heard for ``age`` s nobody knows how it is."""
     if age <= STALE:
         return desk
-    return OtherDesk(desk.address, trouble=tr("not heard for {age} s").format(age=round(age)))
+    return OtherDesk(desk.address, trouble=tr("no response for {age} s").format(age=round(age)))

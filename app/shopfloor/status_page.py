@@ -88,9 +88,9 @@ class StatusPage:
         page = frame.substitute(
             title=escape(self.machine),
             language=spoken(),
-            lost=escape(tr("NO ANSWER: what stands below is old")),
+            lost=escape(tr("NO RESPONSE: the values below are old")),
             now=self._now(),
-            part=_picture("part", "part.png", self.picture(), tr("The part of the program on the desk")),
+            part=_picture("part", "part.png", self.picture(), tr("The part made by the loaded program")),
             alarm=_picture("alarm", "alarm.svg", self.alarm(), tr("Following errors before the last alarm")),
         )
         return "text/html; charset=utf-8", page.encode()

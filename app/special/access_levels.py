@@ -37,7 +37,7 @@ class AccessLevels(SpecialFunction):
     """Return on a name asks its PIN; whoever is of SERVICE level enters the people."""
 
     name = "ACCESS LEVELS"
-    use = "sign in, people, PINs"
+    use = "sign in, users, PINs"
 
     def __init__(self, desk: Desk, persistence: Persistence) -> None:
         super().__init__(desk)
@@ -67,7 +67,7 @@ class AccessLevels(SpecialFunction):
         """The people, or what each level may change."""
         if self.table:
             rows = tuple(Row((act.value, rule.level.name)) for act, rule in RULES.items())
-            heads, shares, raw = ("WHAT IS CHANGED", "LEVEL"), (0.65, 0.35), frozenset[int]()
+            heads, shares, raw = ("CHANGE TO", "LEVEL"), (0.65, 0.35), frozenset[int]()
         else:
             rows = tuple(self._row(each) for each in self.access.people.rows)
             heads, shares, raw = ("WHO", "LEVEL"), (0.65, 0.35), frozenset({0})
@@ -86,13 +86,13 @@ class AccessLevels(SpecialFunction):
     def _notes(self) -> tuple[str, ...]:
         if not self.access.people.on:
             return (
-                "Levels are off: everybody may change everything, and nobody is asked.",
-                "F3 enters the first one, of SERVICE level, and switches them on.",
+                "Access levels are off: everyone may change everything, and no PIN is required.",
+                "F3 adds the first user, with SERVICE level, and turns access levels on.",
             )
-        minutes = tr("After {minutes} minutes without a key OPERATOR level is in force again.")
+        minutes = tr("After {minutes} minutes without input, the level returns to OPERATOR.")
         return (
             minutes.format(minutes=self.access.minutes),
-            "E-stop, feed hold, Reset and drives off are behind no level.",
+            "E-stop, feed hold, Reset and drives off work at every level.",
         )
 
     def _question(self) -> str:
@@ -100,28 +100,30 @@ class AccessLevels(SpecialFunction):
         if draft is None:
             return ""
         return {
-            "sign in": tr("PIN OF {name}?").format(name=data(draft.name)),
-            "name": tr("WHOSE NAME?"),
-            "level": tr("1 OPERATOR, 2 SETUP, 3 SERVICE?"),
-            "pin": tr("NEW PIN OF {name}?").format(name=data(draft.name)),
-            "again": tr("THE SAME PIN AGAIN?"),
+            "sign in": tr("PIN FOR {name}?").format(name=data(draft.name)),
+            "name": tr("NAME?"),
+            "level": tr("LEVEL? 1 OPERATOR, 2 SETUP, 3 SERVICE"),
+            "pin": tr("NEW PIN FOR {name}?").format(name=data(draft.name)),
+            "again": tr("CONFIRM PIN:"),
         }[draft.step]
 
     def prompt(self) -> str:
         """What the keys do."""
         if self.service_reset.under_way:
-            return tr("ALL PINS ARE TAKEN AWAY WHEN THE TIME IS OVER; RELEASING THE E-STOP OR A PIN ENDS IT")
+            return tr(
+                "ALL PINS WILL BE REMOVED WHEN THE TIME IS UP. TO CANCEL: RELEASE THE E-STOP OR SIGN IN"
+            )
         if self.draft is not None:
-            return tr("TYPE IT AND PRESS RETURN; ESC LEAVES IT")
+            return tr("TYPE THE ENTRY   ENTER: ACCEPT   ESC: CANCEL")
         if not self.access.people.on:
-            return tr("F3 ENTERS SOMEBODY AND SWITCHES LEVELS ON; ESC GOES BACK TO THE LIST")
-        return tr("MARK YOUR NAME AND PRESS RETURN TO SIGN IN; F2 SIGNS OUT; ESC GOES BACK TO THE LIST")
+            return tr("F3: ADD A USER AND TURN LEVELS ON   ESC: BACK TO THE LIST")
+        return tr("SELECT YOUR NAME   ENTER: SIGN IN   F2: SIGN OUT   ESC: BACK TO THE LIST")
 
     # --- keys ----------------------------------------------------------------------------------------
 
     def keys(self) -> Mapping[str, Key]:
         """Those of the people, as far as there are levels."""
-        keys = {"F3": Key("NEW", self.add), "F5": Key("PEOPLE" if self.table else "TABLE", self._turn)}
+        keys = {"F3": Key("NEW", self.add), "F5": Key("USERS" if self.table else "LEVELS", self._turn)}
         if self.access.people.on:
             keys |= {
                 "F2": Key("SIGN OUT", self.sign_out),
@@ -203,13 +205,13 @@ class AccessLevels(SpecialFunction):
     def _named(self, draft: _Draft, text: str) -> None:
         draft.name = check_person(text)
         if self.access.people.named(draft.name) is not None:
-            raise StoreError(f"{draft.name} is entered already; F4 is for another PIN", "name-in-use")
+            raise StoreError(f"{draft.name} already exists; press F4 to change the PIN", "name-in-use")
         draft.step = "level" if self.access.people.on else "pin"
         self._ask(draft)
 
     def _levelled(self, draft: _Draft, text: str) -> None:
         if text not in {str(level.value) for level in Level}:
-            raise StoreError("a level is 1, 2 or 3", "invalid-level")
+            raise StoreError("the level must be 1, 2 or 3", "invalid-level")
         draft.level, draft.step = Level(int(text)), "pin"
         self._ask(draft)
 
@@ -221,17 +223,13 @@ class AccessLevels(SpecialFunction):
     def _again(self, draft: _Draft, pin: str) -> None:
         if pin != draft.pin:
             self.draft = None
-            raise PinError("those were two different PINs; nothing was kept, enter it anew")
+            raise PinError("the two PINs differ; nothing was saved, enter the PIN again")
         self.escape()
         if draft.name != self.access.name and self.desk.refused(Act.PEOPLE):
             return  # who began it was away too long, or has signed out
         row = PersonRow(draft.name, draft.level, b"", b"")
-        said = tr("{name}: {level}, AND THE PIN IS KEPT").format(
-            name=data(draft.name), level=tr(draft.level.name)
-        )
-        self._change(
-            lambda: self._keep(row, pin), said, f"{draft.name} entered: {draft.level.name}, a new PIN"
-        )
+        said = tr("{name}: {level}, PIN SAVED").format(name=data(draft.name), level=tr(draft.level.name))
+        self._change(lambda: self._keep(row, pin), said, f"{draft.name} saved: {draft.level.name}, new PIN")
 
     def _keep(self, row: PersonRow, pin: str) -> None:
         """On the worker. Raises StoreError."""
@@ -252,7 +250,7 @@ class AccessLevels(SpecialFunction):
     def sign_out(self) -> None:
         """F2: nobody is signed in any more."""
         self.access.sign_out()
-        self.desk.done(tr("SIGNED OUT: OPERATOR LEVEL IS IN FORCE"))
+        self.desk.done(tr("SIGNED OUT: OPERATOR LEVEL IS ACTIVE"))
 
     def add(self) -> None:
         """F3: somebody new; the first one is of SERVICE level."""
@@ -271,10 +269,10 @@ class AccessLevels(SpecialFunction):
         row = self.person
         if row is None or self.desk.refused(Act.PEOPLE):
             return
-        said = tr("{name} IS TAKEN AWAY").format(name=data(row.name))
+        said = tr("{name} REMOVED").format(name=data(row.name))
         work = partial(self.persistence.remove_person, row.name)
-        asked = tr("PRESS Y TO TAKE {name} AWAY, N TO KEEP THE PIN").format(name=data(row.name))
-        self.desk.ask(asked, partial(self._change, work, said, f"{row.name} taken away"))
+        asked = tr("PRESS Y TO REMOVE {name}, N TO KEEP THE USER AND PIN").format(name=data(row.name))
+        self.desk.ask(asked, partial(self._change, work, said, f"{row.name} removed"))
 
     def next_minutes(self) -> None:
         """F8: another time after which the level falls back."""
@@ -290,7 +288,7 @@ class AccessLevels(SpecialFunction):
         if why:
             self.desk.say(why)
             return
-        question = tr("PRESS Y TO TAKE ALL PINS AWAY IN 10 MINUTES; IT IS LOGGED; N TO KEEP THEM")
+        question = tr("PRESS Y TO REMOVE ALL PINS IN 10 MINUTES (LOGGED), N TO KEEP THEM")
         self.desk.ask(question, self.service_reset.begin)
 
     def _reset_now(self) -> None:
@@ -302,6 +300,6 @@ class AccessLevels(SpecialFunction):
 
         def done(_none: None) -> None:
             self.access.lift()
-            self.desk.done(tr("ALL PINS ARE TAKEN AWAY: LEVELS ARE OFF"))
+            self.desk.done(tr("ALL PINS REMOVED: ACCESS LEVELS ARE OFF"))
 
         self.access.worker.queue(remove, done, self.desk.refuse)

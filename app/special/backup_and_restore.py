@@ -24,7 +24,7 @@ from core.executor.snapshot import Snapshot
 from core.file_placing import all_to_disk
 from core.store.backup_verdict import Verdict
 
-BARRED = "A PROGRAM IS UNDER WAY: NOTHING IS RESTORED BEFORE IT HAS ENDED"
+BARRED = "PROGRAM RUNNING. RESTORE AFTER IT HAS ENDED"
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,7 +109,7 @@ class BackupAndRestore(SpecialFunction):
         )
         return Sheet(
             "BACKUP AND RESTORE",
-            ("WHERE", "RETURN DOES", "SIZE", "WHEN"),
+            ("PLACE", "ACTION ON ENTER", "SIZE", "WHEN"),
             (0.36, 0.29, 0.13, 0.22),
             rows,
             self.marked,
@@ -119,31 +119,31 @@ class BackupAndRestore(SpecialFunction):
 
     def _does(self, place: Place) -> str:
         if not place.backup:
-            return "BACKUP TO HERE"
+            return "BACK UP HERE"
         verdict = self.verdicts.get(place)
         if verdict is None:
-            return "LOOKED THROUGH …"
-        return "NOTHING: IT IS DAMAGED" if verdict.problem else "RESTORE: IT IS WHOLE"
+            return "CHECKING …"
+        return "NOTHING: BACKUP DAMAGED" if verdict.problem else "RESTORE: BACKUP IS INTACT"
 
     def _notes(self) -> tuple[str, ...]:
         """Of the marked backup: what is wrong with it, or what a restore would change."""
-        kept = "What a restore replaces is kept beside it."
+        kept = "Restoring saves a copy of the replaced data next to the new data."
         place = self.places[self.marked] if self.places else None
         verdict = self.verdicts.get(place) if place is not None else None
         if verdict is None:
             return (kept,)
         if verdict.problem:
             return (verdict.problem, kept)
-        return (tr("Other than now: {what}.").format(what=_other(verdict)), kept)
+        return (tr("Differences from the current data: {what}.").format(what=_other(verdict)), kept)
 
     def keys(self) -> Mapping[str, Key]:
         """F4 looks for media again."""
-        return {"F4": Key("LOOK", self.look)}
+        return {"F4": Key("REFRESH", self.look)}
 
     def act(self) -> bool:
         """Back up to a place, or restore a backup."""
         if self.busy:
-            self.desk.say("STILL AT IT: WAIT UNTIL IT IS DONE")
+            self.desk.say("STILL WORKING: WAIT UNTIL IT IS DONE")
         elif self.places:
             place = self.places[self.marked]
             (self._restore if place.backup else self._backup)(place)
@@ -170,7 +170,9 @@ class BackupAndRestore(SpecialFunction):
 
     def _backed_up(self, name: str) -> None:
         self.busy = ""
-        self.desk.done(tr("BACKUP {name} IS WHOLE AND ON THE DISK: A STICK MAY BE REMOVED").format(name=name))
+        self.desk.done(
+            tr("BACKUP {name} IS COMPLETE AND ON THE DISK. YOU CAN REMOVE THE USB STICK").format(name=name)
+        )
         self.look()
 
     def _restore(self, place: Place) -> None:
@@ -178,13 +180,13 @@ class BackupAndRestore(SpecialFunction):
             return
         verdict = self.verdicts.get(place)
         if verdict is None or verdict.problem:
-            why = verdict.problem if verdict is not None else tr("IT IS STILL LOOKED THROUGH: WAIT")
+            why = verdict.problem if verdict is not None else tr("THE BACKUP IS STILL BEING CHECKED: WAIT")
             self.desk.refuse(why)
             return
         if self.desk.snapshot().state in UNDER_WAY:
             self.desk.say(BARRED)
             return
-        asked = tr("PRESS Y TO RESTORE {name} OVER EVERYTHING KEPT NOW ({what}), N TO LEAVE IT")
+        asked = tr("PRESS Y TO RESTORE {name} OVER ALL CURRENT DATA ({what}), N TO CANCEL")
         self.desk.ask(asked.format(name=place.label, what=_other(verdict)), lambda: self._restore_now(place))
 
     def _restore_now(self, place: Place) -> None:
@@ -199,9 +201,9 @@ class BackupAndRestore(SpecialFunction):
         self.busy = ""
         self.desk.restoring = False
         where = kept.name if kept else "—"
-        self.persistence.note_change(f"restored; what was there before is {where}")  # by whom is known still
+        self.persistence.note_change(f"restored; previous data saved as {where}")  # by whom is known still
         self.restored()
-        said = tr("RESTORED; WHAT WAS THERE BEFORE IS KEPT AS {name}").format(name=where)
+        said = tr("RESTORED. PREVIOUS DATA SAVED AS {name}").format(name=where)
         self.desk.done(said)
         self.look()
 
@@ -212,21 +214,21 @@ class BackupAndRestore(SpecialFunction):
 
     def prompt(self) -> str:
         """What Return does, for the prompt line."""
-        return "RETURN OR A TOUCH ON A PLACE BACKS UP, ON A BACKUP RESTORES IT; F4 LOOKS FOR STICKS AGAIN"
+        return "ENTER OR TAP: BACK UP TO A PLACE OR RESTORE A BACKUP   F4: LOOK FOR USB STICKS"
 
 
 def _other(verdict: Verdict) -> str:
     """How many of what a restore would change, in words."""
     told = [f"{tr(name)} {count}" for name, count in verdict.differs]
     if verdict.older:
-        told.append(tr("the rest not compared, it is of an older version"))
+        told.append(tr("rest not compared, backup is from an older version"))
     return ", ".join(told) or tr("nothing")
 
 
 def _places(folder: Path, plugged: Sequence[Stick], daily: Path | None) -> tuple[Place, ...]:
     """The control's own folder and the media, each followed by the backups in it, newest first."""
     found: list[Place] = []
-    kept = [(tr("THIS CONTROL"), folder), *([(tr("DAILY"), daily)] if daily is not None else [])]
+    kept = [(tr("THIS CONTROL"), folder), *([(tr("DAILY BACKUPS"), daily)] if daily is not None else [])]
     for label, path in (*kept, *((stick.label, stick.path) for stick in plugged)):
         found.append(Place(label, path))
         backups = sorted(path.glob(f"*{ENDING}"), key=lambda file: file.name, reverse=True)

@@ -13,7 +13,7 @@ from core.machine.machine_model import Axis, Machine
 from core.ports import Unknown
 
 OF_DRIVES = frozenset({"axis", "following", "in-position", "driver"})
-HOW = {"lathe": "X IS A RADIUS FROM HOME", "mill": "FROM HOME"}
+HOW = {"lathe": "X IS A RADIUS, FROM HOME", "mill": "FROM HOME"}
 AXES = frozenset("XYZABC")
 OF_SPINDLE = frozenset({"spindle", "at-speed", "ignores-stop", "spindle-still", "thread-lost"})
 
@@ -37,11 +37,11 @@ class DriveStatus(SpecialFunction):
         largest = formats.length(snapshot.max_following_error, metric)
         return Sheet(
             f"DRIVE STATUS  ·  {unit}  ·  {HOW[self.machine.kind]}",
-            ("AXIS", "POWER", "HOME", "DEMAND", "ACTUAL", "FOLLOWING", "ALLOWED", "FAULT"),
+            ("AXIS", "POWER", "HOME", "DEMAND", "ACTUAL", "FOLLOWING ERROR", "ALLOWED", "FAULT"),
             (0.08, 0.1, 0.12, 0.16, 0.16, 0.15, 0.13, 0.1),
             (*rows, self._spindle(snapshot)),
             notes=(
-                f"Largest following error since the start: {largest}",
+                f"Largest following error since startup: {largest}",
                 f"Setpoint queue ran low: {snapshot.underruns} times",
             ),
             figures=frozenset({3, 4, 5, 6}),
@@ -83,7 +83,7 @@ class DriveStatus(SpecialFunction):
 
     def prompt(self) -> str:
         """Where alarms are found, for the prompt line."""
-        return "F7 LISTS THE ALARMS WITH CAUSE AND REMEDY; ESC GOES BACK TO THE LIST"
+        return "F7: ALARMS WITH CAUSE AND REMEDY   ESC: BACK TO THE LIST"
 
 
 def _fault(alarms: tuple[Alarm, ...], codes: frozenset[str], axis: Axis | None) -> str:

@@ -17,7 +17,7 @@ from core.executor.snapshot import Snapshot, State
 from core.machine.machine_model import Machine
 from core.ports import Unknown
 
-NOT_NOW = "OUTPUTS ARE SWITCHED BY HAND ONLY WHILE NO PROGRAM IS UNDER WAY AND NOTHING MOVES"
+NOT_NOW = "SWITCH OUTPUTS BY HAND ONLY WITH NO PROGRAM RUNNING AND NOTHING MOVING"
 AT_REST = frozenset({State.IDLE, State.DISABLED})
 # What asks for an input: codes of OmniTurn, and what the control itself looks at.
 _ASKED_IN_PROGRAMS = {"TB2-5": "M91 M92", "TB2-7": "M93 M94", "TB2-9": "M95"}
@@ -45,7 +45,7 @@ class InputsOutputs(SpecialFunction):
     """F4 goes from list to list; Return on an output switches it over, after asking."""
 
     name = "INPUTS AND OUTPUTS"
-    use = "live state, outputs by hand, lamps"
+    use = "live state, manual outputs, lamps"
 
     def __init__(self, desk: Desk, machine: Machine) -> None:
         super().__init__(desk)
@@ -81,7 +81,7 @@ class InputsOutputs(SpecialFunction):
             )
             for name, model in models.items()
         )
-        heads = ("NAME", "TERMINAL", "STATE", "SWITCHED BY" if outputs else "ASKED BY")
+        heads = ("NAME", "TERMINAL", "STATE", "SWITCHED BY" if outputs else "READ BY")
         return Sheet(self.kind.value, heads, (0.34, 0.2, 0.16, 0.3), rows, self.marked, raw=frozenset({0, 1}))
 
     def _lamps(self, snapshot: Snapshot) -> Sheet:
@@ -100,7 +100,7 @@ class InputsOutputs(SpecialFunction):
 
     def _used(self, name: str, output: bool) -> str:
         if output:
-            return tr("THE CONTROL, BY ITSELF") if name in self.machine.lamps else self._codes.get(name, "")
+            return tr("CONTROL (AUTOMATIC)") if name in self.machine.lamps else self._codes.get(name, "")
         if name == "guard" and not self.machine.interlocks.guard_stops:
             return ""  # it stops nothing here: it is only told to the shop floor
         if name in _ASKED_BY or self.machine.language != "omniturn":
@@ -128,7 +128,9 @@ class InputsOutputs(SpecialFunction):
         """At any time, as on a machine: also while a program waits for it."""
         name = tuple(self.machine.inputs)[self.marked]
         if name in OF_STATION:
-            self.desk.say(tr("{name} IS A BUTTON OF THE STATION OR FOLLOWS THE MACHINE").format(name=name))
+            self.desk.say(
+                tr("{name} IS A BUTTON ON THE OPERATOR STATION OR FOLLOWS THE MACHINE").format(name=name)
+            )
             return
         if self.desk.refused(Act.INPUTS):
             return
@@ -141,7 +143,7 @@ class InputsOutputs(SpecialFunction):
 
     def _switch(self) -> None:
         if self.kind is not Kind.OUTPUTS:
-            self.desk.say("ONLY OUTPUTS CAN BE SWITCHED; F4 SHOWS THEM")
+            self.desk.say("ONLY OUTPUTS CAN BE SWITCHED. F4: SHOW OUTPUTS")
             return
         name = tuple(self.machine.outputs)[self.marked]
         snapshot = self.desk.snapshot()
@@ -150,7 +152,7 @@ class InputsOutputs(SpecialFunction):
             return
         if name in self.machine.lamps:
             self.desk.post(ForceOutput(name, True))
-            self.desk.done("LAMP TEST: ALL LAMPS OF THE TOWER ARE ON FOR TWO SECONDS")
+            self.desk.done("LAMP TEST: ALL TOWER LAMPS ARE ON FOR 2 SECONDS")
             return
         if self.desk.refused(Act.OUTPUTS):
             return
@@ -165,17 +167,19 @@ class InputsOutputs(SpecialFunction):
     def _force(self, name: str, on: bool) -> None:
         if not self.desk.refused(Act.OUTPUTS):  # the level may have fallen back meanwhile
             self.desk.post(ForceOutput(name, on))
-            self.desk.access.persistence.note_change(f"output {name} by hand: {'on' if on else 'off'}")
+            self.desk.access.persistence.note_change(
+                f"output {name} switched by hand: {('on' if on else 'off')}"
+            )
 
     def prompt(self) -> str:
         """What Return does here, for the prompt line."""
         if self.kind is Kind.INPUTS and self._simulated:
-            return tr("RETURN OR A TOUCH SWITCHES THE MARKED INPUT OF THE SIMULATION; F4 SHOWS THE NEXT LIST")
+            return tr("ENTER OR TAP: SWITCH THE SELECTED SIMULATED INPUT   F4: NEXT LIST")
         if self.kind is not Kind.OUTPUTS:
-            return "F4 SHOWS THE NEXT LIST; ESC GOES BACK TO THE LIST OF FUNCTIONS"
+            return "F4: NEXT LIST   ESC: BACK TO THE LIST OF FUNCTIONS"
         if self.desk.snapshot().state not in AT_REST:
             return NOT_NOW
-        return "RETURN OR A TOUCH SWITCHES THE MARKED OUTPUT BY HAND: LOOK AT THE MACHINE FIRST"
+        return "CHECK THE MACHINE FIRST   ENTER OR TAP: SWITCH THE SELECTED OUTPUT BY HAND"
 
 
 def _state(on: bool) -> str:

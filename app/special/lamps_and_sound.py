@@ -81,7 +81,7 @@ class DeskSounds:
         """Keep it. Raises StoreError."""
         before, self.volume, self.silent = self.volume, max(0, min(100, volume)), silent
         self.persistence.save_setting(_SETTING, {"volume": self.volume, "silent": sorted(silent)})
-        told = f"sound: {before} → {self.volume} %, silent: {', '.join(sorted(silent)) or 'nothing'}"
+        told = f"sound volume: {before} → {self.volume} %, muted: {', '.join(sorted(silent)) or 'nothing'}"
         self.persistence.note_change(told)
 
     def close(self) -> None:
@@ -93,7 +93,7 @@ class LampsAndSound(SpecialFunction):
     """A row a kind: its lamp, where the machine has one, and whether it sounds."""
 
     name = "LAMPS AND SOUND"
-    use = "what lights and sounds, volume, lamp test"
+    use = "lamps, sounds, volume, lamp test"
 
     def __init__(self, desk: Desk, machine: Machine, sounds: DeskSounds) -> None:
         super().__init__(desk)
@@ -113,10 +113,10 @@ class LampsAndSound(SpecialFunction):
         )
         volume = f"{self.sounds.volume} %" if self.sounds.volume else tr("OFF")
         lamps = ", ".join(self.machine.lamps) or tr(
-            "none in the machine file: lamp_red, lamp_amber, lamp_green, lamp_buzzer under [io.out]"
+            "none in the machine file; define lamp_red, lamp_amber, lamp_green, lamp_buzzer under [io.out]"
         )
         notes = (tr("VOLUME: {volume}").format(volume=volume), tr("LAMPS: {names}").format(names=lamps))
-        heads = ("WHAT", "LAMP", "SOUND")
+        heads = ("DESCRIPTION", "LAMP", "SOUND")
         return Sheet("LAMPS AND SOUND", heads, (0.5, 0.32, 0.18), rows, self.marked, notes=notes,
                      raw=frozenset({0, 1, 2}))  # fmt: skip
 
@@ -136,7 +136,7 @@ class LampsAndSound(SpecialFunction):
             "F2": Key("SOFTER", lambda: self._louder(-_STEP)),
             "F3": Key("LOUDER", lambda: self._louder(_STEP)),
             "F4": Key("TRY", self.try_out),
-            "F5": Key("LAMPTEST", self.test),
+            "F5": Key("LAMP TEST", self.test),
         }
 
     def act(self) -> bool:
@@ -146,7 +146,7 @@ class LampsAndSound(SpecialFunction):
             silent = self.sounds.silent ^ {kind}
             self._choose(self.sounds.volume, silent)
         else:
-            self.desk.say("A CYCLE THAT RUNS IS HEARD ANYWAY: IT HAS A LAMP ALONE")
+            self.desk.say("A RUNNING CYCLE HAS A LAMP ONLY: THE MACHINE ITSELF IS AUDIBLE")
         return True
 
     def _louder(self, by: int) -> None:
@@ -160,7 +160,7 @@ class LampsAndSound(SpecialFunction):
     def try_out(self) -> None:
         """The sound of a part that is done, as loud as they are."""
         if not self.sounds.volume:
-            self.desk.say("THE VOLUME IS NOUGHT: F3 MAKES IT LOUDER")
+            self.desk.say("VOLUME IS ZERO. F3: LOUDER")
         else:
             self.desk.clear()
             self.sounds.tried()
@@ -168,11 +168,11 @@ class LampsAndSound(SpecialFunction):
     def test(self) -> None:
         """All lamps for two seconds, at rest."""
         if not self.machine.lamps:
-            self.desk.say("THIS MACHINE HAS NO LAMPS: NAME THEM UNDER [io.out] OF ITS FILE")
+            self.desk.say("THIS MACHINE HAS NO LAMPS. DEFINE THEM UNDER [io.out] IN THE MACHINE FILE")
         else:
             self.desk.clear()
             self.desk.post(ForceOutput(self.machine.lamps[0], True))
 
     def prompt(self) -> str:
         """What the keys do."""
-        return "RETURN SWITCHES THE SOUND OF THE MARKED ROW; F3 LOUDER, F4 TRIES; ESC GOES BACK TO THE LIST"
+        return "ENTER: SOUND ON/OFF IN THE SELECTED ROW   F3: LOUDER   F4: TRY   ESC: BACK TO THE LIST"

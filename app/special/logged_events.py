@@ -31,7 +31,7 @@ class LoggedEvents(SpecialFunction):
     """F4 searches, F5 filters. While a search is typed every letter belongs to it."""
 
     name = "EVENT LOG"
-    use = "what happened when; search"
+    use = "what happened and when; search"
 
     def __init__(self, desk: Desk, persistence: Persistence, worker: Latest) -> None:
         super().__init__(desk)
@@ -63,7 +63,7 @@ class LoggedEvents(SpecialFunction):
         found = f"{self.count} EVENTS" if self.count < SHOWN else f"THE LAST {SHOWN} EVENTS"
         return Sheet(
             f"EVENT LOG  ·  {self.filter}  ·  {found}",
-            ("WHEN", "KIND", "WHAT", "LINE"),
+            ("WHEN", "KIND", "DESCRIPTION", "LINE"),
             (0.25, 0.13, 0.54, 0.08),
             self._rows,
             self.marked,
@@ -126,8 +126,8 @@ class LoggedEvents(SpecialFunction):
     def prompt(self) -> str:
         """What the keys do now, for the prompt line."""
         if self.searching:
-            return "TYPE WHAT TO LOOK FOR; RETURN KEEPS IT, ESC TAKES IT AWAY"
-        return "F4 SEARCHES, F5 SHOWS ANOTHER KIND; PAGE UP AND PAGE DOWN LOOK ON; ESC GOES BACK"
+            return "TYPE THE SEARCH TEXT   ENTER: KEEP IT   ESC: CLEAR IT"
+        return "F4: SEARCH   F5: NEXT FILTER   PAGE UP, PAGE DOWN: SCROLL   ESC: BACK"
 
     def escape(self) -> bool:
         """Take the search away; False when there was none."""

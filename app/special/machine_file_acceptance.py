@@ -20,7 +20,7 @@ class MachineFileAcceptance(SpecialFunction):
     """F2 accepts, after asking once; until then the drives cannot be switched on."""
 
     name = "MACHINE FILE"
-    use = "what has changed in it"
+    use = "changes since it was accepted"
 
     def __init__(self, desk: Desk, changes: FileChanges) -> None:
         super().__init__(desk)
@@ -34,7 +34,11 @@ class MachineFileAcceptance(SpecialFunction):
     def sheet(self, _snapshot: Snapshot) -> Sheet:
         """One row for each key that has changed: key, was, is."""
         rows = tuple(Row(tuple(change), None, Tone.WAIT) for change in self.changes.changes)
-        note = tr("F2 accepts; the drives stay off until then.") if rows else tr("It is as it was accepted.")
+        note = (
+            tr("Press F2 to accept; the drives stay off until then.")
+            if rows
+            else tr("No changes since it was accepted.")
+        )
         return Sheet(
             f"MACHINE FILE  ·  {self.changes.source}",
             ("KEY", "WAS", "IS"),
@@ -53,9 +57,9 @@ class MachineFileAcceptance(SpecialFunction):
         if self.desk.refused(Act.MACHINE_FILE):
             return
         if self.desk.snapshot().state not in _OFF:
-            self.desk.say(tr("A CHANGED MACHINE FILE IS ACCEPTED WITH THE DRIVES OFF"))
+            self.desk.say(tr("TURN THE DRIVES OFF BEFORE ACCEPTING THE CHANGED MACHINE FILE"))
         else:
-            question = tr("PRESS Y TO ACCEPT THE MACHINE FILE AS IT IS NOW, N TO LEAVE IT")
+            question = tr("PRESS Y TO ACCEPT THE MACHINE FILE AS IT IS NOW, N TO CANCEL")
             self.desk.ask(question, self._accepted)
 
     def _accepted(self) -> None:
@@ -66,5 +70,5 @@ class MachineFileAcceptance(SpecialFunction):
     def prompt(self) -> str:
         """What the keys do, for the prompt line."""
         if self.changes.changes:
-            return tr("ARROWS GO THROUGH THE CHANGES, F2 ACCEPTS ALL OF THEM; ESC GOES BACK TO THE LIST")
+            return tr("ARROWS: SCROLL THE CHANGES   F2: ACCEPT ALL   ESC: BACK TO THE LIST")
         return super().prompt()

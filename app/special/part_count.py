@@ -83,7 +83,7 @@ class PartCounter:
         if last and snapshot.cycle_repeat and snapshot.state in _RUNNING and self._announced != self.count:
             self._announced = self.count
             post(SetSwitch("cycle_repeat", False))
-            say("THE LAST PART OF THE TARGET: CYCLE REPEAT IS SWITCHED OFF")
+            say("LAST PART OF THE TARGET: CYCLE REPEAT IS SWITCHED OFF")
 
     def _load(self, name: str) -> None:
         self.program, self.count, self.target, self._announced = name, 0, 0, -1
@@ -104,19 +104,19 @@ class PartCounter:
         """So many parts, 0: no target. Raises StoreError when it is not kept."""
         before, self.target, self._announced = self.target, target, -1
         self.persistence.save_setting(_key(self.program), target or None)
-        self.persistence.note_change(f"parts of {self.program} stop at: {before} → {target}")
+        self.persistence.note_change(f"part target of {self.program}: {before} → {target}")
 
     def correct(self, by: int) -> None:
         """Parts that were made otherwise, or are scrap. Raises StoreError when it is not kept."""
         self.count, self._announced = self.count + by, -1
         self.persistence.correct_parts(self.program, by)
-        self.persistence.note_change(f"parts of {self.program}: {self.count - by} → {self.count}")
+        self.persistence.note_change(f"part count of {self.program}: {self.count - by} → {self.count}")
 
     def reset(self) -> None:
         """The count to nought. Raises StoreError when it is not kept."""
         before, self.count, self._announced = self.count, 0, -1
         self.persistence.reset_parts(self.program)
-        self.persistence.note_change(f"parts of {self.program}: {before} → 0")
+        self.persistence.note_change(f"part count of {self.program}: {before} → 0")
 
 
 def _key(program: str) -> str:

@@ -22,7 +22,7 @@ class PartsCounterFunction(FigureFunction):
     """Of the program on the desk."""
 
     name = "PARTS COUNTER"
-    use = "parts made, stop at a number, times"
+    use = "parts made, target, times"
 
     @property
     def counter(self) -> PartCounter:
@@ -35,13 +35,13 @@ class PartsCounterFunction(FigureFunction):
         aim = counter.aim
         left = max(0, aim - counter.count)
         to_come = formats.duration(left * last) if aim and last else formats.NOTHING
-        stop = tr("{count}, BY ITS JOB").format(count=aim) if counter.of_job else str(aim or tr("NO TARGET"))
+        stop = tr("{count} (SET BY JOB)").format(count=aim) if counter.of_job else str(aim or tr("NO TARGET"))
         rows = (
             Row(("PARTS MADE", str(counter.count)), counter.reached or None),
             Row(("STOP AT", stop)),
             Row(("PARTS TO GO", str(left) if aim else formats.NOTHING)),
             Row(("LAST CYCLE", formats.duration(last) if last else formats.NOTHING)),
-            Row(("TIME FOR THE PARTS TO GO", to_come)),
+            Row(("TIME FOR REMAINING PARTS", to_come)),
         )
         return Sheet(
             "PARTS COUNTER",
@@ -51,8 +51,11 @@ class PartsCounterFunction(FigureFunction):
             question="STOP AT HOW MANY PARTS?",
             text=self.entry.text,
             notes=(
-                "In the cycle of the last part Cycle Repeat is switched off. 0 takes the target away.",
-                "NO COUNT: what runs is a dry run and no part. Nor is a restart that leaves something out.",
+                "Cycle Repeat is switched off during the last part. Enter 0 to remove the target.",
+                (
+                    "NO COUNT: a dry run, not counted as a part. A restart that skips lines is not "
+                    "counted either."
+                ),
             ),
             figures=frozenset({1}),
         )
@@ -73,7 +76,7 @@ class PartsCounterFunction(FigureFunction):
         elif self.desk.refused(Act.COUNTS):
             return
         elif self.counter.count + by < 0:
-            self.desk.done("THE COUNT IS AT NOUGHT")
+            self.desk.done("THE COUNT IS ZERO")
         else:
             self.desk.clear()
             self.desk.keep(lambda: self.counter.correct(by))
@@ -85,7 +88,7 @@ class PartsCounterFunction(FigureFunction):
         elif self.desk.refused(Act.COUNTS):
             return
         elif self.counter.count == 0:
-            self.desk.done("THE COUNT IS AT NOUGHT")
+            self.desk.done("THE COUNT IS ZERO")
         else:
             self.desk.ask(RESET, partial(self.desk.keep, self.counter.reset))
 
@@ -95,7 +98,7 @@ class PartsCounterFunction(FigureFunction):
             self.desk.say(NO_PROGRAM)
             return False
         if self.counter.of_job:
-            self.desk.say("REFUSED: A JOB IS UNDER WAY AND HAS ITS OWN COUNT; CHANGE THAT IN JOBS (SHIFT+F6)")
+            self.desk.say("REJECTED: THE ACTIVE JOB HAS ITS OWN COUNT. CHANGE IT IN JOBS (SHIFT+F6)")
             return False
         if self.desk.refused(Act.COUNTS):
             return False
@@ -103,21 +106,19 @@ class PartsCounterFunction(FigureFunction):
         if 0 < target <= self.counter.count:
             made = self.counter.count
             self.entry.text = refused(self.entry.text)
-            self.desk.say(
-                tr("REFUSED: {made} PARTS ARE MADE ALREADY; F4 SETS THE COUNT TO ZERO").format(made=made)
-            )
+            self.desk.say(tr("REJECTED: {made} PARTS ALREADY MADE. F4: RESET COUNT").format(made=made))
             return False
         self.desk.keep(lambda: self.counter.set_target(target))
         return True
 
     def prompt(self) -> str:
         """How to set the target, for the prompt line."""
-        return "TYPE HOW MANY PARTS AND PRESS RETURN; ESC GOES BACK TO THE LIST"
+        return "TYPE THE NUMBER OF PARTS   ENTER: ACCEPT   ESC: BACK TO THE LIST"
 
 
 def whole_number(text: str) -> int:
     """A number of parts as it was typed. Raises EntryError."""
     value = value_of(text)
     if value != int(value) or not 0 <= value <= MOST:
-        raise EntryError(f"{value:g} is no number of parts; type a whole number from 0 to {MOST}")
+        raise EntryError(f"{value:g} is not a valid number of parts; enter a whole number from 0 to {MOST}")
     return int(value)

@@ -9,18 +9,18 @@ from app.special.special_functions import SpecialFunction
 from core.executor.snapshot import Snapshot
 
 WORDS = {
-    "units": "UNITS OF THE FIGURES",
-    "readout": "LARGE FIGURES SHOW",
+    "units": "DISPLAY UNITS",
+    "readout": "LARGE READOUT SHOWS",
     "language": "LANGUAGE",
-    "theme": "COLOURS",
+    "theme": "COLORS",
     "dock": "OPERATOR STATION ON THE SCREEN",
     "latched": "PALM BUTTONS ON THE SCREEN",
     "full_screen": "WINDOW",
-    "first_job": "CARD OF THE FIRST JOB",
+    "first_job": "FIRST JOB CARD",
 }
 YES_NO = {
     "dock": ("SHOWN", "HIDDEN"),
-    "latched": ("ONE AFTER THE OTHER", "BOTH HELD"),
+    "latched": ("ONE AFTER THE OTHER", "BOTH TOGETHER"),
     "full_screen": ("FULL SCREEN", "WINDOW"),
     "first_job": ("SHOWN", "HIDDEN"),
 }
@@ -31,7 +31,7 @@ class ScreenPreferences(SpecialFunction):
     """Return, or a finger, goes on to the next choice."""
 
     name = "SCREEN"
-    use = "units, language, station, window"
+    use = "units, language, operator station, window"
 
     @property
     def count(self) -> int:
@@ -50,8 +50,8 @@ class ScreenPreferences(SpecialFunction):
             rows,
             self.marked,
             notes=(
-                "The control counts in millimetres now." if metric else "The control counts in inches now.",
-                "Units change the figures that are shown; what is typed is always in the control's unit.",
+                "The control uses millimeters now." if metric else ("The control uses inches now."),
+                ("Display units change only the values shown; entries are always in the control's unit."),
             ),
         )
 
@@ -69,14 +69,14 @@ class ScreenPreferences(SpecialFunction):
         name = tuple(WORDS)[self.marked]
         settings = self.desk.settings
         if name == "dock" and self.desk.station is None:
-            self.desk.say("THIS MACHINE HAS AN OPERATOR STATION OF ITS OWN: NONE IS SHOWN")
+            self.desk.say("THIS MACHINE HAS ITS OWN OPERATOR STATION: NONE IS SHOWN ON THE SCREEN")
             return
         if name == "dock" and settings.now.dock and self.desk.hands.estop_pressed:
-            self.desk.say("RELEASE THE E-STOP OF THE STATION BEFORE HIDING IT (U)")
+            self.desk.say("RELEASE THE E-STOP (U) BEFORE HIDING THE OPERATOR STATION")
             return
         if name == "latched" and not self.desk.one_hand:
             self.desk.say(
-                tr("PALMS LATCH WHERE EVERYTHING IS SIMULATED ALONE: HERE SOMETHING REAL WOULD TURN")
+                tr("PALM BUTTONS LATCH ONLY WHEN EVERYTHING IS SIMULATED: HERE REAL HARDWARE WOULD TURN")
             )
             return
         if name == "first_job":
@@ -87,7 +87,7 @@ class ScreenPreferences(SpecialFunction):
 
     def prompt(self) -> str:
         """How to choose, for the prompt line."""
-        return "RETURN OR A TOUCH GOES ON TO THE NEXT CHOICE; ESC GOES BACK TO THE LIST"
+        return "ENTER OR TAP: NEXT CHOICE   ESC: BACK TO THE LIST"
 
 
 def _in_words(name: str, value: object) -> str:

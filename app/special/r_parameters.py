@@ -62,15 +62,18 @@ class RParameters(FigureFunction):
             question=f"R{self.marked}?",
             text=self.entry.text,
             notes=(
-                "Every SINUMERIK program begins with these; what it sets itself holds until its end.",
-                "One that nobody has set counts as 0, with a warning.",
+                (
+                    "Every SINUMERIK program starts with these values; values that it sets itself apply "
+                    "until it ends."
+                ),
+                "A parameter with no value counts as 0, with a warning.",
             ),
             figures=frozenset({1}),
         )
 
     def keys(self) -> Mapping[str, Key]:
         """F4 takes the value of the marked one away."""
-        return {"F4": Key("NO VALUE", self.unset)}
+        return {"F4": Key("CLEAR", self.unset)}
 
     def typed(self, key: str) -> bool:
         """Figures, Return, and what moves the mark."""
@@ -86,7 +89,7 @@ class RParameters(FigureFunction):
         low, high = REACH["R"]
         if not low <= value <= high:
             raise EntryError(
-                tr("R PARAMETERS GO FROM {low} TO {high}").format(low=f"{low:g}", high=f"{high:g}")
+                tr("R PARAMETERS RANGE FROM {low} TO {high}").format(low=f"{low:g}", high=f"{high:g}")
             )
         return self._keep(self.marked, value)
 
@@ -95,7 +98,7 @@ class RParameters(FigureFunction):
         if self.desk.refused(Act.ZEROS):
             return False
         if self.desk.snapshot().state in UNDER_WAY:
-            self.desk.say(tr("A PROGRAM IS UNDER WAY: R PARAMETERS CHANGE BETWEEN CYCLES"))
+            self.desk.say(tr("PROGRAM RUNNING. CHANGE R PARAMETERS BETWEEN CYCLES"))
             return False
         before = self.values.pop(number, None)
         if value is not None:
@@ -105,7 +108,7 @@ class RParameters(FigureFunction):
         self._worker.queue(
             partial(self._persistence.keep_settings, {R_PARAMETERS: kept or None}),
             lambda _none: self._is_kept(told),
-            lambda why: self.desk.say(tr("NOT KEPT: {why}").format(why=why)),
+            lambda why: self.desk.say(tr("NOT SAVED: {why}").format(why=why)),
         )
         return True
 

@@ -68,13 +68,13 @@ class SetupSheet:
     def verdict(self) -> str:
         """What the proof has found, as it counts at the machine; empty: nothing that matters."""
         if self.errors == 1:
-            return tr("1 ERROR: this program will not run as it stands")
+            return tr("1 ERROR: this program will not run as it is")
         if self.errors:
-            return tr("{count} ERRORS: this program will not run as it stands").format(count=self.errors)
+            return tr("{count} ERRORS: this program will not run as it is").format(count=self.errors)
         if self.warnings == 1:
-            return tr("1 WARNING: look at it before the first part")
+            return tr("1 WARNING: check it before the first part")
         if self.warnings:
-            return tr("{count} WARNINGS: look at them before the first part").format(count=self.warnings)
+            return tr("{count} WARNINGS: check them before the first part").format(count=self.warnings)
         return ""
 
     def length(self, mm: float) -> str:
@@ -88,13 +88,13 @@ class SetupSheet:
             return self.mill.stock_words(self.length)
         stock = self.stock
         if stock is None:
-            return tr("not known")
+            return tr("unknown")
         round_ = f"Ø {self.length(2.0 * stock.radius)}"
         if stock.bore:
             round_ += ", " + tr("bore {size}").format(size=self.length(2.0 * stock.bore[0][1]))
         if stock.given:
             return f"{round_} ({stock.given})"
-        return tr("{size} at least, as nobody has said it").format(size=round_)
+        return tr("{size} at least (assumed, not specified)").format(size=round_)
 
     @property
     def held_words(self) -> tuple[tuple[str, str], ...]:
@@ -103,13 +103,13 @@ class SetupSheet:
             return ((tr("PRESET"), self.mill.preset_words(self.length)),)
         held = self.clamping
         if held is None or not held.diameter:
-            return ((tr("STICK-OUT"), tr("not known: the machine file says nothing under [clamping]")),)
+            return ((tr("STICK-OUT"), tr("unknown: the machine file specifies nothing under [clamping]")),)
         chuck = f"Ø {self.length(held.diameter)}"
         if held.jaws:
             size = f"Ø {self.length(held.jaw_diameter)} × {self.length(held.jaws)}"
             chuck += ", " + tr("jaws {size}").format(size=size)
         if held.max_rpm:
-            chuck += ", " + tr("{rpm} rpm at most").format(rpm=f"{held.max_rpm:.0f}")
+            chuck += ", " + tr("max. {rpm} rpm").format(rpm=f"{held.max_rpm:.0f}")
         rows = [(tr("STICK-OUT"), self.length(held.stick_out)), (tr("CHUCK"), chuck)]
         if held.quill:
             quill = f"Ø {self.length(held.quill)}, {held.point:g}°, Z {self.length(held.centre)}"
@@ -122,7 +122,7 @@ class SetupSheet:
             return self.mill.tool_words(tool.number)
         shape = tool.shape
         if shape is None:
-            return tr("not known")
+            return tr("unknown")
         words = ", ".join(filter(None, self._of_shape(shape)))
         return tr("{tool} (assumed)").format(tool=words) if tool.assumed else words
 

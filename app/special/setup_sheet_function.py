@@ -36,7 +36,7 @@ class SetupSheetFunction(SpecialFunction):
     """Rows of the sheet, then the notes; F6 shows the places that it can be written to."""
 
     name = "SETUP SHEET"
-    use = "tools, stock, stops, notes; on paper"
+    use = "tools, stock, stops, notes; printable"
 
     def __init__(
         self,
@@ -123,7 +123,7 @@ class SetupSheetFunction(SpecialFunction):
             return (self.trouble,)
         if self.busy:
             return (self.busy,)
-        return ("Making the sheet …",) if self.made is None else ()
+        return ("Preparing the setup sheet …",) if self.made is None else ()
 
     def _rows(self) -> Iterator[Row]:
         if not self.program:
@@ -143,12 +143,12 @@ class SetupSheetFunction(SpecialFunction):
     def _sheet_of_places(self) -> Sheet:
         rows = tuple(Row((place.label, str(place.path))) for place in self.places)
         return Sheet(
-            "SETUP SHEET  ·  WRITE TO WHERE?",
+            "SETUP SHEET  ·  WRITE WHERE?",
             ("WHERE", "FOLDER"),
             (0.35, 0.65),
             rows,
             self.marked,
-            notes=(self.busy or "Return writes it there, as PDF and as HTML.",),
+            notes=(self.busy or "Press Enter to write the sheet there, as PDF and as HTML.",),
             raw=frozenset({0, 1}),
         )
 
@@ -160,7 +160,7 @@ class SetupSheetFunction(SpecialFunction):
             return {"F4": Key("LOOK", self.look)}
         return {
             "F2": Key("NOTE", self.note),
-            "F3": Key("NO NOTE", self.forget),
+            "F3": Key("DEL NOTE", self.forget),
             "F5": Key("A4" if self.paper is Paper.A4 else "LETTER", self.next_paper),
             "F6": Key("WRITE", self.look),
         }
@@ -173,7 +173,7 @@ class SetupSheetFunction(SpecialFunction):
             self._keep_note(self.entry.text.strip())
             return True
         if len(self.entry.text) >= LONGEST and len(key) == 1:
-            self.desk.say(tr("A NOTE HAS {most} LETTERS AT MOST: TAKE ANOTHER ONE").format(most=LONGEST))
+            self.desk.say(tr("NOTES CAN HAVE UP TO {most} CHARACTERS. ADD ANOTHER NOTE").format(most=LONGEST))
             return True
         return self.entry.type(key)
 
@@ -198,7 +198,7 @@ class SetupSheetFunction(SpecialFunction):
         elif (at := self._note_marked) is not None:
             self._changing, self.entry = at, Entry(words=True, text=self.notes[at])
         elif self.program:
-            self.desk.say("F2 TAKES A NOTE; RETURN CHANGES THE NOTE THAT IS MARKED")
+            self.desk.say("F2: ADD A NOTE   ENTER: CHANGE THE SELECTED NOTE")
         return True
 
     @property
@@ -213,7 +213,7 @@ class SetupSheetFunction(SpecialFunction):
         if not self.program:
             self.desk.say(NO_PROGRAM)
         elif len(self.notes) >= MOST_NOTES:
-            self.desk.say(tr("THERE ARE {most} NOTES ALREADY: CHANGE ONE OF THEM").format(most=MOST_NOTES))
+            self.desk.say(tr("LIMIT OF {most} NOTES REACHED. CHANGE ONE OF THEM").format(most=MOST_NOTES))
         else:
             self._changing, self.entry = None, Entry(words=True)
 
@@ -221,9 +221,9 @@ class SetupSheetFunction(SpecialFunction):
         """The marked note goes, after asking."""
         at = self._note_marked
         if at is None:
-            self.desk.say("MARK A NOTE FIRST")
+            self.desk.say("SELECT A NOTE FIRST")
         else:
-            self.desk.ask("PRESS Y TO THROW THIS NOTE AWAY, N TO KEEP IT", partial(self._without, at))
+            self.desk.ask("PRESS Y TO DELETE THIS NOTE, N TO KEEP IT", partial(self._without, at))
 
     def _without(self, at: int) -> None:
         self._keep([text for number, text in enumerate(self.notes) if number != at])
@@ -271,10 +271,10 @@ class SetupSheetFunction(SpecialFunction):
     def prompt(self) -> str:
         """What the keys do."""
         if self.entry is not None:
-            return "TYPE THE NOTE AND PRESS RETURN; ESC LEAVES IT AS IT WAS"
+            return "TYPE THE NOTE   ENTER: SAVE   ESC: LEAVE UNCHANGED"
         if self.places:
-            return "RETURN WRITES THE SHEET TO THE MARKED PLACE; F4 LOOKS FOR STICKS AGAIN"
-        return "F2 TAKES A NOTE, F6 WRITES THE SHEET AS PDF AND HTML; ESC GOES BACK TO THE LIST"
+            return "ENTER: WRITE THE SHEET TO THE SELECTED PLACE   F4: LOOK FOR USB STICKS"
+        return "F2: ADD A NOTE   F6: WRITE THE SHEET AS PDF AND HTML   ESC: BACK TO THE LIST"
 
     # --- making it, on the worker --------------------------------------------------------------------
 
@@ -306,7 +306,9 @@ class SetupSheetFunction(SpecialFunction):
         """Look what is plugged in; the answer comes with a later frame."""
         self.desk.clear()
         if self.made is None or not self.program:
-            self.desk.say(NO_PROGRAM if not self.program else "THE SHEET IS STILL BEING MADE: WAIT A MOMENT")
+            self.desk.say(
+                NO_PROGRAM if not self.program else ("THE SETUP SHEET IS STILL BEING PREPARED: WAIT A MOMENT")
+            )
             return
         self.worker.queue(lambda: _places(self.folder, self.plugged()), self._found, self._not_written)
 
@@ -315,10 +317,10 @@ class SetupSheetFunction(SpecialFunction):
 
     def _write(self, place: Place) -> None:
         if self.busy:
-            self.desk.say("STILL AT IT: WAIT UNTIL IT IS DONE")
+            self.desk.say("STILL WORKING: WAIT UNTIL IT IS DONE")
             return
         if self.made is None:
-            self.desk.say("THE SHEET IS STILL BEING MADE: WAIT A MOMENT")
+            self.desk.say("THE SETUP SHEET IS STILL BEING PREPARED: WAIT A MOMENT")
             return
         self.busy = "Writing …"
         self.desk.clear()
@@ -331,7 +333,7 @@ class SetupSheetFunction(SpecialFunction):
 
     def _done(self, name: str) -> None:
         self.busy, self.places = "", ()
-        self.desk.done(tr("{name} IS WHOLE AND ON THE DISK: A STICK MAY BE REMOVED").format(name=name))
+        self.desk.done(tr("{name} SAVED COMPLETELY. A USB STICK CAN NOW BE REMOVED").format(name=name))
 
     def _not_written(self, why: str) -> None:
         self.busy = ""
@@ -345,8 +347,8 @@ def _texts(kept: object) -> list[str]:
 
 def _changed(before: Sequence[str], now: Sequence[str]) -> str:
     """Which notes went and which came, for the log."""
-    gone = [f"'{each}' taken away" for each in before if each not in now]
-    return ", ".join((*gone, *(f"'{each}'" for each in now if each not in before))) or "in another order"
+    gone = [f"'{each}' removed" for each in before if each not in now]
+    return ", ".join((*gone, *(f"'{each}'" for each in now if each not in before))) or ("order changed")
 
 
 def _places(folder: Path, plugged: Sequence[Stick]) -> tuple[Place, ...]:

@@ -17,7 +17,7 @@ def setup_sheet_html(
     """The body of the page; ``facts`` stand first, ``remarks`` are those of the tools, by number."""
     rows = [
         *facts,
-        (tr("TIME A PART"), clock(sheet.cycle)),
+        (tr("TIME PER PART"), clock(sheet.cycle)),
         (tr("STOCK"), sheet.stock_words),
         *sheet.held_words,
     ]
@@ -40,7 +40,9 @@ def _section(sheet: SetupSheet) -> str:
         return ""
     drawing = part_drawings.section(sheet.stock, sheet.part, sheet.clamping)
     text = tr("Section: stock light, finished part dark")
-    return figure(drawing, text + ("; " + tr("what live tools mill is not in it") if sheet.milled else ""))
+    return figure(
+        drawing, text + ("; " + tr("features milled by live tools are not shown") if sheet.milled else "")
+    )
 
 
 def _notes(notes: Sequence[str]) -> str:
@@ -83,6 +85,6 @@ def _stops(sheet: SetupSheet) -> str:
     rows = [
         (sheet.stop_word(stop), str(stop.line), clock(stop.at), escape(stop.message)) for stop in sheet.stops
     ]
-    head = (tr("STOP"), tr("LINE"), tr("AFTER"), tr("WHAT THE OPERATOR READS"))
+    head = (tr("STOP"), tr("LINE"), tr("AFTER"), tr("MESSAGE TO THE OPERATOR"))
     found = table(head, rows) if rows else f"<p>{escape(tr('None.'))}</p>"
     return f"<h3>{escape(tr('STOPS'))}</h3>{found}"

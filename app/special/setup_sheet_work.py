@@ -39,7 +39,7 @@ def rows_of(made: MadeSheet, remarks: Mapping[int, str]) -> Iterator[Row]:
         yield Row((tr("ERRORS") if sheet.errors else tr("WARNINGS"), sheet.verdict, ""))
     part = outside_words(sheet)
     stock = sheet.stock_words + (f"\n{tr('PART')} {part}" if part else "")
-    yield Row((tr("TIME A PART"), clock(sheet.cycle), ""))
+    yield Row((tr("TIME PER PART"), clock(sheet.cycle), ""))
     yield Row((tr("STOCK"), stock, ""))
     for name, words in sheet.held_words:
         yield Row((name, words, ""))
@@ -76,7 +76,7 @@ def page_of(
     made: MadeSheet, program: str, machine: Machine, remarks: Mapping[int, str], notes: Sequence[str]
 ) -> tuple[str, str, str]:
     """Title, date and body of the page."""
-    facts = [(tr("MACHINE"), machine.name), (tr("TEXT (SHA-256)"), text_hash(made.job.source))]
+    facts = [(tr("MACHINE"), machine.name), (tr("PROGRAM TEXT (SHA-256)"), text_hash(made.job.source))]
     body = setup_sheet_html(made.sheet, facts, remarks, notes)
     title = tr("Setup sheet: {program}").format(program=program)
     return title, datetime.now().strftime("%Y-%m-%d %H:%M"), body

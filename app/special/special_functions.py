@@ -48,7 +48,7 @@ class SpecialFunction(ABC):
 
     def prompt(self) -> str:
         """What stands on the prompt line."""
-        return "ESC GOES BACK TO THE LIST"
+        return "ESC: BACK TO THE LIST"
 
     def escape(self) -> bool:
         """Close what is open in it; False when nothing was."""
@@ -220,7 +220,7 @@ class SpecialFunctions:
         """Of the function, or how to choose one."""
         if self.inside:
             return self.current.prompt()
-        return "A FINGER OPENS A FUNCTION; ARROWS OR ITS NUMBER CHOOSE, RETURN OPENS IT; ESC FOR AUTOMATIC"
+        return "TAP A FUNCTION OR TYPE ITS NUMBER   ARROWS: SELECT   ENTER: OPEN   ESC: AUTOMATIC"
 
     def opened(self) -> None:
         """The page comes up with the list."""

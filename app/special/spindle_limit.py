@@ -17,14 +17,14 @@ from core.executor.snapshot import Snapshot
 from core.machine.machine_model import SpindleModel
 from core.ports import Unknown
 
-LIFT = "PRESS Y TO LIFT THE LIMIT, N TO KEEP IT"
+LIFT = "PRESS Y TO REMOVE THE LIMIT, N TO KEEP IT"
 
 
 class SpindleSpeedLimit(FigureFunction):
     """A limit for this workpiece, chuck or bar: it is gone when the control is started again."""
 
     name = "MAXIMUM SPINDLE SPEED"
-    use = "a limit until restart"
+    use = "speed limit until restart"
 
     def __init__(self, desk: Desk, spindle: SpindleModel) -> None:
         super().__init__(desk)
@@ -34,13 +34,13 @@ class SpindleSpeedLimit(FigureFunction):
         """The machine's speed, the limit, and what turns now."""
         limit = snapshot.spindle_limit
         rows = (
-            Row(("MACHINE'S OWN MAXIMUM", formats.rpm(self.spindle.rpm_max), "rpm")),
+            Row(("MACHINE MAXIMUM", formats.rpm(self.spindle.rpm_max), "rpm")),
             Row(
-                ("LIMIT IN FORCE", formats.rpm(limit) if limit else "NONE", "rpm" if limit else ""),
+                ("ACTIVE LIMIT", formats.rpm(limit) if limit else "NONE", "rpm" if limit else ""),
                 bool(limit),
             ),
-            Row(("COMMANDED NOW", formats.rpm(snapshot.rpm_command), "rpm")),
-            Row(("MEASURED NOW", _measured(snapshot), "rpm")),
+            Row(("COMMANDED SPEED", formats.rpm(snapshot.rpm_command), "rpm")),
+            Row(("MEASURED SPEED", _measured(snapshot), "rpm")),
         )
         return Sheet(
             "MAXIMUM SPINDLE SPEED",
@@ -50,8 +50,8 @@ class SpindleSpeedLimit(FigureFunction):
             question="MAXIMUM SPINDLE SPEED?",
             text=self.entry.text,
             notes=(
-                "Programs that ask for more turn at the limit.",
-                "It acts at once, also while a program runs.",
+                "Programs that command a higher speed run at the limit.",
+                "The limit takes effect at once, even while a program runs.",
             ),
             figures=frozenset({1}),
         )
@@ -63,7 +63,7 @@ class SpindleSpeedLimit(FigureFunction):
     def lift(self) -> None:
         """The machine's own maximum again; asked once, because something may be in the chuck."""
         if not self.desk.snapshot().spindle_limit:
-            self.desk.say("NO LIMIT IS IN FORCE")
+            self.desk.say("NO LIMIT IS ACTIVE")
         elif not self.desk.refused(Act.SPINDLE_LIMIT):
             self.desk.ask(LIFT, self._lifted)
 
@@ -82,9 +82,7 @@ class SpindleSpeedLimit(FigureFunction):
         rpm = value_of(text)
         low, high = self.spindle.rpm_min, self.spindle.rpm_max
         if not low <= rpm <= high:
-            raise EntryError(
-                f"{rpm:g} rpm is not between {low:g} and {high:g} rpm, which this spindle can turn"
-            )
+            raise EntryError(f"{rpm:g} rpm is outside the range of this spindle, {low:g} to {high:g} rpm")
         limit = self.desk.snapshot().spindle_limit
         if limit and rpm > limit and self.desk.refused(Act.SPINDLE_LIMIT):
             return False
@@ -94,7 +92,7 @@ class SpindleSpeedLimit(FigureFunction):
 
     def prompt(self) -> str:
         """How to set the limit, for the prompt line."""
-        return "TYPE A SPEED AND PRESS RETURN; IT TAKES ARITHMETIC; ESC GOES BACK TO THE LIST"
+        return "TYPE A SPEED OR EXPRESSION   ENTER: ACCEPT   ESC: BACK TO THE LIST"
 
 
 def _measured(snapshot: Snapshot) -> str:

@@ -95,7 +95,7 @@ def store_new(received: Received, folder: Path, name: str) -> Path:
     """
     name = checked_name(name, Path(received.name))
     if other := same_name_in(folder, name):
-        raise FileError(f"{other} IS THERE ALREADY; TAKE ANOTHER NAME")
+        raise FileError(f"{other} ALREADY EXISTS. USE ANOTHER NAME")
     write_new(folder / name, received.text)
     return folder / name
 

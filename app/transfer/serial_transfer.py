@@ -44,8 +44,8 @@ def progress_sheet(reach: TransferProgress, settings: DncModel, sends: str) -> S
         Row((tr("BYTES"), f"{reach.done}" + (f" / {reach.total}" if reach.total else ""))),
         Row((tr("LINES"), f"{reach.lines}")),
         Row((tr("DONE"), share)),
-        Row((tr("WAITS"), _waits(reach.what)), bool(reach.what), Tone.WAIT),
-        *([Row((tr("HEARS"), reach.heard))] if reach.heard else ()),
+        Row((tr("STATUS"), _waits(reach.what)), bool(reach.what), Tone.WAIT),
+        *([Row((tr("INCOMING DATA"), reach.heard))] if reach.heard else ()),
     )
     words = f"{settings.port}  {settings.baud} {settings.bits}{settings.parity}{settings.stop}"
     return Sheet(TITLE, ("", ""), (0.35, 0.65), rows, notes=(words,), raw=frozenset({0, 1}))
@@ -54,29 +54,29 @@ def progress_sheet(reach: TransferProgress, settings: DncModel, sends: str) -> S
 def _waits(what: str) -> str:
     """What a transfer waits for, in words."""
     words = {
-        "held": tr("HELD BY THE OTHER SIDE (XOFF)"),
-        "dc1": tr("FOR DC1 FROM THE OTHER SIDE"),
-        "sender": tr("FOR THE OTHER SIDE TO SEND"),
-        "frame": tr("FOR THE FIRST %"),
-        "noise": tr("WHAT COMES IS NO TEXT: LOOK AT BAUD, BITS AND PARITY"),
+        "held": tr("STOPPED BY THE OTHER DEVICE (XOFF)"),
+        "dc1": tr("WAITING FOR DC1 FROM THE OTHER DEVICE"),
+        "sender": tr("WAITING FOR DATA FROM THE OTHER DEVICE"),
+        "frame": tr("WAITING FOR THE FIRST %"),
+        "noise": tr("INCOMING DATA IS NOT TEXT: CHECK BAUD, BITS AND PARITY"),
     }
     return words.get(what, "—")
 
 
 def received_sheet(received: Received, name: str) -> Sheet:
     """What came, whether it is whole, and what proving found."""
-    code = tr("7 BITS, EVEN PARITY, FOUND OUT") if received.seven else tr("AS SET")
+    code = tr("7 BITS, EVEN PARITY (DETECTED)") if received.seven else tr("AS IN THE SETTINGS")
     errors = len(received.findings)
     some = tr("1 ERROR") if errors == 1 else tr("{count} ERRORS").format(count=errors)
-    result = some if errors else tr("NO ERROR")
+    result = some if errors else tr("NO ERRORS")
     lines = tr("1 LINE") if received.lines == 1 else tr("{count} LINES").format(count=received.lines)
     rows = (
         Row((tr("WHOLE"), lines), True, Tone.RUN),
         Row((tr("PROVED"), result), True, Tone.ALARM if errors else Tone.RUN),
-        Row((tr("CALLS ITSELF"), received.name or "—")),
+        Row((tr("NAME IN THE PROGRAM"), received.name or "—")),
         Row((tr("SHA-256"), received.digest[:32] + " …")),
         Row((tr("CHARACTERS"), code)),
-        Row((tr("SKIPPED BEFORE IT"), f"{received.skipped}")),
+        Row((tr("SKIPPED BEFORE PROGRAM"), f"{received.skipped}")),
         *(Row(("", text)) for text in received.findings[:SHOWN]),
     )
     return Sheet(
@@ -84,24 +84,24 @@ def received_sheet(received: Received, name: str) -> Sheet:
         ("", ""),
         (0.25, 0.75),
         rows,
-        question="NAME OF THE NEW PROGRAM?",
+        question="NAME FOR THE NEW PROGRAM?",
         text=name,
-        notes=(*received.findings[:1], "It replaces nothing and starts nothing."),
+        notes=(*received.findings[:1], "The received program replaces nothing and does not start."),
         raw=frozenset({0, 1}),
     )
 
 
 SETTING = "rs232"
-BUSY = "A TRANSFER IS UNDER WAY: WAIT UNTIL IT IS DONE, OR F6 GIVES IT UP"
-SETS = "RETURN OR A TOUCH CHANGES THE MARKED SETTING; F4 SENDS THE PROGRAM ON THE DESK, F5 RECEIVES ONE"
-THROW_AWAY = "PRESS Y TO THROW THE RECEIVED PROGRAM AWAY, N TO KEEP IT"
+BUSY = "TRANSFER RUNNING. WAIT UNTIL IT IS DONE   F6: CANCEL"
+SETS = "ENTER OR TAP: CHANGE SELECTED SETTING   F4: SEND LOADED PROGRAM   F5: RECEIVE"
+THROW_AWAY = "PRESS Y TO DISCARD THE RECEIVED PROGRAM, N TO KEEP IT"
 
 
 class SerialTransfer(SpecialFunction):
     """Three faces: the settings, a transfer under way, and a program that waits for its name."""
 
     name = "RS-232"
-    use = "programs over the serial line"
+    use = "send and receive programs over the serial port"
 
     def __init__(
         self, desk: Desk, persistence: Persistence, lines: SerialPorts, default: DncModel, own: Path
@@ -174,12 +174,10 @@ class SerialTransfer(SpecialFunction):
     def prompt(self) -> str:
         """What the keys do, for the prompt line."""
         if self.received is not None:
-            return "RETURN STORES IT AS A NEW PROGRAM AND STARTS NOTHING; F6 THROWS IT AWAY"
+            return "ENTER: SAVE AS A NEW PROGRAM (DOES NOT START)   F6: DISCARD"
         if self.under_way is not None:
-            return "F6 GIVES THE TRANSFER UP; IT GOES ON WHILE OTHER PAGES ARE SHOWN"
-        return (
-            "RETURN OR A TOUCH CHANGES THE MARKED SETTING; F4 SENDS THE PROGRAM ON THE DESK, F5 RECEIVES ONE"
-        )
+            return "F6: CANCEL TRANSFER. IT CONTINUES WHILE OTHER PAGES ARE OPEN"
+        return "ENTER OR TAP: CHANGE SELECTED SETTING   F4: SEND LOADED PROGRAM   F5: RECEIVE"
 
     def close(self) -> None:
         """The desk shuts: nothing goes on."""
@@ -195,7 +193,7 @@ class SerialTransfer(SpecialFunction):
         """F4: send the program on the desk."""
         path = self._chosen()
         if path is None:
-            self.desk.say("NO PROGRAM IS ON THE DESK: CHOOSE THE ONE TO SEND FIRST (F2)")
+            self.desk.say("NO PROGRAM LOADED. F2: LOAD THE PROGRAM TO SEND")
         elif self._ready():
             self.sends = path.name
             carrying = self.lines.send(self.settings, path)
@@ -222,23 +220,23 @@ class SerialTransfer(SpecialFunction):
         if self.under_way is not None or self.worker.busy:
             self.desk.say(BUSY)
         elif not self.settings.port:
-            self.desk.say("NO PORT IS SET: RETURN OR A TOUCH ON THE FIRST LINE CHOOSES ONE")
+            self.desk.say("NO PORT SELECTED. PRESS ENTER OR TAP THE FIRST LINE TO SELECT ONE")
         else:
             return True
         return False
 
     def _sent(self, count: int) -> None:
         self.under_way = None
-        self._done(tr("{name} IS SENT: {count} BYTES").format(name=self.sends, count=count))
+        self._done(tr("{name} SENT: {count} BYTES").format(name=self.sends, count=count))
 
     def _came(self, received: Received) -> None:
         self.under_way, self.received = None, received
         self.entry.text = free_name(self.own, received.name)
-        self._done(tr("A WHOLE PROGRAM HAS COME: {lines} LINES").format(lines=received.lines))
+        self._done(tr("COMPLETE PROGRAM RECEIVED: {lines} LINES").format(lines=received.lines))
 
     def _failed(self, why: str) -> None:
         self.under_way = None
-        self.last = tr("NOTHING IS KEPT: {why}").format(why=why)
+        self.last = tr("NOTHING SAVED: {why}").format(why=why)
         self.desk.say(self.last)
 
     def _done(self, text: str) -> None:
@@ -267,7 +265,7 @@ class SerialTransfer(SpecialFunction):
             return
         self.received = None
         self.persistence.note_change(f"program {path.name} received")
-        self._done(tr("STORED AS A NEW PROGRAM: {name}. NOTHING WAS STARTED").format(name=path.name))
+        self._done(tr("SAVED AS A NEW PROGRAM: {name}. NOTHING WAS STARTED").format(name=path.name))
 
     def discard(self) -> None:
         """Throw away what has come, after asking."""
@@ -275,20 +273,20 @@ class SerialTransfer(SpecialFunction):
 
     def _discarded(self) -> None:
         self.received = None
-        self._done("THE RECEIVED PROGRAM IS THROWN AWAY")
+        self._done("RECEIVED PROGRAM DISCARDED")
 
     def _step(self) -> None:
         if self.desk.refused(Act.TRANSFER):
             return
         if self.marked == 0 and not self.ports:
-            self.desk.say("NO SERIAL PORT IS THERE: PLUG ITS ADAPTER IN, THEN F8 LOOKS AGAIN")
+            self.desk.say("NO SERIAL PORT FOUND. PLUG IN ITS ADAPTER   F8: SEARCH AGAIN")
             return
         ports = list(dict.fromkeys((*self.ports, self.settings.port))) if self.settings.port else self.ports
         self.settings = replace(ROWS[self.marked][2](self.settings, ports))
         self.desk.clear()
         try:
             self.persistence.save_setting(SETTING, stored_form(self.settings))
-            self.persistence.note_change(f"serial line: {stored_form(self.settings)}")
+            self.persistence.note_change(f"serial port: {stored_form(self.settings)}")
         except StoreError as error:
             self.desk.refuse(str(error))
 

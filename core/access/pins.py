@@ -45,11 +45,9 @@ class Hashed(NamedTuple):
 def check_pin(pin: str) -> None:
     """Raises PinError for what is no PIN: 4 to 12 figures, not all the same."""
     if not (pin.isascii() and pin.isdigit() and SHORTEST <= len(pin) <= LONGEST):
-        raise PinError(f"a PIN has {SHORTEST} to {LONGEST} figures", "pin-length")
+        raise PinError(f"a PIN must have {SHORTEST} to {LONGEST} digits", "pin-length")
     if len(set(pin)) == 1:
-        raise PinError(
-            "a PIN of one figure again and again is guessed at once; take another", "pin-too-simple"
-        )
+        raise PinError("a PIN of one repeated digit is too easy to guess; choose another", "pin-too-simple")
 
 
 def hashed(pin: str, salt: bytes | None = None) -> Hashed:

@@ -16,12 +16,12 @@ from core.alarms.spindle_alarms import CHUCK, SPINDLE
 from core.alarms.station_alarms import STATION
 
 SUBJECTS: tuple[tuple[str, Entries], ...] = (
-    ("Slides and axis drives", AXES),
+    ("Axes and axis drives", AXES),
     ("Spindle, C axis and threads", SPINDLE),
     ("Collet", CHUCK),
     ("Program", PROGRAM),
-    ("Bus, feeder and controller", WIRES),
+    ("Bus, driver host and controller", WIRES),
     ("Operator station and stops", STATION),
-    ("The control", CONTROL),
+    ("Control", CONTROL),
 )
 CATALOGUE: dict[Code, Entry] = {code: entry for _, entries in SUBJECTS for code, entry in entries.items()}

@@ -65,10 +65,16 @@ Code = Literal[FaultCode, OwnCode]
 class Reaction(Enum):
     """What an alarm makes of the machine; one supervisor carries it out for all drivers."""
 
-    OFF = "the slides brake and lose power, spindle off, outputs safe; Reset acknowledges"
-    STOP = "the slides brake and hold, spindle off, outputs safe; Reset acknowledges"
-    HOLD = "the slides stop on the path, the spindle goes on turning; Cycle Start goes on"
-    ASKED = "what was asked for: a stop that somebody pressed or programmed"
+    OFF = (
+        "the axes brake and their drives lose power, spindle off, outputs in their safe "
+        "state; press Reset to acknowledge"
+    )
+    STOP = (
+        "the axes brake and hold position, spindle off, outputs in their safe state; press "
+        "Reset to acknowledge"
+    )
+    HOLD = "the axes stop on the path and the spindle continues to turn; press Cycle Start to resume"
+    ASKED = "a requested stop, from a button or from the program"
 
 
 class Entry(NamedTuple):

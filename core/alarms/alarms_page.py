@@ -50,7 +50,7 @@ def _subjects() -> Iterator[str]:
 
 def _entry(entry: Entry) -> Iterator[str]:
     yield f"**{entry.number} {entry.text.upper()}** ({kind_of(entry.reaction)})  "
-    yield f"Likely: {'; '.join(entry.causes)}.  "
+    yield f"Likely causes: {'; '.join(entry.causes)}.  "
     yield f"Do: {entry.remedy}."
     yield ""
 

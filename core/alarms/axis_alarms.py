@@ -8,169 +8,204 @@ AXES: Entries = {
     "axis": off(
         101,
         "axis drive fault",
-        ("a drive has tripped: its display says why", "a motor or encoder cable", "the slide is blocked"),
-        "read the drive's display, put the cause right, Reset, Drives On",
+        (
+            "a drive has tripped; its display shows the reason",
+            "a fault in a motor or encoder cable",
+            ("the axis is blocked"),
+        ),
+        "Read the drive's display and correct the cause. Press Reset, then Drives On",
         tells=True,
     ),
     "following": off(
         102,
         "following error",
         (
-            "the slide is blocked, or the tool has run into something",
+            "the axis is blocked, or the tool has hit something",
             "the cut is too heavy",
-            "the drive has no power or its motor cable is off",
+            "the drive has no power, or its motor cable is disconnected",
         ),
-        "look where the tool stands, free the slide, Reset, Drives On; home where the axis asks for it",
+        (
+            "Check where the tool is and free the axis. Press Reset, then Drives On. Home any "
+            "axis shown as not homed"
+        ),
         tells=True,
     ),
     "in-position": stop(
         103,
-        "slide does not arrive",
+        "axis did not reach position",
         (
-            "the slide is blocked or runs stiff",
+            "the axis is blocked or moves stiffly",
             "lubrication",
-            "the window for in position is too narrow in the machine file",
+            "the in-position window in the machine file is too narrow",
         ),
-        "look for what keeps the slide from its place, Reset",
+        "Find what prevents the axis from reaching its position, then press Reset",
         tells=True,
     ),
     "driver": off(
         104,
-        "the drives refuse",
+        "drive rejected command",
         (
-            "something was asked of the drives that they cannot do now",
-            "a drive was not ready any more",
+            "the drives received a command that they cannot carry out now",
+            "a drive was no longer ready",
         ),
-        "Reset, Drives On, start again; if it comes again, the log says what was refused",
+        (
+            "Press Reset, then Drives On, and start again. If the alarm returns, find the "
+            "rejected command in the log"
+        ),
     ),
     "power-lost": off(
         105,
-        "the drives have lost power",
+        "drives lost power",
         (
-            "the safety circuit has opened: door, guard, E-stop elsewhere on the machine",
-            "a fuse or the drives' supply",
+            "the safety circuit has opened: a door, a guard or another E-stop on the machine",
+            "a fuse or the drive power supply has failed",
         ),
-        "close the safety circuit, Reset, Drives On; home where the axis asks for it",
+        "Close the safety circuit. Press Reset, then Drives On. Home any axis shown as not homed",
         tells=True,
     ),
     "no-power": off(
         106,
-        "the drives do not come on",
+        "drives do not switch on",
         (
             "E-stop is pressed or the safety circuit is open",
             "the drives' main power is off",
             "a drive shows a fault",
         ),
-        "release the E-stop, switch the drives' power on, Reset, Drives On",
+        "Release the E-stop and switch on the drives' power. Press Reset, then Drives On",
         tells=True,
     ),
     "drive-silent": off(
         107,
-        "an axis drive does not answer",
-        ("its bus cable is off or damaged", "its power is off", "it has failed"),
-        "check the drive's power and bus cable, Reset, Drives On; home again",
+        "no response from axis drive",
+        (
+            "the drive's bus cable is disconnected or damaged",
+            "the power supply is off",
+            "the drive has failed",
+        ),
+        "Check the drive's power and bus cable. Press Reset, then Drives On, and home again",
         tells=True,
     ),
     "drive-restarted": off(
         108,
-        "a drive has restarted",
+        "drive restarted",
         (
-            "its control power broke down for a moment",
-            "somebody has reset it or works on it by its own software",
+            "the drive's control power failed briefly",
+            "someone reset the drive or is using its own software on it",
         ),
-        "check its supply, Reset, Drives On; home again",
+        "Check the drive's power supply. Press Reset, then Drives On, and home again",
         tells=True,
     ),
     "drive-setup": off(
         109,
-        "a drive does not take its settings",
+        "drive rejected its settings",
         (
-            "it is another drive than the machine file says, or has other firmware",
+            "the drive or its firmware is not the one in the machine file",
             "a node number is wrong",
-            "bus cable or power",
+            "a fault in the bus cable or in the drive's power supply",
         ),
-        "run 'turndesk machine check' with the machine file: it names the setting",
+        "Run 'turndesk machine check' with the machine file to find the rejected setting",
         tells=True,
     ),
     "drive-keeps-fault": off(
         110,
-        "a drive keeps its fault",
-        ("the cause still stands: too hot, no motor, no encoder", "it has to be switched off and on"),
-        "read the drive's display; switch the machine off and on when it does not clear",
+        "drive fault does not clear",
+        (
+            "the cause is still present: drive too hot, no motor or no encoder",
+            ("the drive must be switched off and on again"),
+        ),
+        "Read the drive's display. If the fault does not clear, switch the machine off and on",
         tells=True,
     ),
     "limit-switch": off(
         111,
-        "a slide has hit its limit switch",
+        "axis hit its limit switch",
         (
-            "it was moved before it was homed",
+            "the axis was moved before it was homed",
             "the travel in the machine file is too long",
-            "the switch or its cable",
+            "a fault in the switch or its cable",
         ),
-        "Reset, Drives On, home; if it stands on the switch move it off by hand first",
+        (
+            "Press Reset, then Drives On, and home the axis. If it is still on the switch, move "
+            "it off by hand first"
+        ),
         tells=True,
     ),
     "homing": off(
         112,
-        "homing has failed",
-        ("the switch was not found: its cable, or the slide went the wrong way", "the slide is blocked"),
-        "look at switch and direction, Reset, Drives On, home again",
+        "homing failed",
+        (
+            "the home switch was not found: cable fault, or the axis moved in the wrong direction",
+            ("the axis is blocked"),
+        ),
+        "Check the home switch and the homing direction. Press Reset, then Drives On, and home again",
         tells=True,
     ),
     "position-lost": off(
         113,
-        "the position is lost",
-        ("the controller was stopped while the slides moved", "its limit was hit"),
-        "Reset, Drives On, home all axes before anything is started",
+        "position lost",
+        ("the controller was stopped while the axes were moving", "an axis limit was hit"),
+        "Press Reset, then Drives On. Home all axes before starting anything",
         tells=True,
     ),
     "drive-limits": off(
         114,
-        "a move beyond what the drives allow",
+        "move exceeds drive limits",
         (
-            "speed or travel in the machine file differ from the drives' own",
+            "speed or travel in the machine file differs from the drive settings",
             "the spindle was too fast for the thread's lead",
         ),
-        "Reset, Drives On; compare the machine file with the drives before the program is run again",
+        (
+            "Press Reset, then Drives On. Compare the machine file with the drive settings "
+            "before running the program again"
+        ),
         tells=True,
     ),
     "queue-dry": off(
         115,
-        "the drives ran out of setpoints",
-        ("the computer was busy with something else for too long", "the bus was disturbed"),
-        "Reset, Drives On; end other programs on this computer, and restart at the line",
+        "drives ran out of setpoints",
+        ("the computer was busy with another task for too long", "interference on the bus"),
+        (
+            "Press Reset, then Drives On. Close other programs on this computer, then restart at "
+            "the interrupted line"
+        ),
     ),
     "standstill": off(
         116,
-        "an axis is not where it ought to stand",
+        "axis out of position",
         (
-            "the slide is jammed, or something pushes against it",
-            "its encoder or the encoder's cable",
-            "the drive holds it too softly, or its motor cable is off",
+            "the axis is jammed, or something is pushing against it",
+            "a fault in the encoder or its cable",
+            "the drive is tuned too soft to hold the axis, or its motor cable is disconnected",
         ),
-        "keep clear of the slide, it may jump when it comes free; look what holds it, Reset, Drives On",
+        (
+            "Keep clear of the axis: it may jump when freed. Find what is holding it, then press "
+            "Reset and Drives On"
+        ),
         tells=True,
     ),
     "encoder-still": off(
         117,
-        "axis sent, its encoder does not count",
+        "encoder not counting during a move",
         (
-            "the encoder, its cable or its coupling: the slide may have moved all the same",
-            "the slide is jammed, or the tool has run into something",
-            "the motor cable is off",
+            "a fault in the encoder, its cable or its coupling; the axis may have moved anyway",
+            "the axis is jammed, or the tool has hit something",
+            "the motor cable is disconnected",
         ),
-        "look where the slide really stands; check encoder and coupling, Reset, Drives On, home the axis",
+        (
+            "Check where the axis actually is. Check encoder and coupling. Press Reset, then "
+            "Drives On, and home the axis"
+        ),
         tells=True,
     ),
     "moved-unasked": off(
         118,
-        "an axis has moved unasked",
+        "axis moved without a command",
         (
-            "it was moved by hand while the drives are off",
-            "it sinks: no brake, or the brake slips",
-            "somebody else moves the drive: its own software, a pendant",
+            "the axis was moved by hand with the drives off",
+            "the axis sinks under its own weight: it has no brake, or the brake slips",
+            "something else is moving the drive: its own software or a pendant",
         ),
-        "look where the slide stands and that nothing is in its way, Reset, Drives On",
+        "Check where the axis is and that nothing is in its path. Press Reset, then Drives On",
         tells=True,
     ),
 }

@@ -16,145 +16,193 @@ WIRES: Entries = {
         501,
         "the drive bus has failed",
         (
-            "the CAN cable is off, or a terminator is missing",
+            "the CAN cable is disconnected, or a terminator is missing",
             "the CAN interface was unplugged",
             "another master is on the bus",
         ),
-        "PRESS E-STOP, the spindle may turn; check cable, terminators, interface; Reset opens the bus again",
+        (
+            "PRESS E-STOP: the spindle may be turning. Check cable, terminators and interface, "
+            "then press Reset to reopen the bus"
+        ),
         tells=True,
     ),
     "io-silent": off(
         502,
-        "an I/O module does not answer",
-        ("its bus cable or power", "it has restarted: its outputs have fallen"),
-        "check the module's power and cable, Reset, Drives On; look what the outputs have let go",
+        "no response from I/O module",
+        (
+            "a fault in the module's bus cable or power supply",
+            "the module restarted and its outputs dropped out",
+        ),
+        (
+            "Check the module's power and cable. Press Reset, then Drives On. Check what the "
+            "module's outputs have released"
+        ),
         tells=True,
     ),
     "output": stop(
         503,
         "an output cannot be switched",
-        ("the machine file does not name it, or the controller does not have it", "its module has failed"),
-        "check the output in the machine file, Reset",
+        (
+            "the output is not in the machine file, or the controller does not have it",
+            ("the output module has failed"),
+        ),
+        "Check the output in the machine file, then press Reset",
         tells=True,
     ),
     "feeder-gone": off(
         511,
-        "the feeder has ended",
+        "driver host has ended",
         (
-            "the feeder process was ended or has failed: slides, spindle and outputs are off",
+            "the driver host was ended or has failed; axes, spindle and outputs are off",
             "the computer ran out of memory",
         ),
-        "PRESS E-STOP, the spindle may turn; look at the tool; Reset starts another. Home where asked",
+        (
+            "PRESS E-STOP: the spindle may be turning. Check the tool, then press Reset to start "
+            "a new driver host. Home any axis shown as not homed"
+        ),
     ),
     "feeder-silent": off(
         512,
-        "the feeder does not answer",
-        ("the computer is overloaded: the slides stop at the end of what they have", "the feeder has failed"),
-        "PRESS E-STOP, the spindle may turn; look where the tool stands; Reset ends it and starts another",
+        "no response from driver host",
+        (
+            "the computer is overloaded; the axes stop at the end of their queued motion",
+            ("the driver host has failed"),
+        ),
+        (
+            "PRESS E-STOP: the spindle may be turning. Check where the tool is, then press Reset "
+            "to end the driver host and start a new one"
+        ),
     ),
     "controller-lost": off(
         521,
         "the connection to the controller is lost",
-        ("the cable to the controller was pulled or damaged", "the controller's power is off"),
-        "PRESS E-STOP, the spindle may turn; check cable and power, Reset connects again. Home where asked",
+        ("the controller cable was unplugged or damaged", "the controller's power is off"),
+        (
+            "PRESS E-STOP: the spindle may be turning. Check the cable and the power, then press "
+            "Reset to reconnect. Home any axis shown as not homed"
+        ),
     ),
     "controller-silent": off(
         522,
-        "the controller does not answer",
-        ("its cable, or its line is disturbed", "the controller hangs"),
-        "check the cable, Reset; switch the controller off and on when it does not answer",
+        "no response from controller",
+        ("a cable fault, or interference on the line", "the controller has locked up"),
+        "Check the cable, then press Reset. If the controller does not respond, switch it off and on",
     ),
     "controller-reset": off(
         523,
         "the controller was reset",
-        ("its reset button or input", "its supply broke down for a moment"),
-        "the program is given up: look where the tool stands, Reset, Drives On, home",
+        (
+            "the controller's reset button or reset input was activated",
+            "the controller's power supply failed briefly",
+        ),
+        ("The program was canceled. Check where the tool is. Press Reset, then Drives On, and home the axes"),
     ),
     "controller-refuses": off(
         524,
-        "the controller refuses a block",
+        "controller rejected a block",
         (
-            "its settings forbid what the program asks for: travel, speed, spindle",
-            "a line was damaged on its way",
+            "the controller's settings do not allow the programmed travel, speed or spindle command",
+            "a line was corrupted during transmission",
         ),
-        "Reset, Drives On; compare its settings with the machine file ('turndesk machine check')",
+        (
+            "Press Reset, then Drives On. Compare the controller's settings with the machine "
+            "file ('turndesk machine check')"
+        ),
         tells=True,
     ),
     "controller-alarm": off(
         525,
-        "alarm of the controller",
-        ("what the controller's number says",),
-        "put right what is named, Reset, Drives On; home where asked",
+        "controller alarm",
+        ("the cause given by the controller's alarm number",),
+        "Correct the cause shown, then press Reset and Drives On. Home any axis shown as not homed",
         tells=True,
     ),
     "controller-modes": off(
         526,
-        "the controller has lost its modes",
-        ("another program has written to the controller", "it was reset unseen"),
-        "end whatever else talks to the controller, Reset, Drives On",
+        "controller lost its modal state",
+        ("another program has written to the controller", "an undetected reset of the controller"),
+        "Close any other software that uses the controller. Press Reset, then Drives On",
         tells=True,
     ),
     "controller-estop": off(
         527,
-        "E-stop at the controller",
-        ("its E-stop or reset input is on",),
-        "release the E-stop, Reset, Drives On",
+        "controller E-stop active",
+        ("the controller's E-stop or reset input is active",),
+        "Release the E-stop. Press Reset, then Drives On",
     ),
     "door": off(
         528,
         "the safety door is open",
-        ("the door was opened in the cycle", "the door's switch or cable"),
-        "spindle and coolant are off: close the door, Reset, Drives On",
+        ("the door was opened during the cycle", "a fault in the door switch or its cable"),
+        "The spindle and coolant are off. Close the door, then press Reset and Drives On",
         tells=True,
     ),
     "hal-bridge": off(
         531,
-        "the bridge to HAL has ended",
+        "HAL bridge process has ended",
         (
-            "its process was ended or has failed: HAL plays what it has, brakes, takes the power",
+            (
+                "the bridge process was ended or has failed; HAL finishes its queued motion, brakes "
+                "and removes drive power"
+            ),
             "the computer ran out of memory",
         ),
-        "PRESS E-STOP, the spindle may turn; look at the tool; Reset starts HAL anew. Home where asked",
+        (
+            "PRESS E-STOP: the spindle may be turning. Check the tool, then press Reset to "
+            "restart HAL. Home any axis shown as not homed"
+        ),
         tells=True,
     ),
     "hal-silent": off(
         532,
-        "the bridge to HAL is silent",
+        "no response from HAL bridge",
         (
-            "the computer is overloaded: HAL plays what it has, brakes, takes the power",
-            "something has stopped the bridge's process",
+            ("the computer is overloaded; HAL finishes its queued motion, brakes and removes drive power"),
+            "the bridge process has been stopped",
         ),
-        "PRESS E-STOP, the spindle may turn; look where the tool is; end other programs, Reset, Drives On",
+        (
+            "PRESS E-STOP: the spindle may be turning. Check where the tool is and close other "
+            "programs, then press Reset and Drives On"
+        ),
         tells=True,
     ),
     "hal-thread": off(
         533,
-        "HAL's real-time thread stands",
+        "HAL real-time thread stopped",
         (
-            "its process (rtapi_app) has ended: what drives the slides now is the boards' watchdogs alone",
-            "a board's driver waits for a board: its cable, its power",
+            "the rtapi_app process has ended; only the boards' watchdogs now control the axes",
+            "a board driver is waiting for its board: cable or power fault",
         ),
-        "PRESS E-STOP, the spindle may turn; look at the boards; Reset starts HAL anew. Home where asked",
+        (
+            "PRESS E-STOP: the spindle may be turning. Check the boards, then press Reset to "
+            "restart HAL. Home any axis shown as not homed"
+        ),
     ),
     "hal-board": off(
         535,
         "connection to the I/O board lost",
         (
-            "the network cable between the computer and the board is out or damaged",
+            "the network cable between the computer and the board is unplugged or damaged",
             "the board has no power, or its watchdog has switched it off",
             "an EtherCAT slave is not operational, or the bus is still starting",
             "the 7I76E has lost its field I/O",
         ),
-        "PRESS E-STOP, the spindle may turn. Check cable and board power, then press Reset. Home where asked",
+        (
+            "PRESS E-STOP: the spindle may be turning. Check the cable and the board power, then "
+            "press Reset. Home any axis shown as not homed"
+        ),
     ),
     "hal-setup": off(
         534,
-        "HAL does not come up",
+        "HAL does not start",
         (
-            "a pin that the machine file names is not there, or is of another kind",
-            "a board or component does not load, or another session of LinuxCNC runs",
+            "a pin named in the machine file does not exist or is of another type",
+            "a board or component does not load, or another LinuxCNC session is running",
         ),
-        "run 'turndesk machine check' with the machine file: it names every pin; put it right, Reset",
+        (
+            "Run 'turndesk machine check' with the machine file: it lists every pin. Correct the "
+            "fault, then press Reset"
+        ),
         tells=True,
     ),
 }

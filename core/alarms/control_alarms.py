@@ -8,76 +8,90 @@ CONTROL: Entries = {
     "internal": off(
         901,
         "the control has failed",
-        ("a mistake in TurnDesk; the log has it",),
-        "look where the tool stands; save the log (F10), end TurnDesk and start it again",
+        ("a fault in TurnDesk; see the log",),
+        "Check where the tool is. Save the log (F10), then exit TurnDesk and start it again",
     ),
     "broken-path": off(
         902,
-        "the planned path does not fit together",
-        ("a mistake in TurnDesk; nothing of the wrong piece was moved",),
-        "Reset, Drives On; save program and log (F10), and restart at another line",
+        "planned path is not continuous",
+        ("a fault in TurnDesk; the faulty part of the path was not run",),
+        ("Press Reset, then Drives On. Save the program and the log (F10), then restart at another line"),
     ),
     "not-safe": off(
         905,
         "the machine could not be made safe",
         (
-            "a driver does not do what a stop asks of it: a wire is off, or it has failed",
-            "a mistake in TurnDesk; the log has it",
+            "a driver does not carry out the stop: a wire is disconnected, or the driver has failed",
+            "a fault in TurnDesk; see the log",
         ),
-        "PRESS E-STOP, switch the machine off; save the log (F10), end TurnDesk and start it again",
+        (
+            "PRESS E-STOP and switch the machine off. Save the log (F10), then exit TurnDesk and "
+            "start it again"
+        ),
         tells=True,
     ),
     "control-silent": off(
         908,
-        "the control does not respond",
+        "control not responding",
         (
-            "the computer is overloaded: another program, a backup or an update uses the processor",
-            "a driver does not respond: its cable, its adapter, the computer's disk or network",
+            ("the computer is overloaded: another program, a backup or an update is using the processor"),
+            (
+                "a driver does not respond: a fault in its cable, its adapter, or the computer's "
+                "disk or network"
+            ),
             "a fault in TurnDesk; see the log",
         ),
-        "PRESS E-STOP: the display is out of date; close other programs and stop backups and updates, "
-        "save the log, end TurnDesk and start it again",
+        (
+            "PRESS E-STOP: the display is out of date. Close other programs and stop backups and "
+            "updates. Save the log, then exit TurnDesk and start it again"
+        ),
         tells=True,
     ),
     "feeder-tripped": hold(
         906,
-        "the feeder has switched off",
+        "driver host stopped spindle/outputs",
         (
-            "another program, a backup or an update keeps this computer busy",
-            "the computer is too slow or too hot, or its disk hangs",
-            "the screen was locked or the computer asleep",
+            "another program, a backup or an update is slowing this computer down",
+            "the computer is too slow or too hot, or its disk does not respond",
+            "the screen was locked or the computer was in sleep mode",
         ),
-        "look at the tool; read what starts again, then Cycle Start; measure the part: it is not counted",
+        (
+            "Check the tool. Read what will restart, then press Cycle Start. Measure the part: "
+            "it is not counted"
+        ),
         tells=True,
     ),
     "switched-off": hold(
         907,
-        "an output is not as commanded",
+        "output not in commanded state",
         (
-            "a fuse, a relay or a terminal has switched it",
-            "somebody else switches it: a pendant, the drive's own software",
+            "a fuse, a relay or a terminal switched the output",
+            "something else is switching the output: a pendant or the drive's own software",
         ),
-        "look why; read what is switched again, then Cycle Start; measure the part, it is not counted",
+        (
+            "Find the cause. Read what will be switched again, then press Cycle Start. Measure "
+            "the part: it is not counted"
+        ),
         tells=True,
     ),
     "late": hold(
         903,
-        "the computer was too late",
+        "computer responded too late",
         (
-            "another program, a backup or an update keeps this computer busy",
-            "the computer is too slow or too hot, or its disk hangs",
-            "the screen was locked or the computer asleep",
+            "another program, a backup or an update is slowing this computer down",
+            "the computer is too slow or too hot, or its disk does not respond",
+            "the screen was locked or the computer was in sleep mode",
         ),
-        "the slides have stopped on the path; end other programs, then Cycle Start",
+        "The axes have stopped on the path. Close other programs, then press Cycle Start",
     ),
     "low-queue": hold(
         904,
-        "setpoints ran low",
+        "feed hold: computer busy",
         (
-            "another program, a backup or an update keeps this computer busy",
-            "the computer is too slow or too hot, or its disk hangs",
+            "another program, a backup or an update is slowing this computer down",
+            "the computer is too slow or too hot, or its disk does not respond",
         ),
-        "the slides have stopped on the path; end other programs, then Cycle Start",
+        "The axes have stopped on the path. Close other programs, then press Cycle Start",
     ),
 }
 
@@ -89,26 +103,26 @@ PROGRAM: Entries = {
         401,
         "program error",
         (
-            "this line cannot be run as it stands",
-            "an input or a counter led to a line that was never run before",
+            "this line cannot be run as programmed",
+            "an input or a counter branched to a line that had never run before",
         ),
-        "correct the line in the editor (F3), load the program again",
+        "Correct the line in the editor (F3) and load the program again",
         tells=True,
     ),
     "travel": stop(
         402,
         "end of travel",
         (
-            "the offset of the tool, or the zero of the part, is wrong",
-            "the program was started at another place than it was proved from",
+            "the tool offset or the part zero is wrong",
+            "the program was started from a position other than the one it was proved from",
         ),
-        "check the tool's offset and where the slides stood at the start; Reset",
+        "Check the tool offset and where the axes were at the start, then press Reset",
         tells=True,
     ),
     "no-end": stop(
         403,
         "the program ends without M30 or M02",
-        ("the last line is missing: cut off when it was sent or copied",),
-        "compare the end of the program with the original, add M30, load it again",
+        ("the last line is missing: the program was cut off when it was sent or copied",),
+        "Compare the end of the program with the original, add M30 and load it again",
     ),
 }

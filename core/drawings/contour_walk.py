@@ -211,7 +211,9 @@ def _foremost(net: Net, gap: float) -> int:
     """The end of an element that is furthest in front, nearest to the axis. Raises DrawingError."""
     front = _at_front(net, gap)
     if not front:
-        raise DrawingError("has its foremost point inside an arc: end the arc there.", "front-in-arc")
+        raise DrawingError(
+            ("has its frontmost point in the middle of an arc: end the arc at that point."), "front-in-arc"
+        )
     return min(front, key=lambda n: net.nodes[n][0])
 
 
@@ -303,13 +305,13 @@ def _elements(net: Net, start: int, way: Iterable[tuple[int, int]]) -> list[Elem
 
 def _checked(net: Net, walked: list[Element], gap: float) -> list[Element]:
     if not walked:
-        raise DrawingError("has no contour there: choose another.", "no-contour")
+        raise DrawingError("has no contour on this side: choose another contour.", "no-contour")
     _no_crossing(walked)
     for end in (walked[0].start, walked[-1].end):
         if end[0] <= gap and any(abs(z - end[1]) <= gap for z in net.crossings):
             behind = net.reach[1] - end[1]
             raise DrawingError(
-                f"has a contour that crosses the axis {behind:.3f} mm behind its face: choose another axis.",
+                (f"has a contour that crosses the axis {behind:.3f} mm from its face: choose another axis."),
                 "crosses-axis",
             )
     return walked
@@ -322,8 +324,10 @@ def _no_crossing(walked: Sequence[Element]) -> None:
         _, point = first
         behind = walked[0].start[1] - point[1]
         raise DrawingError(
-            f"has a contour that crosses itself {behind:.3f} mm behind its face "
-            f"at a diameter of {2 * point[0]:.3f} mm: mend it there.",
+            (
+                f"has a contour that crosses itself {behind:.3f} mm from its face at a diameter of "
+                f"{2 * point[0]:.3f} mm: correct it there."
+            ),
             "crosses-itself",
         )
 

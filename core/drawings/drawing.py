@@ -101,17 +101,18 @@ def within_limits(found: Iterable[Drawn], name: str) -> Iterator[Drawn]:
     for count, each in enumerate(found):
         if count >= MOST_ELEMENTS:
             raise DrawingError(
-                f"{name} has more than {MOST_ELEMENTS} lines: leave the layer of the contour in it alone.",
+                (f"{name} has more than {MOST_ELEMENTS} lines: save only the layer with the contour."),
                 "too-many-lines",
             )
         values = [v for p in (each.element.start, each.element.end) for v in p]
         if not all(map(math.isfinite, values)):
             raise DrawingError(
-                f"{name} has a point that is no number: save the drawing anew.", "not-a-number"
+                f"{name} has a point whose coordinate is not a number: save the drawing again.",
+                "not-a-number",
             )
         if max(map(abs, values)) > _FARTHEST:
             raise DrawingError(
-                f"{name} has a point too far from its zero: move the contour to the zero.",
+                f"{name} has a point too far from the drawing zero: move the contour to the zero.",
                 "too-far-from-zero",
             )
         yield each

@@ -19,11 +19,11 @@ def is_drawing(name: str) -> bool:
 def read_drawing(path: Path) -> Drawing:
     """Return the lines and arcs of a drawing. Raises DrawingError alone, without words of a library."""
     if not is_drawing(path.name):
-        raise DrawingError(f"{path.name} is no drawing: DXF and SVG are read.", "not-a-drawing")
+        raise DrawingError(f"{path.name} is not a supported drawing: use a DXF or SVG file.", "not-a-drawing")
     with failures_as(partial(_unreadable, path)):
         data = input_bytes(path, MOST_BYTES)
         if not data:
-            raise DrawingError(f"{path.name} is empty: save the drawing anew.", "empty")
+            raise DrawingError(f"{path.name} is empty: save the drawing again.", "empty")
         if path.suffix.lower() == ".svg":
             from core.drawings.svg_reader import read_svg
 
@@ -35,12 +35,14 @@ def read_drawing(path: Path) -> Drawing:
 
 def _unreadable(path: Path, error: Exception) -> DrawingError:
     if isinstance(error, TooLargeError):
-        words = f"{path.name} has more than {MOST_BYTES // MB} MB: save the contour of the part alone."
+        words = f"{path.name} is larger than {MOST_BYTES // MB} MB. Save only the contour of the part."
         return DrawingError(words, "too-large")
     if isinstance(error, OSError) and error.errno is not None:
         return DrawingError(f"{path.name} cannot be read: {error.strerror}.", "unreadable")
     if isinstance(error, MemoryError):
-        words = f"{path.name} needs more memory than a drawing may have: save the contour of the part alone."
+        words = (
+            f"{path.name} needs more memory than is allowed for a drawing. Save only the contour of the part."
+        )
         return DrawingError(words, "out-of-memory")
     kind = path.suffix[1:].upper()
-    return DrawingError(f"{path.name} is damaged or no {kind}: save the drawing anew.", "damaged")
+    return DrawingError(f"{path.name} is damaged or is not a {kind} file: save the drawing again.", "damaged")

@@ -52,7 +52,9 @@ def read_in_process(path: Path, go_on: GoOn = lambda _seconds: None, limits: Lim
             stderr=subprocess.DEVNULL,
         )
     except (OSError, ValueError) as error:  # ValueError: a zero byte in the name
-        raise DrawingError(f"{path.name} cannot be read: no process can be started.", "unreadable") from error
+        raise DrawingError(
+            f"{path.name} cannot be read because no process can be started.", "unreadable"
+        ) from error
     with process:
         try:
             while (data := _all_of(process)) is None:
@@ -88,10 +90,10 @@ def _ended(path: Path, status: int, limits: Limits) -> DrawingError:
     if -status == getattr(signal, "SIGXCPU", 0):
         return _too_long(path, limits.processor)
     most = limits.memory // 1024**2
-    words = f"{path.name} could not be read with {most} MB of memory: save the contour of the part alone."
+    words = f"{path.name} cannot be read with {most} MB of memory. Save only the contour of the part."
     return DrawingError(words, "out-of-memory")
 
 
 def _too_long(path: Path, seconds: float) -> DrawingError:
-    words = f"{path.name} takes more than {seconds:.0f} s to read: save the contour of the part alone."
+    words = f"{path.name} takes more than {seconds:.0f} s to read. Save only the contour of the part."
     return DrawingError(words, "too-slow")

@@ -130,13 +130,16 @@ def line_axis(drawing: Drawing, number: int) -> Axis:
     """The line of this number, from 1, as the axis. Raises DrawingError where there is no such line."""
     if not 1 <= number <= len(drawing.drawn):
         raise DrawingError(
-            f"{drawing.name} has {len(drawing.drawn)} lines, none is number {number}: choose one of them.",
+            (
+                f"{drawing.name} has {len(drawing.drawn)} lines, but no line {number}: choose one of "
+                "its lines."
+            ),
             "no-line",
         )
     each = drawing.drawn[number - 1].element
     if not isinstance(each, Line):
         raise DrawingError(
-            f"{drawing.name} has an arc as its line {number}: choose a straight line as the axis.",
+            f"{drawing.name} has an arc as line {number}: choose a straight line as the axis.",
             "axis-is-arc",
         )
     return _axis(f"LINE {number}", each)
@@ -153,7 +156,7 @@ def axis_named(drawing: Drawing, name: str, layer: str = "") -> Axis:
     if found is None:
         there = ", ".join(axis.name for axis in known) or "none"
         raise DrawingError(
-            f"{drawing.name} has no axis {name}: choose {there}, or LINE and the number of a line.", "no-axis"
+            f"{drawing.name} has no axis {name}: choose {there}, or LINE and a line number.", "no-axis"
         )
     return found
 

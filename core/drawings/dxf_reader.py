@@ -65,7 +65,7 @@ def _nothing(name: str, left_out: Counter[str]) -> DrawingError:
         text = f"{name} is three-dimensional: save a section or a view of the part in one plane."
         return DrawingError(text, "three-dimensional")
     what = ", ".join(sorted(left_out)) if left_out else "nothing"
-    text = f"{name} has no line nor arc in its model space, only {what[:80]}: draw the contour as lines."
+    text = f"{name} has no lines or arcs in model space, only {what[:80]}: draw the contour with lines."
     return DrawingError(text, "nothing-drawn")
 
 
@@ -105,8 +105,8 @@ def _read(read: Reader, entity: Any, near: float, name: str) -> Iterator[Element
     except (ValueError, ArithmeticError, AttributeError, IndexError) as error:
         if isinstance(error, DrawingError):
             raise DrawingError(f"{name} {error}", error.code) from None
-        what = f"a {entity.dxftype()} of {name} on layer {entity.dxf.get('layer', '0')}"
-        raise DrawingError(f"{what} is damaged: draw it anew.", "damaged") from error
+        what = f"a {entity.dxftype()} in {name} on layer {entity.dxf.get('layer', '0')}"
+        raise DrawingError(f"{what} is damaged: draw it again.", "damaged") from error
 
 
 def _centre(layer: str, linetype: str) -> bool:
@@ -118,7 +118,7 @@ def _taken_apart(entities: Iterable[Any], name: str, depth: int) -> Iterator[Any
     """Entities, those of blocks where these are inserted; what has dimensions or texts stays whole."""
     if depth > _DEEPEST:
         raise DrawingError(
-            f"{name} has blocks in blocks, more than {_DEEPEST} deep: explode them.", "nested-blocks"
+            f"{name} has blocks nested more than {_DEEPEST} levels deep: explode them.", "nested-blocks"
         )
     for entity in entities:
         if entity.dxftype() != "INSERT":

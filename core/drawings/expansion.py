@@ -23,8 +23,8 @@ def check_expansion(name: str, root: Key, content: Callable[[Key], Content], spa
     ``spare`` entities are allowed besides: those that the file itself has. Raises DrawingError.
     """
     if _count(name, root, content) > MOST_ELEMENTS + spare:
-        words = f"The repeated parts of {name} come to more than {MOST_ELEMENTS} entities"
-        raise DrawingError(f"{words}: save the contour of the part alone.", "too-many-lines")
+        words = f"The repeated parts of {name} add up to more than {MOST_ELEMENTS} entities"
+        raise DrawingError(f"{words}: save only the contour of the part.", "too-many-lines")
 
 
 def _count(name: str, root: Key, content: Callable[[Key], Content]) -> int:
@@ -44,7 +44,7 @@ def _count(name: str, root: Key, content: Callable[[Key], Content]) -> int:
             waiting[here] = content(here)  # type: ignore[arg-type]
             below = [each for _, each in waiting[here].inserted if each not in known]
             if any(each in waiting for each in below):
-                words = f"A repeated part of {name} contains itself: save the contour of the part alone."
+                words = f"A repeated part of {name} contains itself: save only the contour of the part."
                 raise DrawingError(words, "nested-blocks")
             stack += below
     return known[root]

@@ -194,8 +194,13 @@ def _check_tip(tool: ToolShape | None, number: float, setting: Setting) -> None:
     The part would come out too small by the nose radius. Raises DrawingError.
     """
     if tool is not None and not tool.tip and (nose := nose_of(tool)):
-        words = f"T{number:.0f} has a nose radius of {nose / setting.mm:.4g} and no tip quadrant in its sheet"
-        raise DrawingError(f"{words}: enter the tip on its SHAPE page (F8, F8).", "no-tip-quadrant")
+        words = (
+            f"T{number:.0f} has a nose radius of {nose / setting.mm:.4g}, but its tool data has "
+            "no tip quadrant"
+        )
+        raise DrawingError(
+            (f"{words}: enter the tip quadrant on the SHAPE page of the tool (F8, F8)."), "no-tip-quadrant"
+        )
 
 
 def nose_of(tool: ToolShape | None) -> float:
@@ -301,13 +306,15 @@ def _groove(
     if blade is None:
         number = _number(typed, "BLADE")
         return (
-            f"a groove, and T{number:.0f} has no width" if number else "a groove, and no groove tool is said"
+            f"the groove cannot be cut because T{number:.0f} has no width"
+            if number
+            else ("the groove cannot be cut because no grooving tool is specified")
         )
     wide = blade * mm
     leaning = _leaning(groove, wide)
     box = leaning[:4] if leaning else _square(groove, wide, 1.0 if outside else -1.0)
     if box is None:
-        return f"a groove narrower than the blade of {wide:.3g} mm"
+        return f"the groove is narrower than the {wide:.3g} mm blade"
     front, back, bottom, edge = box
     found: dict[str, Value] = {
         "T": _number(typed, "BLADE"),

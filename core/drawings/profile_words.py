@@ -24,33 +24,33 @@ def in_words(
         x, z, r = (plain(v / mm, places + 1) for v in (2.0 * n.x, n.z, n.r))
         if n.quadrant:
             edge = f"T{made.tool:.0f} D{n.number}"
-            yield f"{edge} has to hold the nose radius {r} {unit} and tip quadrant {n.quadrant}"
+            yield f"{edge} must have nose radius {r} {unit} and tip quadrant {n.quadrant}"
         else:
-            yield f"secondary offset {n.number} has to hold X {x} (as a diameter), Z {z}, R {r} {unit}"
+            yield f"secondary offset {n.number} must have X {x} (diameter), Z {z}, R {r} {unit}"
     elif not made.nose_radius:
-        yield f"the sheet of T{made.tool:.0f} states no nose radius: the contour is not compensated"
+        yield (f"the tool data of T{made.tool:.0f} has no nose radius: the contour is not compensated")
     if profile.closed > _CLOSED:
         yield f"gaps up to {plain(profile.closed / mm, places)} {unit} were closed"
     for each in made.left:
         span = f"Z {plain(each.front / mm, places)} to {plain(each.back / mm, places)}"
-        yield f"not cut, {span}: {each.why}"
+        yield f"{span} is not cut: {each.why}"
     if comparison is None:
-        yield "no part came of the proof: the drawing could not be held against it"
+        yield "the proof produced no part, so no comparison with the drawing was possible"
         return
     for found in comparison.found:
         yield _deviation(found, made.nose_radius, mm, unit, places)
     within = plain(max(comparison.worst, 0.001) / mm, places)
-    what = "elsewhere the proved part" if comparison.found else "the proved part"
-    yield f"{what} is the drawing's within {within} {unit}"
+    what = "elsewhere, the proved part" if comparison.found else "the proved part"
+    yield f"{what} matches the drawing within {within} {unit}"
 
 
 def _deviation(found: Deviation, nose: float, mm: float, unit: str, places: int) -> str:
-    what = "stays on" if found.most > 0.0 else "is cut too deep from"
+    what = "of stock remains on" if found.most > 0.0 else "too much is cut from"
     deep = plain(abs(found.most) / mm, places)
     span = f"Z {plain(found.front / mm, places)} to {plain(found.back / mm, places)}"
     if is_corner(found, nose):
         at = plain(found.back / mm, places)
-        return f"{deep} {unit} stays in the corner at Z {at}, by the nose of the tool"
+        return f"{deep} {unit} of stock remains in the corner at Z {at} because of the tool nose"
     return f"{deep} {unit} {what} the radius, {span}"
 
 

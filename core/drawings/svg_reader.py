@@ -57,7 +57,7 @@ def read_svg(name: str, data: bytes) -> Drawing:
     if not drawn:
         what = ", ".join(sorted(left_out)) or "nothing"
         raise DrawingError(
-            f"{name} has no path nor line, only {what[:80]}: draw the contour as a path.",
+            f"{name} has no paths or lines, only {what[:80]}: draw the contour as a path.",
             "nothing-drawn",
         )
     return Drawing(name, drawn, unit, dict(left_out))
@@ -73,12 +73,15 @@ def _shapes(name: str, data: bytes) -> Any:
 
     if b"<!ENTITY" in data:
         raise DrawingError(
-            f"{name} has entities of its own, which are not read: save it as plain SVG.", "own-entities"
+            f"{name} defines XML entities, which are not supported: save it as plain SVG.", "own-entities"
         )
     _check_elements(name, data)
     root = SVG.parse(io.BytesIO(data), reify=True, ppi=_PIXELS)
     if not isinstance(root, SVG):
-        words = f"{name} is no SVG, its first element is of another namespace: save the drawing anew."
+        words = (
+            f"{name} is not an SVG file, because its first element is in another namespace: save "
+            "the drawing again."
+        )
         raise DrawingError(words, "damaged")
     return root
 
@@ -109,7 +112,7 @@ def _check_numbers(name: str, element: Element_) -> None:
     for dimension in _DIMENSIONS.intersection(element.keys()):
         if _NO_NUMBER.search(element.get(dimension, "")):
             kind = str(element.tag).rpartition("}")[2]
-            words = f"{name}: {dimension} of <{kind}> is not a number: draw that element again."
+            words = f"{name}: {dimension} of <{kind}> is not a number. Draw that element again."
             raise DrawingError(words, "no-number")
 
 
@@ -130,7 +133,7 @@ def _drawn(root: Any, near: float, left_out: Counter[str], name: str) -> Iterato
         for segment in Outline(each):
             if not isinstance(segment, Move | Close) and segment.start is None:
                 raise DrawingError(
-                    f"{name} has a path that does not begin with M: save the drawing anew.",
+                    f"{name} has a path that does not begin with M: save the drawing again.",
                     "path-without-start",
                 )
             for element in _segment(segment, near):

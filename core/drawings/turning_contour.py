@@ -91,7 +91,7 @@ def turning_contour(profile: Profile, reach: Reach) -> TurningContour:
     lit = _without_face(lit)
     if not lit:
         raise DrawingError(
-            "There is nothing to turn on this contour: its face is all of it. Choose another.",
+            "This contour has only a face, so nothing can be turned. Choose another contour.",
             "nothing-to-turn",
         )
     kept, grooves = _bridged(lit, reach.fall, left)
@@ -136,7 +136,7 @@ def _seen_from_outside(elements: list[Element], left: list[tuple[float, float, s
         while last + 1 < len(elements) and elements[last + 1].end[1] >= elements[last + 1].start[1] - _SAME:
             last += 1
         front = elements[last].end
-        left.append((turn[1], front[1], "goes back under itself"))
+        left.append((turn[1], front[1], "the contour is undercut"))
         if front[0] > turn[0]:
             _cut_behind(found, front)
             at = last + 1
@@ -217,8 +217,11 @@ def _not_too_steep(kept: Iterable[Element], reach: Reach) -> None:
     for each in kept:
         if each.end[0] > each.start[0] + _SAME and _rise(each) > reach.rise + 1e-3:
             raise DrawingError(
-                f"The edge of the tool stands at {math.degrees(reach.rise):.0f} degrees, the contour at "
-                f"Z {each.start[1]:.3f} mm at {math.degrees(_rise(each)):.0f}: take a tool for shoulders.",
+                (
+                    f"The tool edge is at {math.degrees(reach.rise):.0f} degrees, but the contour at Z "
+                    f"{each.start[1]:.3f} mm is at {math.degrees(_rise(each)):.0f} degrees: use a tool "
+                    "for shoulders."
+                ),
                 "too-steep",
             )
 
@@ -258,7 +261,7 @@ def _bridged(
                 continue  # what comes now may be a groove of its own
             edge = elements[at].start[1]
             at = _sloped(elements, at, most, kept)
-            left.append((kept[-1].end[1], edge, "falls too steeply for the tool"))
+            left.append((kept[-1].end[1], edge, "the contour falls too steeply for the tool"))
     return kept, grooves
 
 

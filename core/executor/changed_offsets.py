@@ -35,7 +35,7 @@ class ChangedOffsets:
         """Keep them for the end of the part; returns why not, empty when they are kept."""
         job = asked.job
         if job is not None and (running is None or job.source.text != running.source.text):
-            return "another program is under way: new offsets are taken by the same program only"
+            return "another program is running; changed offsets apply only to the same program"
         self._asked = asked
         return ""
 
@@ -64,7 +64,7 @@ class ChangedOffsets:
             setup = asked.job.setup
             status.job = asked.job
             status.modal = modal_with_offsets(status.modal, setup.tools, setup.secondary)
-            self._context.log("offsets", "the changed offsets are in force")
+            self._context.log("offsets", "the changed offsets are in effect")
 
     def forget(self) -> None:
         """Another program is loaded: nothing is asked for any more."""

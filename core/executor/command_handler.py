@@ -16,7 +16,7 @@ from core.executor.station_signals import StationWatch
 LAMP_TEST = 2.0  # s
 _SWITCHES = ("single_block", "optional_stop", "cycle_repeat", "no_count")
 _AT_REST = frozenset({State.IDLE, State.DISABLED})
-_UNDER_WAY = "a program is under way: it must end or be reset before another is loaded"
+_UNDER_WAY = "a program is running; wait for its end or press Reset before loading another"
 
 
 class CommandHandler:
@@ -79,10 +79,10 @@ class CommandHandler:
         if control.state is not State.DISABLED:
             self._refuse(f"drives cannot be switched on in state {control.state.value}")
         elif control.status.alarms:
-            self._refuse("an alarm stands: press Reset first")
+            self._refuse("an alarm is active; press Reset first")
         elif self._context.unknown:
             self._refuse(
-                "the machine has not yet said what it does: wait a moment, then switch the drives on"
+                "the machine has not reported its state yet; wait a moment, then switch the drives on"
             )
         else:
             self._context.ports.axes.enable(True)
@@ -92,7 +92,7 @@ class CommandHandler:
     def _switch(self, command: commands.SetSwitch) -> None:
         name, on = command.name, command.on
         if name not in _SWITCHES:
-            self._refuse(f"there is no switch {name!r}")
+            self._refuse(f"switch {name!r} does not exist")
             return
         setattr(self._context.switches, name, on)
         self._context.log("switch", f"{name.replace('_', ' ')} {'on' if on else 'off'}")
@@ -106,14 +106,14 @@ class CommandHandler:
     def _limit(self, command: commands.SpindleLimit) -> None:
         rpm, highest = command.rpm, self._context.machine.spindle.rpm_max
         if rpm is not None and not 0.0 < rpm <= highest:
-            self._refuse(f"spindle limit {rpm:g} is not between 0 and {highest:g} rpm")
+            self._refuse(f"spindle speed limit {rpm:g} is not between 0 and {highest:g} rpm")
             return
         spindle = self._context.spindle
         if spindle.command and (rpm or highest) > spindle.highest:
-            self._refuse("the spindle limit is raised only while the spindle stands")
+            self._refuse("the spindle speed limit can be raised only when the spindle is stopped")
             return
         spindle.limit = rpm
-        self._context.log("override", f"spindle limit {rpm or highest:g} rpm")
+        self._context.log("override", f"spindle speed limit {rpm or highest:g} rpm")
 
     # --- what Cycle Start will begin ----------------------------------------------------------------------
 
@@ -170,7 +170,7 @@ class CommandHandler:
             self._refuse(why)
         elif command.at:
             self._control.meant_at = self._context.now
-            self._context.log("confirmed", "a start at the first line is meant")
+            self._context.log("confirmed", "start at the first line confirmed")
 
     def _count(self, command: commands.PartsMade) -> None:
         self._control.counters.made = max(0, command.parts)
@@ -179,7 +179,9 @@ class CommandHandler:
         status = self._control.status
         if command.why != status.next_barred:
             status.next_barred, status.start_refused = command.why, ""
-            self._context.log("switch", f"no other part: {command.why}" if command.why else "parts may go on")
+            self._context.log(
+                "switch", f"no further parts: {command.why}" if command.why else ("further parts allowed")
+            )
 
     # --- jog, homing --------------------------------------------------------------------------------------
 
@@ -188,7 +190,9 @@ class CommandHandler:
         if self._may_not_jog():
             return
         if command.while_on and not self._context.button(command.while_on):
-            control.stop_jog("its button is up")  # let go a moment ago, which the screen has not seen yet
+            control.stop_jog(
+                "the jog button was released"
+            )  # let go a moment ago, which the screen has not seen yet
             return
         why = control.jog_ended or control.wheel.bars(control.state)
         why = why or jogger.refusal(command.axis, command.velocity, command.lease, command.along)
@@ -228,17 +232,17 @@ class CommandHandler:
         if control.drive_test.begin(command.path, command.lease):
             control.enter(State.JOG)
         else:
-            self._refuse("drive test: its lease is over before anything could move")
+            self._refuse("drive test: the lease time ran out before any axis could move")
 
     def _may_not_jog(self) -> bool:
         control = self._control
         if control.state is State.IDLE:
             control.jogger.forget()  # an alarm or the E-stop may have ended the jog before
         elif control.state is not State.JOG:
-            self._refuse(f"no jog in state {control.state.value}")
+            self._refuse(f"jogging is not available in state {control.state.value}")
             return True
         elif control.touch.phase is not None:
-            control.stop_jog("something else was asked for")
+            control.stop_jog("another function was requested")
             return True
         return False
 
@@ -250,7 +254,9 @@ class CommandHandler:
     def _home(self, command: commands.Home) -> None:
         control = self._control
         idle = control.state is State.IDLE
-        why = control.homing.begin(command.axis) if idle else f"state {control.state.value}"
+        why = (
+            control.homing.begin(command.axis) if idle else (f"not available in state {control.state.value}")
+        )
         if why:
             self._refuse(f"homing: {why}")
         else:
@@ -260,21 +266,21 @@ class CommandHandler:
 
     def _offsets(self, command: commands.UseOffsets) -> None:
         if self._control.state in CYCLE:
-            self._refuse("a program is under way: it keeps the offsets that it was proved with")
+            self._refuse("a program is running and uses the offsets that it was proved with")
             return
         status = self._control.status
         status.modal = modal_with_offsets(status.modal, command.tools, command.secondary)
-        self._context.log("offsets", "the offsets of the tables are in force")
+        self._context.log("offsets", "the offsets of the tables are in effect")
 
     def _stop_spindle(self, _: commands.SpindleStop) -> None:
         if self._control.state in CYCLE:
             if self._control.status.starts in LINES:  # begun behind what the screen could see
                 self._control.reset()
             else:
-                self._refuse("a program is under way: its spindle is stopped by feed hold and reset")
+                self._refuse("a program is running; press feed hold, then Reset to stop its spindle")
             return
         self._context.spindle.stop()
-        self._context.log_stop("by-hand", "the spindle was stopped by hand")
+        self._context.log_stop("by-hand", "the spindle was stopped manually")
 
     def _force(self, command: commands.ForceOutput) -> None:
         why = self._output_refusal(command.name, command.on)
@@ -286,7 +292,7 @@ class CommandHandler:
             self._context.log("force", "lamp test")
             return
         self._context.ports.io.write(command.name, command.on)
-        self._context.log("force", f"{command.name} {'on' if command.on else 'off'} by hand")
+        self._context.log("force", (f"{command.name} switched {('on' if command.on else 'off')} manually"))
 
     def _output_refusal(self, name: str, on: bool) -> str:
         """Why an output is not switched by hand now; empty when it is."""
@@ -294,7 +300,7 @@ class CommandHandler:
         if name not in context.machine.outputs:
             return f"this machine has no output {name}"
         if state not in _AT_REST:
-            return f"{name}: outputs are switched by hand only at rest, not in state {state.value}"
+            return f"{name}: outputs can be switched manually only at rest, not in state {state.value}"
         if name == "collet" and not on and not (context.spindle.stopped and not context.spindle.asked):
-            return "the collet is not opened by hand while the spindle turns"
+            return "the collet cannot be opened manually while the spindle is turning"
         return ""

@@ -22,7 +22,7 @@ class Differing(NamedTuple):
     def words(self) -> str:
         """What has become of it, as the operator reads it."""
         name = self.name.upper()
-        return f"{name} HAS GONE OFF" if self.wanted else f"{name} HAS COME ON"
+        return f"{name} TURNED OFF" if self.wanted else f"{name} TURNED ON"
 
 
 class CommandedOutputs:

@@ -198,7 +198,7 @@ class Cycle:
                 self._show_later(self._motion.block)
                 self._change(State.BLOCK_END)
             case Progress.HELD:
-                self.hold("THE CONTROLLER HOLDS", at_once=True)
+                self.hold("CONTROLLER IN FEED HOLD", at_once=True)
             case Progress.DONE:
                 self._show_later(self._motion.ended_with)
                 self._stand()
@@ -260,7 +260,7 @@ class Cycle:
             self._hold.retract(block)
             self._change(State.HOLDING)
         elif block.kind is Kind.THREAD or (block.per_rev and not block.modal.c_locked) or spindle.fails:
-            self.hold(spindle.why_slow or "SPINDLE BELOW HALF ITS SPEED")
+            self.hold(spindle.why_slow or "SPINDLE BELOW HALF COMMANDED SPEED")
 
     def _show_later(self, block: Block | None) -> None:
         """At rest: blocks that go nowhere have been executed too."""

@@ -17,7 +17,7 @@ from core.executor.snapshot import DriveTestState
 from core.machine.machine_model import Axis
 from core.ports import MachinePorts
 
-PLANS = "its controller plans by itself and takes no setpoints: no test can be played to its drives"
+PLANS = "no drive tests: the controller plans its own motion and accepts no setpoints"
 _ROUND = 1e-9
 TICKS = 100.0  # samples a second where the driver has none of its own
 
@@ -61,7 +61,7 @@ class DriveTester:
         if why := barred(self._context.ports) or self._jogger.missing(path.axis):
             return why
         if not math.isfinite(lease) or lease <= 0.0:
-            return "a drive test needs a lease above 0"
+            return "a drive test needs a lease time above 0"
         return self._not_now(path.axis) or self._no_test(path)
 
     def _not_now(self, name: str) -> str:
@@ -73,15 +73,15 @@ class DriveTester:
         if context.spindle.guard_open:
             return "the guard is open"
         if context.spindle.asked or not context.spindle.stopped:
-            return "the spindle turns; stop it first"
+            return "the spindle is turning; stop it first"
         if not context.sample.homed[context.ports.axes.axes.index(name)]:
-            return f"{name} is not homed: nobody knows whether the test has room"
+            return f"{name} is not homed, so it is not known whether the test has room"
         return ""
 
     def _no_test(self, path: DriveTestPath) -> str:
         axis = self._context.machine.axis(path.axis)
         if axis.rotary:
-            return f"{axis.name} is a rotary axis; drive tests are for slides"
+            return f"{axis.name} is a rotary axis; drive tests are only for linear axes"
         limits = self._limits(axis)
         return path.refusal(limits) or self._no_room(axis, path, limits)
 
@@ -91,7 +91,10 @@ class DriveTester:
         for way in (low, high):
             if abs(way) > _ROUND and abs(way) > room_to_limit(axis, here, way):
                 end = "+" if way > 0.0 else "−"
-                return f"{axis.name} needs {abs(way):.3f} mm in {end} for it, and its travel ends before"
+                return (
+                    f"{axis.name} needs {abs(way):.3f} mm in the {end} direction for the test, but its "
+                    "travel ends before that"
+                )
         return ""
 
     def _limits(self, axis: Axis) -> Limits:

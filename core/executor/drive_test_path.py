@@ -63,24 +63,29 @@ class DriveTestPath:
         """Why this is no test; empty when it is one."""
         longest = LONGEST if self.shape is Shape.RAMP else LARGEST
         if not 0.0 < abs(self.size) <= longest + _ROUND:
-            return f"a test of this shape is larger than 0 and no larger than {longest:g} mm"
+            return f"the size of this test must be above 0 and at most {longest:g} mm"
         if self.shape is Shape.RAMP:
             return self._ramp_refusal(limits)
         return self._sine_refusal(limits) if self.shape is Shape.SINE else ""
 
     def _ramp_refusal(self, limits: Limits) -> str:
         if not 0.0 < self.speed <= limits.top + _ROUND:
-            return f"a ramp is faster than 0 and no faster than {limits.top:.0f} mm/s, as the hand moves it"
+            return (
+                f"the speed of a ramp must be above 0 and at most {limits.top:.0f} mm/s, the limit "
+                "for manual moves"
+            )
         if self.speed**2 / limits.amax > 0.5 * abs(self.size):
-            return f"{abs(self.size):g} mm are too short to become even at {self.speed:g} mm/s"
+            return f"{abs(self.size):g} mm is too short to reach a constant speed of {self.speed:g} mm/s"
         return ""
 
     def _sine_refusal(self, limits: Limits) -> str:
         if not self.frequencies or not all(0.5 <= each <= 200.0 for each in self.frequencies):
-            return "a sine has from 0.5 to 200 Hz"
+            return "the frequency of a sine must be from 0.5 to 200 Hz"
         fastest = max(self.frequencies)
         if fastest > limits.fastest_sine + _ROUND:
-            return f"this driver tells {limits.rate:g} samples a second: too few for a sine of {fastest:g} Hz"
+            return (
+                f"this driver reports {limits.rate:g} samples per second, too few for a {fastest:g} Hz sine"
+            )
         return ""
 
     def size_at(self, frequency: float, limits: Limits) -> float:

@@ -249,7 +249,7 @@ class Executor:
             self._control.counters.cycle += context.now - before
             self._control.program_run.cut(context.now - before)
             if context.now - before > _STALL:
-                context.log("starved", f"the control was away for {context.now - before:.2f} s")
+                context.log("starved", f"the control did not run for {context.now - before:.2f} s")
                 if self._control.cycle is not None:  # before what was pressed meanwhile stops or ends it
                     self._control.cycle.catch_up()
 
@@ -258,7 +258,7 @@ class Executor:
         lost = self._context.signals.lost or self._context.signals.wheel_trouble
         if lost != self._told_lost:
             self._told_lost = lost
-            self._context.log("disturbed", (lost or "the pendant is there again").upper())
+            self._context.log("disturbed", (lost or "the pendant is connected again").upper())
 
     def _log_override(self) -> None:
         """A turned pot goes to the log in steps worth reading."""
@@ -267,7 +267,7 @@ class Executor:
             self._logged_override == 0.0
         ):
             self._logged_override = fraction
-            self._context.log("override", f"feed {100 * fraction:.0f} %")
+            self._context.log("override", f"feed override {100 * fraction:.0f} %")
 
     def _obey(self) -> None:
         """E-stop first, then what was posted, then the station's buttons."""
@@ -277,7 +277,7 @@ class Executor:
             self.patient = self.patient or isinstance(command, _WAITED_FOR)
             self._guarded(partial(self._handler.obey, command))
         if signals.hold:
-            control.feed_hold("", "the button at the station")
+            control.feed_hold("", "the button at the operator station")
         elif signals.trouble:
             control.feed_hold(signals.trouble)
         elif signals.lost and (control.state in ACTIVE or signals.lost != self._lost):
@@ -287,7 +287,7 @@ class Executor:
         if signals.start:
             control.start()
         elif signals.late_start:
-            self._context.log("refused", "CycleStart came too late to be obeyed")
+            self._context.log("refused", "CycleStart arrived too late and was ignored")
         if signals.turned_on:
             control.spindle_switch()
         control.follow_wheel()
@@ -301,7 +301,7 @@ class Executor:
                 return
             self._rest.over()  # whatever it does is shown at once
             if isinstance(command, _STARTS) and self._context.now - posted > _STALE:
-                self._context.log("refused", f"{type(command).__name__} came too late to be obeyed")
+                self._context.log("refused", (f"{type(command).__name__} arrived too late and was ignored"))
             else:
                 yield command
 

@@ -73,7 +73,7 @@ class FeedHold:
 
     def retract(self, block: Block) -> None:
         """The spindle is lost in a thread: brake along it, then draw X back."""
-        self._context.log("thread", "spindle lost in a thread")
+        self._context.log("thread", "spindle speed lost during threading")
         self._motion.retract(block)
         self._retracting = True
 
@@ -115,7 +115,7 @@ class FeedHold:
             over = self._spin_up.over(self._context.now)
         except AlarmError:
             self._spin_up = None
-            return self.begin("SPINDLE NOT AT ITS SPEED")
+            return self.begin("SPINDLE DID NOT RETURN TO SPEED")
         if not over:
             return State.WAIT
         self._spin_up = None

@@ -99,11 +99,11 @@ class _OneAxis:
         axis, unmoved = self._axis, self._t - self._counted_at
         pushed = max(_PART * axis.still_window, 4.0 * axis.in_position)
         if self._lasts("pushed", error > pushed) > axis.still_time and unmoved > axis.still_time:
-            raise AlarmError("standstill", f"{axis.name} stays {self._words(error)} off its setpoint")
+            raise AlarmError("standstill", (f"{axis.name} remains {self._words(error)} off its setpoint"))
         beside = self._lasts("beside", error > axis.in_position) > _ARRIVES and rest > _ARRIVES
         frozen = self._lasts("frozen", error > _CLOSE * axis.count) > _FROZEN and unmoved > _FROZEN
         if beside or frozen:
-            raise AlarmError("standstill", f"{axis.name} stays {self._words(error)} off its setpoint")
+            raise AlarmError("standstill", (f"{axis.name} remains {self._words(error)} off its setpoint"))
 
     def sent(self) -> None:
         """Something moves, by the driver's own word: where it stood no longer counts."""
@@ -140,7 +140,10 @@ class _OneAxis:
         if sent <= axis.count:
             self._counted = (self._t, sent_from, read)
         elif self._t - since > _UNMOVED and sent > least and abs(demand - actual) > least:
-            raise AlarmError("encoder-still", f"{axis.name} was sent {self._words(sent)}, its encoder stands")
+            raise AlarmError(
+                "encoder-still",
+                (f"{axis.name} was commanded to move {self._words(sent)}, but its encoder does not count"),
+            )
 
     def _lasts(self, what: str, holds: bool) -> float:
         """How long it has held, s."""

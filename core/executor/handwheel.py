@@ -116,18 +116,18 @@ class Handwheel:
         if not clicks or not self._ready or jogger.ending:
             return False
         if jogger.axis and jogger.goal is None:
-            self._together("it was turned while a key or finger was held", state)
+            self._together("the handwheel was turned while a key or the screen was pressed", state)
             return False
         return self._follow(clicks)
 
     def bars(self, state: State) -> str:
         """Why a jog by key is refused because of the handwheel; empty when it is not."""
         if self._jogger.goal is not None:
-            self._together("a key or finger came while it was turned", state)
+            self._together("a key or the screen was pressed while the handwheel was turning", state)
         if self._context.now >= self._apart:
             return ""
         self._apart = self._context.now + _APART
-        return "key and handwheel at once move nothing"
+        return "a key and the handwheel cannot be used at the same time"
 
     def _together(self, why: str, state: State) -> None:
         self._jogger.stop()
@@ -141,28 +141,31 @@ class Handwheel:
     def _refusal(self, command: Wheel) -> str:
         context = self._context
         if not self._there:
-            return "this machine has none"
+            return "this machine has no handwheel"
         if why := self._jogger.missing(command.axis):
             return why
         longest = LONGEST_TURN if context.machine.axis(command.axis).rotary else LONGEST_CLICK
         if not 0.0 < command.step <= longest + _ROUNDING:
-            return f"a click is longer than 0 and no longer than {longest:g}, not {command.step:g}"
+            return f"a handwheel step must be above 0 and at most {longest:g}, not {command.step:g}"
         if not 0.0 < command.lease < math.inf:
-            return "it needs a lease above 0"
+            return "the handwheel needs a lease time above 0"
         return ""
 
     def _lost(self, state: State, axis: str) -> str:
         """What takes the wheel away in this tick."""
         context, signals, inputs = self._context, self._context.signals, self._context.inputs
         reasons = (
-            (state not in {State.IDLE, State.JOG}, f"it moves nothing in state {state.value}"),
+            (state not in {State.IDLE, State.JOG}, f"not available in state {state.value}"),
             (signals.trouble != "", signals.trouble.lower()),
             (signals.wheel_trouble != "", signals.wheel_trouble),
             (signals.hold, "feed hold"),
-            (self._clicks.leapt, "its counts leap: check its cable"),
-            (self.axis != "" and context.now > self._until, "the page that asked for it was silent"),
-            (not inputs.get(ENABLE, True), "its enabling switch is not held"),
-            (not inputs.get(selector(axis), True), f"the station's switch does not select {axis}"),
+            (self._clicks.leapt, "the handwheel counts jump; check its cable"),
+            (
+                self.axis != "" and context.now > self._until,
+                ("the page that uses the handwheel stopped responding"),
+            ),
+            (not inputs.get(ENABLE, True), "the handwheel's enabling switch is not pressed"),
+            (not inputs.get(selector(axis), True), f"the axis selector switch is not set to {axis}"),
         )
         found = next((why for so, why in reasons if so), "")
         return found or self._jogger.spinning(axis) or self._jogger.uncoupled(axis)
@@ -176,7 +179,7 @@ class Handwheel:
         jogger.chase(self.axis, found.pieces, wanted)
         if jogger.goal is not None and found.goal != wanted:
             jogger.goal = found.goal
-            self._refuse_once(f"turned faster than {self.axis} goes; clicks are dropped")
+            self._refuse_once(f"the handwheel is turned faster than {self.axis} can move; clicks are dropped")
         return jogger.goal is not None
 
     def _top(self, index: int) -> float:

@@ -28,7 +28,7 @@ class Homing:
             if not homed and name in {"", axis.name}
         ]
         if not lost:
-            return "every axis knows its position"
+            return "all axes homed"
         self._left = [axis.name for axis in sorted(lost, key=lambda axis: axis.home_order)]
         self._now = ""
         return ""

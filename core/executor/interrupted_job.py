@@ -10,8 +10,8 @@ from math import isfinite
 from core.tool_edges import edge_name
 
 CONTROL_LOST = "THE CONTROL LOST ITS POWER OR WAS KILLED"
-CLOSED = "THE CONTROL WAS CLOSED"
-GIVEN_UP = "GIVEN UP BY RESET"
+CLOSED = "TURNDESK WAS CLOSED"
+GIVEN_UP = "CANCELED BY RESET"
 ESTOP = "E-STOP"
 
 _TEXTS = ("program", "job", "text", "why", "at")

@@ -79,7 +79,7 @@ class InterruptionWatch:
         if before is not None and begin is not None and _of(before, status.job):
             self._before = before
         elif before is not None:
-            self._over(f"{before.words}; the program begins anew")
+            self._over(f"{before.words}; the program restarts from the beginning")
         status.interrupted = None
         self._note(self._now(status.job, None))
 
@@ -143,7 +143,7 @@ class InterruptionWatch:
         before = self._status.interrupted
         self._answered = None
         if before is not None and not _of(before, job):
-            self._over(f"{before.words}; {job.source.name} was loaded in its place")
+            self._over(f"{before.words}; {job.source.name} was loaded instead")
 
     def answer(self, at: str) -> str:
         """The operator has read what a start at the first line does; why that does not count, or nothing."""
@@ -152,7 +152,7 @@ class InterruptionWatch:
         if not at:
             return ""  # taken back
         if found is None or found.at != at or self._status.state is not State.IDLE:
-            return "there is no interrupted job to be answered for now"
+            return "no interrupted program is waiting for confirmation"
         self._answered = self._context.now
         return ""
 
@@ -173,11 +173,10 @@ class InterruptionWatch:
             return ""
         job = self._status.job
         there = job is None or job.source.dialect is Dialect.OMNITURN
-        how = "go on there by SEARCHTO (F6), or press Y" if there else "jog it clear, press Y"
+        how = "resume at that line with SEARCHTO (F6), or press Y" if there else "jog the tool clear, press Y"
         return (
-            f"line {found.line} of {found.program} was interrupted "
-            f"and {edge_name(found.tool)} may stand in the part:"
-            f" {how} and then start at the first line"
+            f"line {found.line} of {found.program} was interrupted and {edge_name(found.tool)} "
+            f"may still be in the part: {how} and then start at the first line"
         )
 
     def _over(self, words: str) -> None:

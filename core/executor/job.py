@@ -109,9 +109,9 @@ def outdated(job: Job, left: Modal) -> str:
     if job.setup.begin is not None:
         return ""
     if UNITS in job.carries and job.setup.metric != left.metric:
-        return f"the control counts in {'mm' if left.metric else 'inches'} now"
+        return f"the active unit is now {('mm' if left.metric else 'inches')}"
     if RAPID in job.carries and not math.isclose(job.setup.last_rapid, left.rapid_rate):
-        return "the rapid rate is another one now"
+        return "the rapid rate has changed"
     return ""
 
 

@@ -130,11 +130,11 @@ class Jogger:
         if why := self.missing(name) or self._astray(name, along):
             return why
         if not (math.isfinite(velocity) and math.isfinite(lease)) or lease <= 0.0:
-            return "a jog needs a velocity and a lease above 0"
+            return "a jog needs a velocity and a lease time above 0"
         if self.testing:
-            return f"{self.axis} is still in its drive test"
+            return f"the drive test of {self.axis} is still running"
         if self.stepping:
-            return f"{self.axis} is still on its step"
+            return f"the jog step of {self.axis} is not finished"
         return self._barred(name)
 
     def step_refusal(self, name: str, distance: float, speed: float, along: Direction | None = None) -> str:
@@ -142,9 +142,9 @@ class Jogger:
         if why := self.missing(name) or self._astray(name, along):
             return why
         if not math.isfinite(speed) or speed <= 0.0:
-            return "a step needs a speed above 0"
+            return "a jog step needs a speed above 0"
         if not 0.0 < abs(distance) <= _LONGEST_STEP + _STEP_ROUNDING:
-            return f"a step is longer than 0 and no longer than {_LONGEST_STEP:g}, not {distance:g}"
+            return f"a jog step must be above 0 and at most {_LONGEST_STEP:g}, not {distance:g}"
         if self.axis:
             return f"{self.axis} is still moving; wait for the end of its step"
         return self._barred(name) or self._too_far(name, distance, along)
@@ -157,9 +157,9 @@ class Jogger:
         if along is None:
             return ""
         if not set("XYZ") <= {axis.name for axis in context.machine.axes} or wrong_direction(along):
-            return "a tilted plane needs X, Y and Z, and a direction of length 1"
+            return "jogging in a tilted plane needs X, Y and Z and a direction of length 1"
         if not all(context.sample.homed):
-            return "along a tilted plane every axis has to be homed first"
+            return "home all axes before jogging in a tilted plane"
         return ""
 
     def _line_of(self, name: str, along: Direction | None = None) -> JogLine:
@@ -188,14 +188,14 @@ class Jogger:
         context = self._context
         turns = context.spindle.asked or not context.spindle.stopped
         if name == "C" and context.machine.spindle_is_c and turns:
-            return "C is the spindle, and the spindle turns; stop it first"
+            return "C is the spindle, which is turning; stop it first"
         return ""
 
     def uncoupled(self, name: str) -> str:
         """Why C does not move yet: the spindle's drive has to become C first, which begins here."""
         if name != "C" or not self._context.machine.spindle_is_c or self._context.spindle.hold(orient=False):
             return ""
-        return "the spindle's drive becomes C: let go, and begin again in two seconds"
+        return "the spindle drive is switching over to C; release the key or button and jog again in 2 s"
 
     def _too_far(self, name: str, distance: float, along: Direction | None) -> str:
         """A step that would leave the travel is not shortened: it would no longer be what was asked."""
@@ -302,9 +302,9 @@ class Jogger:
     def ended(self) -> None:
         """It rests; a step that was cut short is said to be so."""
         if self._short and self.testing:
-            self._context.log("refused", f"{self.axis} was stopped before the end of its drive test")
+            self._context.log("refused", (f"the drive test of {self.axis} was stopped before its end"))
         elif self._short:
-            self._context.log("refused", f"{self.axis} was stopped before the end of its step")
+            self._context.log("refused", f"the jog step of {self.axis} was stopped before its end")
         elif self.testing:
             self.tested += 1
             self._context.log("test", f"{self.axis} drive test")
@@ -351,7 +351,7 @@ class Jogger:
 
 def at_the_end(name: str, direction: float) -> str:
     """Why an axis goes no further."""
-    return f"{name} is at the end of its travel in {'+' if direction > 0.0 else '−'}"
+    return f"{name} is at the end of its travel in the {('+' if direction > 0.0 else '−')} direction"
 
 
 # --- jog by the controller ------------------------------------------------------------------------------
@@ -392,7 +392,7 @@ class BlockJogger(Jogger):
 
     def _astray(self, name: str, along: Direction | None) -> str:
         """A controller that jogs by itself jogs its own axes."""
-        return "" if along is None else f"{name}: the controller jogs along its own axes only"
+        return "" if along is None else f"{name}: the controller can jog only its own axes"
 
     def step(self, name: str, distance: float, speed: float, along: Direction | None = None) -> None:
         """Begin a step from rest. Raises DriverError."""

@@ -145,7 +145,10 @@ class MachineControl:
         """An answer is no start: what it begins was asked for before the first hand came down."""
         if self._context.now - self.meant_at >= MEANT:
             return ""
-        return "that was meant just now: let both palms go, read the prompt, press them again"
+        return (
+            "pressed too soon after the confirmation: release both palm buttons, read the "
+            "prompt, then press them again"
+        )
 
     def _unannounced(self) -> str:
         waits = self._context.spindle.waits
@@ -158,8 +161,10 @@ class MachineControl:
         rpm, by_hand = spindle.would_turn, self.state in BY_HAND
         if rpm and (by_hand or (self.state in STOPPED and not spindle.start_barred)):
             way = "FORWARD" if rpm > 0.0 else "REVERSE"
-            text = f"THE SPINDLE STARTS AT {abs(rpm):.0f} RPM {way}"
-            yield Starting(SPINDLE, text if spindle.auto else f"SWITCH TO AUTO: {text}", spindle.permit, rpm)
+            text = f"SPINDLE STARTS AT {abs(rpm):.0f} RPM {way}"
+            yield Starting(
+                SPINDLE, text if spindle.auto else f"SET SPINDLE SWITCH TO AUTO: {text}", spindle.permit, rpm
+            )
 
     def _warned(self) -> Iterator[Starting]:
         """What the proof of the program that would begin has warned of: it is read before it is begun."""
@@ -204,7 +209,7 @@ class MachineControl:
             self._acknowledge()
         elif self.cycle is not None and self.state in CYCLE:
             job = self.status.job
-            self._context.log_stop("reset", f"{job.source.name} was given up" if job is not None else "")
+            self._context.log_stop("reset", f"{job.source.name} was canceled" if job is not None else "")
             self._giving_up = True
             self.cycle.abandon()
             self._leave()
@@ -225,7 +230,7 @@ class MachineControl:
         """
         self.jog_ended = ""
         if self.state is State.JOG:
-            self.stop_jog("it was let go")
+            self.stop_jog("the key or button was released")
 
     def _end_jog(self, why: str) -> None:
         """The control ends what is moved by hand; renewals of a key that is still held are refused."""
@@ -238,7 +243,7 @@ class MachineControl:
         turned, self._turned = self._turned, spindle.asked and not spindle.fails
         if not turned or self._turned or self.state is not State.JOG:
             return
-        why = f"the spindle has stopped: {spindle.why_slow or 'below half its speed'}".lower()
+        why = f"the spindle has stopped: {spindle.why_slow or 'below half of commanded speed'}".lower()
         self._end_jog(why)
         if self.wheel.axis:
             self.wheel.end(why, self.state)
@@ -246,7 +251,7 @@ class MachineControl:
             self._context.log("refused", f"jog: {why}")
 
     def _ran_into_setter(self) -> None:
-        why = "the tool setter is touched: jog away from it"
+        why = "the tool setter is triggered; jog away from it"
         self.stop_jog(why)
         if self.wheel.axis:
             self.wheel.end(why, self.state)
@@ -306,7 +311,7 @@ class MachineControl:
         left = motion.starving - self._context.now
         if motion.active and left < self._context.machine.timing.low_water:
             self.counters.underruns += 1
-            self._context.log("starved", "setpoints ran low; the slides stop on the path")
+            self._context.log("starved", "feed hold: computer busy; the axes stop on the path")
             cycle.starve()
 
     def _leave(self) -> None:
@@ -362,14 +367,16 @@ class MachineControl:
             self.program_run.forget(why)
         if trial.error is not None:
             self.program_run.drop()
-            self._context.log("alarm", f"while giving the program up: {trial.error}")
+            self._context.log("alarm", f"while canceling the program: {trial.error}")
 
     def _finish_stopping(self) -> None:
         """A safe stop that a driver keeps from being done is tried on, and is an alarm of its own."""
         if self.state in _STOPPED:
             self.safe.again()
             if self.safe.undone and not any(each.code in CUT_OFF for each in self.status.alarms):
-                self.alarm(AlarmError("not-safe", f"a driver does not obey: {self.safe.undone}"))
+                self.alarm(
+                    AlarmError("not-safe", (f"a driver does not carry out the stop for {self.safe.undone}"))
+                )
 
     def shut(self) -> None:
         """Nothing is left moving or switched on."""
@@ -390,7 +397,7 @@ class MachineControl:
         """Reset with an alarm: only at rest, and drives that an alarm has switched off stay off."""
         context, status = self._context, self.status
         if context.sample.moving:
-            context.log("refused", "reset: wait until the slides are at rest")
+            context.log("refused", "reset: wait until the axes have stopped")
             return
         if status.power_off:
             self._power_off()

@@ -42,8 +42,11 @@ class Workpiece:
     def why_none(self) -> str:
         """Why its end makes no part; empty when it makes one."""
         if self.disturbed:
-            return f"its cycle was disturbed ({self.disturbed}): measure it, and add it on F10 if it is good"
-        return "" if self._whole else "a restart left something of it out"
+            return (
+                f"the cycle was disturbed ({self.disturbed}); measure the part and, if it is good, "
+                "add it on F10"
+            )
+        return "" if self._whole else "a restart skipped part of the program"
 
 
 class PartCount:

@@ -17,11 +17,11 @@ from core.motion.motion_path import Path, PathBuilder
 class Progress(Enum):
     """How far the present path section is."""
 
-    DONE = "there is none, or it has come to its end"
-    MOVING = "it moves"
-    BLOCK_END = "at rest where single block wants it"
-    STILL = "at rest because the override is 0"
-    HELD = "at rest because something outside the control holds it"
+    DONE = "no path section, or its end is reached"
+    MOVING = "moving"
+    BLOCK_END = "stopped at the end of a block by Single Block"
+    STILL = "stopped because the override is 0"
+    HELD = "stopped by a hold from outside the control"
 
 
 class Overrides(NamedTuple):

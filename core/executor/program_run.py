@@ -109,7 +109,7 @@ class ProgramRun:
         """A cycle that was reset is over as soon as the slides rest; True once it is."""
         if self.cycle is None or not self.cycle.at_rest:
             return False
-        said = "the line was given up by reset" if self._line else "program given up by reset"
+        said = "the MDI line was canceled by reset" if self._line else "program canceled by reset"
         kind = "mdi" if self._line else "end"
         self.forget(GIVEN_UP)
         self._enter(State.IDLE)
@@ -194,7 +194,7 @@ class ProgramRun:
         """The next part begins once changed offsets are proved; or why it does not is said."""
         repeat = self._context.switches.cycle_repeat
         if repeat and self.changed_offsets.pending and not self.status.next_barred:
-            cycle.wait_for("PROOF WITH THE CHANGED OFFSETS")
+            cycle.wait_for("PROVING WITH THE CHANGED OFFSETS")
             return
         why = self._why_not_again(cycle.modal)
         if why or not repeat:
@@ -221,11 +221,11 @@ class ProgramRun:
         if again is not None and again.code:
             return again.why
         old = outdated(self.status.job, left) if self.status.job is not None else ""
-        return f"{old}, and the program says nothing of it" if old else ""
+        return f"{old}, and the program does not specify it" if old else ""
 
     def _program_ended(self, no_repeat: str = "") -> None:
         if no_repeat:
-            self._context.log("refused", f"no repeat: {no_repeat}")
+            self._context.log("refused", f"no cycle repeat: {no_repeat}")
         self._context.log("end", "program end")
         self._put_away(self.modal)
         self._enter(State.IDLE)

@@ -52,7 +52,7 @@ def make_alarm(code: Code, detail: str, line: int, now: float) -> Alarm:
 def code_of_hold(reason: str, by: str) -> tuple[Code, str]:
     """What of the catalogue a hold is: ``reason`` in its words, or ``by`` whom it was pressed."""
     if not reason:
-        return "feed-hold", f"asked for by {by}" if by else ""
+        return "feed-hold", f"requested by {by}" if by else ""
     code = CODES_OF_HOLDS.get(reason)
     return ("held", reason.lower()) if code is None else (code, "")
 

@@ -132,9 +132,11 @@ def check_block(block: Block, machine: Machine) -> None:
     if not block.moves:
         return
     if block.per_rev and block.kind is not Kind.RAPID and block.rpm == 0.0 and block.c == block.c0:
-        raise AlarmError("spindle-still", f"line {block.line} feeds by the revolution", block.line)
+        raise AlarmError("spindle-still", f"line {block.line} uses feed per revolution", block.line)
     if block.c != block.c0 and block.modal.spindle and machine.spindle_is_c:
-        raise AlarmError("c-is-spindle", f"line {block.line} moves C while the spindle turns", block.line)
+        raise AlarmError(
+            "c-is-spindle", f"line {block.line} moves C while the spindle is turning", block.line
+        )
     for axis, (low, high) in zip(machine.axes, block.machine_reach(), strict=True):
         least, most = axis.reach
         if low < least or high > most:

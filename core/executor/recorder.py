@@ -96,7 +96,7 @@ class Recorder:
         try:
             self._file = new_ring(folder, name, self.ring)
         except RecordError as error:
-            self.trouble = f"the record is kept in memory alone: {error}"
+            self.trouble = f"the record is stored in memory only: {error}"
 
     # --- the executor's thread ------------------------------------------------------------------------
 
@@ -136,9 +136,9 @@ class Recorder:
         Raises RecordError while it is still being written, and for one that is no longer kept.
         """
         if name in {self._name, self._writing} - {""}:
-            raise RecordError("the record of this alarm is being written: look again in two seconds")
+            raise RecordError("the record of this alarm is still being saved; try again in 2 s")
         if self.folder is None or Path(name).name != name or not (self.folder / name).exists():
-            raise RecordError(f"the record of this alarm is no longer kept; the newest {KEPT} are")
+            raise RecordError(f"this alarm record was deleted; only the newest {KEPT} are stored")
         return open_record(self.folder / name)
 
     # --- the recorder's thread --------------------------------------------------------------------------
@@ -184,7 +184,7 @@ class Recorder:
             try:
                 self._file.write(rows, parts)
             except RecordError as error:
-                self.trouble = f"the record is kept in memory alone: {error}"
+                self.trouble = f"the record is stored in memory only: {error}"
                 _log.warning("%s", self.trouble)
                 self._file.close()
                 self._file = None
@@ -313,7 +313,7 @@ def rotate(folder: Path) -> None:
         for old in sorted(folder.glob(f"*-alarm*{ENDING}"))[:-KEPT]:
             old.unlink()
     except OSError as error:
-        raise RecordError(f"{folder}: old records cannot be removed: {error.strerror or error}") from error
+        raise RecordError(f"{folder}: old records cannot be deleted: {error.strerror or error}") from error
 
 
 _LOAD = -2  # column of the spindle's load in a sample

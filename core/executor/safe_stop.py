@@ -15,7 +15,7 @@ from core.executor.machine_context import MachineContext
 from core.ports import DriverError, Stop
 
 _log = logging.getLogger(__name__)
-_SLIDES = "the slides"
+_SLIDES = "the axes"
 _AGAIN = 0.1  # s until a step that could not be done is tried again
 
 Step = tuple[str, Callable[[], None]]

@@ -249,7 +249,7 @@ class SetpointMotion:
         if self._pass is not None and self._pass.lost_step():
             self._context.log(
                 "thread",
-                "the spindle changed its speed faster than the slides could follow: check the thread",
+                "the spindle speed changed faster than the axes could follow; check the thread",
             )
 
     def _add(self, blocks: Iterable[Block]) -> None:

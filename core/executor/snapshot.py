@@ -282,4 +282,4 @@ class TransitionError(Exception):
 def demand_allowed(old: State, new: State) -> None:
     """Raises TransitionError unless ``new`` may follow ``old``."""
     if new not in TRANSITIONS[old]:
-        raise TransitionError(f"state {old.value} cannot become {new.value}")
+        raise TransitionError(f"state {old.value} cannot change to {new.value}")

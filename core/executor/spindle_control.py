@@ -78,7 +78,7 @@ class SpindleAngle:
         """The same of a spindle that turns. Raises AlarmError for one that stands or is not measured."""
         state = self.at(t)
         if state is None:
-            raise AlarmError("thread-no-encoder", "the encoder on the spindle counts nothing")
+            raise AlarmError("thread-no-encoder", "the spindle encoder does not count")
         if state[1] == 0.0:
             raise AlarmError("thread-no-encoder", "the spindle does not turn")
         return state
@@ -283,7 +283,7 @@ class SpindleControl:
             self._coasting = True
         return [
             ("C", self._free_c),
-            ("the spindle's angle", self.orientation.let_go),
+            ("the spindle angle", self.orientation.let_go),
             ("the spindle", partial(self._tell_off, coast=coast)),
         ]
 
@@ -347,7 +347,7 @@ class SpindleControl:
         self._now = now
         measured = self._port.speed()
         if not math.isfinite(measured):  # the last speed stays: what is not known does not stand
-            raise AlarmError("spindle-encoder", "the spindle's drive tells a speed that is no number")
+            raise AlarmError("spindle-encoder", ("the spindle drive reports a speed that is not a number"))
         self.measured = measured
         self._radius = radius
         self._watch_standing(now)
@@ -360,7 +360,9 @@ class SpindleControl:
         self._coasting = self._coasting and not self.stopped and self.command == 0.0
         self.orientation.look()
         if not self._coasting and abs(self.measured) > self._allowed(now):
-            turns = f"it turns at {self.measured:.0f} rpm, {self.command:.0f} are commanded"
+            turns = (
+                f"the spindle turns at {self.measured:.0f} rpm; the commanded speed is {self.command:.0f} rpm"
+            )
             raise AlarmError("ignores-stop", turns)
 
     def at_speed(self, now: float) -> bool:
@@ -429,7 +431,7 @@ class SpindleControl:
         elif self._turned:
             self._stands = now if self._stands is None else self._stands
             if now - self._stands >= _STOOD:
-                self.waits = self.waits or "SPINDLE HAS STOPPED"
+                self.waits = self.waits or "SPINDLE STOPPED UNEXPECTEDLY"
             self._withdrawn = self._withdrawn or now - self._stands >= _GONE
 
     def _forget_waiting(self) -> None:

@@ -34,7 +34,9 @@ class Orientation:
     def bring(self, angle: float, sense: int) -> bool:
         """Ask for an angle, once; True as soon as the spindle is held there. Raises DriverError."""
         if self._port is None:
-            raise AlarmError("spindle-orient", "nothing at this machine stops the spindle at an angle")
+            raise AlarmError(
+                "spindle-orient", ("this machine has nothing that stops the spindle at an angle")
+            )
         if self._asked != (angle, sense):
             self._reached = False
             self._port.orient(angle, sense)
@@ -53,4 +55,6 @@ class Orientation:
         if self._reached and self._port is not None and not self._port.oriented():
             assert self._asked is not None
             self._reached = False
-            raise AlarmError("spindle-orient", f"the drive no longer holds it at {self._asked[0]:g} degrees")
+            raise AlarmError(
+                "spindle-orient", (f"the drive no longer holds the spindle at {self._asked[0]:g} degrees")
+            )

@@ -112,7 +112,7 @@ def carry_out(block: Block, context: MachineContext) -> Wait | None:
             return _move_collet(closed, context)
         case RepeatOff():
             context.switches.cycle_repeat = False
-            context.log("switch", "cycle repeat off by M31")
+            context.log("switch", "Cycle Repeat switched off by M31")
         case Dwell(seconds=seconds):
             return Wait(lambda: "DWELL", lambda passed: passed >= seconds - 1e-9, context.now)
         case WaitInput(terminal=terminal, closed=closed):
@@ -166,7 +166,7 @@ def _orient_spindle(context: MachineContext, angle: float, sense: int) -> Wait:
     """The drive brings it to its angle once it stands; nothing goes on before it is held there."""
     spindle, model = context.spindle, context.machine.spindle
     if spindle.orientation.at != angle and start_conditions.unclamped(context):
-        raise AlarmError("collet-open", f"SPOS or M19 would turn it to {angle:g} degrees")
+        raise AlarmError("collet-open", f"SPOS or M19 would turn the spindle to {angle:g} degrees")
     if spindle.asked or not spindle.stopped:
         spindle.stop()
 

@@ -23,7 +23,7 @@ from core.tool_edges import edge_name
 INHIBIT = "start_inhibit"  # the input that keeps every cycle from being started or going on
 _BUSY = {
     State.ESTOP: "E-stop is pressed: release it",
-    State.FAULT: "an alarm stands: clear its cause and press Reset",
+    State.FAULT: "an alarm is active: clear its cause and press Reset",
     State.DISABLED: "the drives are off: switch them on",
     State.JOG: "the machine is being jogged",
     State.HOME: "the machine is homing",
@@ -50,7 +50,7 @@ def unclamped(context: MachineContext) -> str:
     """Why the spindle may not be started as the collet is; empty when it may."""
     if context.machine.interlocks.spindle_with_collet_open or context.inputs.get("collet_closed", True):
         return ""
-    return "the spindle is not started with the collet open: close it first"
+    return "the spindle does not start with the collet open: close the collet first"
 
 
 def unclamped_by_program(context: MachineContext) -> str:
@@ -60,7 +60,8 @@ def unclamped_by_program(context: MachineContext) -> str:
     why = unclamped(context)
     if why and not context.outputs.outputs().get("collet", True):
         return (
-            "the program has opened the collet, so the spindle does not start: Reset, close it, start again"
+            "the program has opened the collet, so the spindle does not start: press Reset, "
+            "close the collet and start again"
         )
     return why
 
@@ -93,15 +94,15 @@ def lacking(context: MachineContext, proof: Proof | None) -> str:
     absent = {f"output {name}" for name in context.machine.absent}
     for need in proof.needs if proof is not None else ():
         if need.builders_m:
-            return f"line {need.line}: nothing on this machine answers {need.words}"
+            return f"line {need.line}: this machine has no function for {need.words}"
         if need.what in absent:
             return f"line {need.line}: this machine has no {need.words}"
         if blocks is not None and need.what not in blocks.caps:
-            return f"line {need.line}: this controller cannot do {need.words}"
+            return f"line {need.line}: this controller does not support {need.words}"
         if blocks is None and need.what == ORIENT and context.ports.orientation is None:
-            return f"line {need.line}: the driver of this machine's spindle cannot stop it at an angle"
+            return f"line {need.line}: the spindle driver of this machine cannot stop the spindle at an angle"
         if blocks is None and need.what == THREAD and context.ports.spindle.angle() is None:
-            return f"line {need.line}: a thread needs an encoder on the spindle, and there is none"
+            return f"line {need.line}: a thread needs a spindle encoder, and this machine has none"
     return ""
 
 
@@ -112,7 +113,7 @@ def unproved(job: Job | None, proof: Proof | None) -> str:
     if proof is None:
         return "the program is not proved yet"
     if proof.digest != job.digest:
-        return "the proof belongs to another program or to other offsets: load it again"
+        return "the proof belongs to another program or to other offsets: load the program again"
     if proof.errors:
         return f"the program has errors: {proof.errors[0]}"
     if missing := proof.unset(job):
@@ -124,8 +125,8 @@ def unproved(job: Job | None, proof: Proof | None) -> str:
 
 
 _NOTHING = {
-    Starts.LINE: "no line is ready",
-    Starts.RESTART: "no restart is ready: search a line and confirm it",
+    Starts.LINE: "no line is ready to start",
+    Starts.RESTART: "no restart is ready: search for a line and confirm it",
 }
 _SAME = 0.01  # mm, degrees: nearer than this the slides stand where a way was planned from
 
@@ -179,7 +180,7 @@ def _moved(context: MachineContext, job: Job | None) -> str:
     away = max(abs(a - b) for a, b in zip(at, job.setup.start, strict=False))
     if away <= _SAME:
         return ""
-    return f"the slides have moved since this was proved: {_again(job.setup.begin)}"
+    return f"the axes have moved since the proof: {_again(job.setup.begin)}"
 
 
 def _changed(context: MachineContext, status: ControlStatus, job: Job | None) -> str:
@@ -189,7 +190,7 @@ def _changed(context: MachineContext, status: ControlStatus, job: Job | None) ->
     begin = job.setup.begin
     if begin is None:
         old = outdated(job, status.modal)
-        return f"{old}, and the program says nothing of it: load it again" if old else ""
+        return f"{old}, and the program does not specify it; load the program again" if old else ""
     now = modal_as_machine(status.modal, context)
     if not begin.single:
         return _changed_for_restart(status, job, begin, now)
@@ -200,14 +201,14 @@ def _changed(context: MachineContext, status: ControlStatus, job: Job | None) ->
 def _again(begin: Begin) -> str:
     """How the operator has it proved anew."""
     if begin.single:
-        return "ask for the way out again" if begin.approach else "ask for it again"
+        return "request the retract path again" if begin.approach else "enter or select the line again"
     return "search for the line again"
 
 
 def _changed_for_restart(status: ControlStatus, job: Job, begin: Begin, now: Modal) -> str:
     """The program must still be the one that is loaded, and the collet as the line has it."""
     if status.job is None or status.job.digest != job.part_of:
-        return "the program was loaded anew: search for the line again"
+        return "the program was loaded again: search for the line again"
     wanted = begin.checkpoint.modal.collet_closed
     if now.collet_closed != wanted:
         is_now, must = ("closed", "open") if now.collet_closed else ("open", "closed")
@@ -254,7 +255,7 @@ class Announcement:
         for item in self._items(what):
             since, figure = self._since.get(item.what, (math.inf, 0.0))
             if now - since < TIME_TO_READ - 1e-9 or _differ(item.figure, figure):
-                return f"look first: {item.text}; then start again"
+                return f"read this first: {item.text}; then start again"
         return ""
 
     def begin(self, what: str = "") -> None:

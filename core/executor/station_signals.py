@@ -98,7 +98,9 @@ class StationWatch:
         if not silent:
             self._auto, self._spoke = state.spindle_auto, now
         noisy = self._feed.noisy or self._spindle.noisy
-        trouble = "OPERATOR STATION SILENT" if silent else "OVERRIDE POT JUMPS" if noisy else ""
+        trouble = (
+            "NO RESPONSE FROM OPERATOR STATION" if silent else "OVERRIDE SIGNAL UNSTABLE" if noisy else ""
+        )
         return StationSignals(
             estop=state.estop,
             start=edge and self.may_start(now),

@@ -64,7 +64,7 @@ class Supervisor:
         now = self._context.now
         since = self._unheard_since = now if self._unheard_since is None else self._unheard_since
         if powered and now - since > _UNHEARD:
-            raise AlarmError("drive-silent", "nothing is heard of the slides")
+            raise AlarmError("drive-silent", "no data from the axes")
 
     def _numbers(self, sample: AxisSample) -> None:
         """No comparison ever trips on what is no number."""
@@ -73,7 +73,7 @@ class Supervisor:
         )
         for axis, *told in each:
             if not all(map(math.isfinite, told)):
-                raise AlarmError("axis", f"{axis.name}: its drive tells a position that is no number")
+                raise AlarmError("axis", (f"{axis.name}: the drive reports a position that is not a number"))
 
     def _collet_lost(self) -> None:
         """The switch may bounce while the collet closes; it must be off for its closing time."""
@@ -112,7 +112,7 @@ class OutputsWatch:
             told, self._known_off = self._known_off, frozenset()
             for each in self._context.outputs.accept():
                 if each.name not in told:  # by what has switched it off
-                    self._context.log("disturbed", f"{each.words} BY ITSELF")
+                    self._context.log("disturbed", f"{each.words} WITHOUT A COMMAND")
             return
         differing = self._context.outputs.differing()
         new = [each for each in differing if each.name not in self._known_off]
@@ -124,7 +124,7 @@ class OutputsWatch:
         """What the announcement lists: outputs that going on switches as the program has them."""
         if self._program_run.status.state in STOPPED:
             for name, wanted in self._context.outputs.differing():
-                words = f"{name.upper()} {'COMES ON' if wanted else 'GOES OFF'}"
+                words = f"{name.upper()} {'TURNS ON' if wanted else 'TURNS OFF'}"
                 begin = partial(self._context.outputs.write, name, wanted)
                 yield Starting(f"output {name}", words, begin)
 
@@ -136,11 +136,11 @@ class OutputsWatch:
         if not off:
             return
         if trip.spindle:
-            context.spindle.dropped("THE FEEDER HAS SWITCHED OFF")
+            context.spindle.dropped("DRIVER HOST STOPPED SPINDLE/OUTPUTS")
         context.outputs.fell(outputs)
         self._known_off |= set(outputs)
-        who = "THE MACHINE WAS NOT HEARD" if trip.found else "CONTROL WAS SILENT"
-        what = "FOUND ON, SWITCHED OFF" if trip.found else "SWITCHED OFF"
+        who = "NO SIGNAL FROM MACHINE" if trip.found else "NO SIGNAL FROM CONTROL"
+        what = "FOUND ON AND SWITCHED OFF" if trip.found else "SWITCHED OFF"
         self._disturbed("feeder-tripped", f"{who} FOR {trip.away:.1f} S, {what}: {', '.join(off)}")
 
     def _disturbed(self, code: Code, words: str) -> None:

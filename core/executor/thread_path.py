@@ -57,7 +57,7 @@ class ThreadPath(NamedTuple):
         cut = [first, *(block for block in blocks[1:] if block.continues)]
         length = abs(first.z - first.z0)
         if not length or not first.feed:
-            raise AlarmError("program", "a thread has no length or no lead", first.line)
+            raise AlarmError("program", "the thread has no length or no lead", first.line)
         if len(cut) > 1 or first.growth:
             return cls._chained(cut, out, limits)
         ax, az = limits.amax[:2]
@@ -335,15 +335,18 @@ class ThreadRetract(NamedTuple):
     def _left(self, z: float) -> str:
         """Why, and what the thread on the part is now."""
         if not self.cutting:
-            return f"{self.why} in the pull-out: the thread is cut, its end runs out short"
+            return f"{self.why} during the pull-out: the thread is cut, but its runout is short"
         metric = self.block.modal.metric
         at = f"{z - self.block.offset_z:.3f}" if metric else f"{(z - self.block.offset_z) / _INCH:.4f}"
-        return f"{self.why}: the tool left the thread at Z{at}, behind it this pass is not cut"
+        return f"{self.why}: the tool left the thread at Z{at}, and the rest of this pass is not cut"
 
 
 def _why_lost(spindle: SpindleControl) -> str:
     if spindle.why_slow:
         return spindle.why_slow.lower()
     if spindle.measured * spindle.command < 0.0:
-        return f"the spindle turned the wrong way, at {abs(spindle.measured):.0f} rpm"
-    return f"the spindle fell to {abs(spindle.measured):.0f} of {abs(spindle.command):.0f} rpm"
+        return f"the spindle turned in the wrong direction at {abs(spindle.measured):.0f} rpm"
+    return (
+        f"the spindle speed dropped to {abs(spindle.measured):.0f} rpm (commanded: "
+        f"{abs(spindle.command):.0f} rpm)"
+    )

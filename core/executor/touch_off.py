@@ -53,7 +53,7 @@ class TouchOff:
             self._command.sign,
             self._command.press,
         ):
-            self.end("another direction was asked for")
+            self.end("another direction was selected")
             self._ended = command.press
             return False
         self._until = self._context.now + min(command.lease, LONGEST_LEASE)
@@ -90,7 +90,7 @@ class TouchOff:
         elif self._made and self.phase in {TouchPhase.SEARCH, TouchPhase.SLOW}:
             self._touch(here)
         elif self._made and self.phase is TouchPhase.RETURN:
-            self.end("something was touched on the way back: look at the setter")
+            self.end("a touch was detected on the return move; check the setter")
         elif self._arrives(here):
             self._arrived()
         self._seen = (self._context.sample.t, here)
@@ -117,20 +117,20 @@ class TouchOff:
         """Why nothing is touched off now; empty when it may be."""
         axis, inputs = command.axis, self._context.inputs
         if self._model is None or PROBE not in self._context.machine.inputs:
-            return "this machine has no tool setter: [setter] and the input probe in its file"
+            return "this machine has no tool setter; add [setter] and the input probe to the machine file"
         if axis not in {"X", "Z"} or command.sign not in {-1, 1}:
-            return f"a tool is not touched off along {axis or 'no axis'}"
+            return f"a tool cannot be touched off along {axis or 'no axis'}"
         reasons = (
-            (state is not State.IDLE, f"not in state {state.value}"),
+            (state is not State.IDLE, f"not available in state {state.value}"),
             (
                 not self._context.sample.homed[self._index(axis)],
-                f"{axis} is not homed: its position means nothing",
+                f"{axis} is not homed, so its position is not valid",
             ),
             (
                 inputs.get(PROBE, False),
-                "the input is on already: is the setter touched, or its cable damaged?",
+                ("the probe input is already on; check whether the setter is touched or its cable damaged"),
             ),
-            (wheel != "", "the handwheel is selected: let it go first"),
+            (wheel != "", "the handwheel is selected; deselect it first"),
         )
         found = next((why for so, why in reasons if so), "")
         return found or self._broken(command) or self._too_far(command)
@@ -140,14 +140,14 @@ class TouchOff:
         context = self._context
         button = (command or self._command).while_on
         reasons = (
-            (command is None and context.now > self._until, "it was let go"),
-            (bool(button) and not context.button(button), f"its button {button} is up"),
+            (command is None and context.now > self._until, "the key or button was released"),
+            (bool(button) and not context.button(button), f"button {button} was released"),
             (context.signals.hold, "feed hold is pressed"),
             (guard_open(context), "the guard is open: close it"),
-            (context.spindle.asked or not context.spindle.stopped, "the spindle turns: stop it first"),
+            (context.spindle.asked or not context.spindle.stopped, ("the spindle is turning: stop it first")),
             (
                 PROBE not in context.inputs or Unknown.INPUTS in context.unknown,
-                "the input probe is not read: check its terminal",
+                "the probe input is not being read; check its terminal",
             ),
         )
         return next((why for so, why in reasons if so), "")
@@ -162,7 +162,7 @@ class TouchOff:
         if low <= end <= high:
             return ""
         far = self._length(abs(end - (high if command.sign > 0 else low)))
-        return f"its search would leave the travel of {command.axis} by {far}: jog back"
+        return f"the search would exceed the travel of {command.axis} by {far}; jog back first"
 
     def _length(self, mm: float) -> str:
         """In the unit of the machine's builder."""
@@ -219,7 +219,7 @@ class TouchOff:
         over = (here - place) * sign
         if over > model.overtravel:
             far = self._length(over)
-            self.end(f"it ran {far} past the touch, more than overtravel: look at the setter")
+            self.end(f"the axis ran {far} past the touch point, more than overtravel; check the setter")
         elif self.phase is TouchPhase.SEARCH:
             self._go(TouchPhase.BACK_OFF, self._first - sign * model.back_off)
         else:
@@ -229,16 +229,18 @@ class TouchOff:
         assert self._model is not None
         model, sign, port = self._model, self._command.sign, self._context.ports.touch
         if self.phase is TouchPhase.SEARCH:
-            self._failed = f"nothing was touched within {self._length(model.search)}"
+            self._failed = f"no touch detected within {self._length(model.search)}"
             self._go(TouchPhase.RETURN, self._start)
         elif self.phase is TouchPhase.RETURN:
             self._over(self._failed)
         elif self.phase is TouchPhase.SLOW:
-            self._failed = "the second touch did not come: is the tool or the setter loose?"
+            self._failed = "no second touch detected; check whether the tool or the setter is loose"
             self._go(TouchPhase.RETURN, self._first - sign * model.back_off)
         elif self._made:
             far = self._length(model.back_off)
-            self._over(f"the input stays on {far} off the touch: look at stylus and cable")
+            self._over(
+                f"the probe input is still on {far} away from the touch point; check the stylus and the cable"
+            )
         elif self.phase is TouchPhase.BACK_OFF:
             if port is not None:
                 port.arm()

@@ -197,7 +197,7 @@ class Watchdog:
         if again:
             self._halting.halt()
         if first:
-            executor.declare_silent("its thread has ended" if dead else "its thread is stuck")
+            executor.declare_silent("the control thread has ended" if dead else "the control thread is stuck")
 
     def _mind_others(self) -> None:
         for name in [name for name in self._awaited if running(name)]:

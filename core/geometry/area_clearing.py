@@ -52,7 +52,7 @@ def clearing(
     """
     outmost = _patches(inset(area, first))
     if not outmost:
-        raise AreaError("the tool is wider than every place of it")
+        raise AreaError("the tool does not fit anywhere inside it")
     layer, apart = outmost, first
     for _ in range(_MOST_RINGS):
         apart += step
@@ -64,7 +64,7 @@ def clearing(
         if not layer:
             break
     else:
-        raise AreaError(f"it takes over {_MOST_RINGS} rings")
+        raise AreaError(f"clearing needs more than {_MOST_RINGS} concentric passes")
     return _cuts(outmost, Within(area), first, radius, against=against, here=here)
 
 
@@ -77,7 +77,7 @@ def _patches(loops: Sequence[Loop]) -> list[_Patch]:
             continue
         home = next((each for each in found if Winding(each.outer).round(hole[0].start) > 0), None)
         if home is None:
-            raise AreaError("an island lies on its edge")
+            raise AreaError("an island touches the edge of its pocket")
         home.holes.append(hole)
     return found
 

@@ -48,7 +48,7 @@ def chamfer(before: Element, after: Element, leg: float) -> tuple[Element, Line,
     into = last.start_direction if last.length > SAME_POINT else after.end_direction
     cut = between.start_direction
     if turn(out, cut) * angle <= 0.0 or turn(cut, into) * angle <= 0.0:
-        raise CornerError("the chamfer would cross one of them", "crosses")
+        raise CornerError("the chamfer would cross one of the two moves", "crosses")
     return first, between, last
 
 
@@ -59,11 +59,11 @@ def _turned(before: Element, after: Element) -> float:
             raise CornerTooLargeError(0.0, first=element is before)
     angle = turn(before.end_direction, after.start_direction)
     if abs(angle) < STRAIGHT:
-        raise NoCornerError("they go on in one direction", "no-corner")
+        raise NoCornerError("the two moves run in the same direction", "no-corner")
     if abs(angle) > pi - STRAIGHT:
         lines = isinstance(before, Line) and isinstance(after, Line)
         raise CornerError(
-            "the next line runs straight back" if lines else "the next one runs straight back",
+            "the next line doubles straight back" if lines else "the next move doubles straight back",
             "straight-back",
         )
     return angle
@@ -107,12 +107,12 @@ def rounding(before: Element, after: Element, radius: float) -> tuple[Element, A
         return _fillet(before, after, radius)
     angle = turn(before.end_direction, after.start_direction)
     if abs(angle) < STRAIGHT:
-        raise NoCornerError("they go on in one direction", "no-corner")
+        raise NoCornerError("the two moves run in the same direction", "no-corner")
     side = radius if angle > 0 else -radius
     try:
         aside = offset_element(before, side), offset_element(after, side)
     except GougeError as problem:
-        raise CornerError(f"of one of them {problem}", "no-arc") from None
+        raise CornerError(f"one of the two moves does not fit: {problem}", "no-arc") from None
     touched = [(before.along(centre), after.along(centre), centre) for centre in meetings(*aside)]
     fitting = [
         (before.length - end + start, end, start, centre)
@@ -121,7 +121,7 @@ def rounding(before: Element, after: Element, radius: float) -> tuple[Element, A
         and -SAME_POINT <= start <= after.length - _left(after)
     ]
     if not fitting:
-        raise CornerError("no arc of that radius touches both between their ends", "no-touching-arc")
+        raise CornerError("no arc of that radius touches both moves between their ends", "no-touching-arc")
     _, end, start, centre = min(fitting)
     first = before.part(before.start, before.point(end))
     last = after.part(after.point(start), after.end)
@@ -154,7 +154,7 @@ def leg_of(before: Element, after: Element, length: float) -> float:
     for step in range(1, _STEPS + 1):
         if _width(before, after, most * step / _STEPS) >= length:
             return _found(before, after, length, most * (step - 1) / _STEPS, most * step / _STEPS)
-    raise CornerError("they are too short for a chamfer of that length", "too-short")
+    raise CornerError("the two moves are too short for a chamfer of that length", "too-short")
 
 
 def _found(before: Element, after: Element, length: float, short: float, long: float) -> float:

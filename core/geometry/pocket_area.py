@@ -230,7 +230,7 @@ def _loop(parts: Sequence[Element], starts: npt.NDArray[np.float64], free: npt.N
         if min(home, nearest) > _JOINED:
             if sum(part.length for part in loop) <= 2 * _JOINED:
                 return []
-            raise AreaError("its way breaks off")
+            raise AreaError("the offset contour is not closed")
         if home <= nearest:
             break
         after = max(np.flatnonzero(away <= nearest + SAME_POINT).tolist(),

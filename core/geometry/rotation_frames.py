@@ -105,14 +105,14 @@ def from_points(p1: Vector, p2: Vector, p3: Vector) -> Matrix:
     u, v = minus(p2, p1), minus(p3, p1)
     along, aside = math.hypot(*u), math.hypot(*v)
     if along < SHORTEST:
-        raise NoFrameError("the first and the second point are the same", "first-and-second-point-equal")
+        raise NoFrameError("the first and second points are the same", "first-and-second-point-equal")
     if aside < SHORTEST:
-        raise NoFrameError("the first and the third point are the same", "first-and-third-point-equal")
+        raise NoFrameError("the first and third points are the same", "first-and-third-point-equal")
     x = scaled(u, 1.0 / along)
     normal = cross(x, scaled(v, 1.0 / aside))
     sine = math.hypot(*normal)
     if sine < SMALLEST_SINE:
-        raise NoFrameError("the three points lie on one line", "points-on-one-line")
+        raise NoFrameError("the three points are on one line", "points-on-one-line")
     z = scaled(normal, 1.0 / sine)
     return transposed((x, cross(z, x), z))
 
@@ -134,12 +134,12 @@ def from_vectors(base: Vector, normal: Vector) -> Matrix:
     """
     long, wide = math.hypot(*normal), math.hypot(*base)
     if long < SHORTEST or wide < SHORTEST:
-        raise NoFrameError("a vector has no length", "vector-without-length")
+        raise NoFrameError("a vector has zero length", "vector-without-length")
     z = scaled(normal, 1.0 / long)
     y = cross(z, scaled(base, 1.0 / wide))
     sine = math.hypot(*y)
     if sine < SMALLEST_SINE:
-        raise NoFrameError("both vectors have one direction", "parallel-vectors")
+        raise NoFrameError("the two vectors are parallel", "parallel-vectors")
     y = scaled(y, 1.0 / sine)
     return transposed((cross(y, z), y, z))
 

@@ -105,7 +105,9 @@ def _refusal(dialect: Dialect, setup: Setup) -> RefusedPass | None:
         why = "A SINUMERIK turning program needs a lathe with X and Z; this machine has other axes."
         return RefusedPass(why, "Choose the machine file of a lathe: --machine sinumerik-modulo.")
     if dialect is Dialect.KLARTEXT and setup.kinematics is None:
-        why = "A Klartext program needs a mill with X, Y and Z, and its [kinematics]; this machine is none."
+        why = (
+            "A Klartext program needs a mill with X, Y, Z and [kinematics]; this machine is not such a mill."
+        )
         return RefusedPass(why, "Choose the machine file of a mill: --machine ac-table-mill.")
     return None
 

@@ -27,11 +27,11 @@ def worth(formula: Formula, parameter: Callable[[Parameter], float]) -> float:
     try:
         found = OPERATIONS[formula.name](*operands)
     except ZeroDivisionError:
-        raise NoValueError(formula.column, "It divides by zero") from None
+        raise NoValueError(formula.column, "The formula divides by zero") from None
     except (ValueError, OverflowError):
         raise NoValueError(formula.column, _undefined(formula, operands)) from None
     except TypeError:
-        raise NoValueError(formula.column, "A function is asked of too few or too many values") from None
+        raise NoValueError(formula.column, "A function has too few or too many arguments") from None
     if not math.isfinite(found):
         raise NoValueError(formula.column, "The result is too large")
     return found
@@ -64,7 +64,7 @@ OPERATIONS: dict[str, Callable[..., float]] = {
     "over": lambda a, b: a / b,
     "power": _power,
     "modulo": lambda a, b: a - b * math.floor(a / b),
-    "whole quotient": lambda a, b: float(math.trunc(a / b)),
+    "integer quotient": lambda a, b: float(math.trunc(a / b)),
     "negative": lambda a: -a + 0.0,
     "square": lambda a: a * a,
     "square root": math.sqrt,
@@ -78,7 +78,7 @@ OPERATIONS: dict[str, Callable[..., float]] = {
     "natural logarithm": math.log,
     "common logarithm": math.log10,
     "exponential": math.exp,
-    "whole part": lambda a: float(math.trunc(a)),
+    "integer part": lambda a: float(math.trunc(a)),
     "fraction": lambda a: a - math.trunc(a),
     "absolute": abs,
     "sign": lambda a: math.copysign(1.0, a) if a else 0.0,
@@ -87,8 +87,8 @@ OPERATIONS: dict[str, Callable[..., float]] = {
     "unequal": lambda a, b: float(abs(a - b) > _TRUTH),
     "greater": lambda a, b: float(a > b),
     "less": lambda a, b: float(a < b),
-    "greater or equal": lambda a, b: float(a >= b - _TRUTH),
-    "less or equal": lambda a, b: float(a <= b + _TRUTH),
+    "greater than or equal": lambda a, b: float(a >= b - _TRUTH),
+    "less than or equal": lambda a, b: float(a <= b + _TRUTH),
     "and": lambda a, b: float(bool(a) and bool(b)),
     "or": lambda a, b: float(bool(a) or bool(b)),
     "exclusive or": lambda a, b: float(bool(a) != bool(b)),

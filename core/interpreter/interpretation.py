@@ -119,7 +119,9 @@ class Interpretation(ABC):
     def _stop_endless(self, line: int, hint: str) -> None:
         """A program that makes more than anybody runs ends at this line."""
         self._stopped = True
-        text = f"The program makes more than {MOST_BLOCKS:,} blocks or {MOST_LINES:,} executed lines."
+        text = (
+            f"The program makes more than {MOST_BLOCKS:,} blocks or executes more than {MOST_LINES:,} lines."
+        )
         self._log.add(refusal(line, 0, "too-many-blocks", text, hint))
 
 

@@ -33,14 +33,16 @@ BUILDERS_M = "M"
 _WORDS = {
     ARC: "arcs",
     THREAD: "threads",
-    PULL_OUT: "a thread that pulls out in step with the spindle; end it in a groove",
-    THREAD_CHAIN: "threads in a chain or with a lead that changes; cut each with a lead of its own",
+    PULL_OUT: "a thread with a pull-out synchronized with the spindle; end it in a groove",
+    THREAD_CHAIN: (
+        "chained threads or threads with a variable lead; cut each thread separately with its own lead"
+    ),
     SURFACE: "constant surface speed; program the spindle in rpm with G97",
-    SURFACE_THREAD: "a thread under constant surface speed; program G97 before it",
+    SURFACE_THREAD: "a thread with constant surface speed; program G97 before it",
     C_AXIS: "the C axis",
-    ORIENT: "a spindle that is stopped at an angle",
-    PLANE: "milling in a switched plane",
-    AXES: "more axes than X and Z",
+    ORIENT: "spindle orientation to an angle",
+    PLANE: "milling with plane switching",
+    AXES: "axes other than X and Z",
 }
 
 
@@ -67,9 +69,9 @@ class Need(NamedTuple):
 def how_bound(code: int) -> str:
     """The lines of a machine file that give a builder's M function its meaning."""
     return (
-        f'write {code} = {{ output = "NAME", on = true }} under [m_codes] of the machine file, '
-        "NAME one of [io.out], "
-        f"or {code} = {{ ignored = true }} if it does nothing on this machine"
+        f'write {code} = {{ output = "NAME", on = true }} under [m_codes] in the machine file, '
+        f"where NAME is an output under [io.out], or {code} = {{ ignored = true }} if the code "
+        "does nothing on this machine"
     )
 
 

@@ -14,6 +14,12 @@ def turns_at_axis(log: Log, line: int, turn: float) -> bool:
     """Whether C turns there, by ``turn`` radians; a large turn is told, as the tool stands meanwhile."""
     angle = abs(degrees(turn))
     if angle > _TOLD:
-        text = f"The way leads through the axis: C turns by {angle:.0f} degrees there."
-        log.warn(line, 1, "plane-centre", text, "The tool stands meanwhile; lead it past the axis.")
+        text = f"The path passes through the axis, where C turns by {angle:.0f} degrees."
+        log.warn(
+            line,
+            1,
+            "plane-centre",
+            text,
+            ("The tool does not move while C turns; route the path around the axis."),
+        )
     return angle > _SAME

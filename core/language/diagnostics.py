@@ -55,7 +55,7 @@ class ProgramError(Exception):
         self.diagnostic = diagnostic
 
 
-AT_THE_STOP = "position at the stop"
+AT_THE_STOP = "axis position after a program stop"
 """What rests on a place that a program has read behind a stop, where a hand may have moved the axes."""
 
 

@@ -134,7 +134,7 @@ class FormulaReader:
         """Operands and operators that bind at least as close as ``weakest``, from left to right."""
         self._depth += 1
         if self._depth > _DEEPEST:
-            raise FormulaError(self.at, "The formula is nested too deep", "Split it.")
+            raise FormulaError(self.at, "The formula is nested too deeply", ("Split it into smaller parts."))
         made = self._operand()
         while (sign := self._operator()) is not None:
             power, name = self._grammar.operators[sign]
@@ -184,7 +184,7 @@ class FormulaReader:
         if match := grammar.number.match(self._text, at):
             self.at = match.end()
             return Number(float(match.group().replace(",", ".").replace("EX", "E")))
-        raise FormulaError(at, "The formula needs a number or a parameter", "Complete it.")
+        raise FormulaError(at, "A number or a parameter is missing in the formula", "Complete the formula.")
 
     def index(self) -> Formula:
         """The index in the square bracket that opens here; several as an operation INDICES of them all.
@@ -196,7 +196,7 @@ class FormulaReader:
         while self._grammar.separator and self._takes(self._grammar.separator):
             found.append(self._expression(0))
         if not self._takes("]"):
-            raise FormulaError(self.at, "The square bracket is not closed", "Write ] behind the index.")
+            raise FormulaError(self.at, "The closing square bracket is missing", ("Write ] after the index."))
         return found[0] if len(found) == 1 else Operation(INDICES, tuple(found), column)
 
     def _enclosed(self) -> Formula:
@@ -217,7 +217,7 @@ class FormulaReader:
 
     def _close(self) -> None:
         if not self._takes(")"):
-            raise FormulaError(self.at, "A closing bracket is missing", "Write ) behind the formula.")
+            raise FormulaError(self.at, "A closing parenthesis is missing", "Write ) after the formula.")
 
     def _takes(self, sign: str) -> bool:
         self._blanks()

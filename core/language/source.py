@@ -90,9 +90,9 @@ def load_source(path: Path, said: Dialect | None = None) -> Source:
     except TooLargeError as problem:
         raise _too_large(path.name) from problem
     except OSError as problem:
-        reason = problem.strerror or "reading failed"
+        reason = problem.strerror or "read error"
         raise _refused(
-            "file-unreadable", f"{path.name} cannot be read: {reason}.", "Look at the name and the disk."
+            "file-unreadable", f"{path.name} cannot be read: {reason}.", ("Check the file name and the disk.")
         ) from problem
     return source_of(path.name, data, said)
 
@@ -109,11 +109,11 @@ def _decoded(name: str, data: bytes) -> str:
         raise _refused("file-utf16", f"{name} is stored as UTF-16.", "Save it as UTF-8 or plain text.")
     if b"\0" in data:
         raise _refused(
-            "file-binary", f"{name} holds zero bytes: it is no program text.", "Choose a text file."
+            "file-binary", f"{name} contains zero bytes: it is not a program text.", "Choose a text file."
         )
     text = _characters(data.removeprefix(codecs.BOM_UTF8)).rstrip(_DOS_END_OF_FILE)
     if not text or text.isspace():
-        raise _refused("file-empty", f"{name} is empty.", "Choose a file that holds a program.")
+        raise _refused("file-empty", f"{name} is empty.", "Choose a file that contains a program.")
     _check_line_lengths(name, text)
     return text
 
@@ -139,8 +139,8 @@ def _check_line_lengths(name: str, text: str) -> None:
         if len(line) > _LONGEST_LINE:
             raise _refused(
                 "line-too-long",
-                f"Line {number} of {name} has {len(line)} characters; {_LONGEST_LINE} are the most.",
-                "Choose a program file with line ends.",
+                (f"Line {number} of {name} has {len(line)} characters; the maximum is {_LONGEST_LINE}."),
+                "Choose a program file with line breaks.",
                 number,
             )
 
@@ -157,7 +157,7 @@ def _may_hold_long_line(text: str) -> bool:
 
 
 def _too_large(name: str) -> SourceError:
-    return _refused("file-too-large", f"{name} is over 64 MB.", "Split the program.")
+    return _refused("file-too-large", f"{name} is larger than 64 MB.", "Split the program.")
 
 
 def _refused(code: str, message: str, hint: str, line: int = 0) -> SourceError:

@@ -3,13 +3,19 @@
 from __future__ import annotations
 
 _SIGNS: dict[str, tuple[str, str]] = {
-    **dict.fromkeys("−–—‐‑‒﹣－", ("no minus sign of the keyboard", "Type -.")),
-    **dict.fromkeys("＋﹢", ("no plus sign of the keyboard", "Type +.")),
-    **dict.fromkeys("．·‧", ("no decimal point of the keyboard", "Type a point.")),
-    **dict.fromkeys("‘’‚“”„\"'", ("a quotation mark, and there are none here", "Take it out.")),
-    **dict.fromkeys("（［【", ("no parenthesis of the keyboard", "Type (.")),
-    **dict.fromkeys("）］】", ("no parenthesis of the keyboard", "Type ).")),
-    **dict.fromkeys("\u200b\u200c\u200d\u2060\ufeff\u00ad", ("a sign that nobody sees", "Take it out.")),
+    **dict.fromkeys("−–—‐‑‒﹣－", ("a special minus sign, not the one on the keyboard", "Type -.")),
+    **dict.fromkeys("＋﹢", ("a special plus sign, not the one on the keyboard", "Type +.")),
+    **dict.fromkeys(
+        "．·‧", ("a special decimal point, not the one on the keyboard", "Type a decimal point.")
+    ),
+    **dict.fromkeys(
+        "‘’‚“”„\"'", ("a quotation mark, which this control does not allow", ("Remove it from the program."))
+    ),
+    **dict.fromkeys("（［【", ("a special parenthesis, not the one on the keyboard", "Type (.")),
+    **dict.fromkeys("）］】", ("a special parenthesis, not the one on the keyboard", "Type ).")),
+    **dict.fromkeys(
+        "\u200b\u200c\u200d\u2060\ufeff\u00ad", ("an invisible character", ("Remove it from the program."))
+    ),
 }
 
 

@@ -27,9 +27,9 @@ class Signal(NamedTuple):
 SIGNALS = {
     "estop": Signal(RED, False, 0.0, (440, 440), "E-STOP"),
     "alarm": Signal(RED, True, 3.0, (880, 440, 880, 440), "ALARM"),
-    "tool-life": Signal(AMBER, True, 1.0, (660, 660), "TOOL LIFE GONE, OR PARTS WAIT TO BE MEASURED"),
+    "tool-life": Signal(AMBER, True, 1.0, (660, 660), "TOOL LIFE USED UP, OR PARTS TO MEASURE"),
     "stop": Signal(AMBER, True, 1.0, (660, 440), "STOP: FEED HOLD, M00, SINGLE BLOCK"),
-    "part": Signal(AMBER, False, 0.5, (523, 659, 784), "END OF PART, NOTHING RUNS"),
-    "runs": Signal(GREEN, False, 0.0, (), "A CYCLE RUNS"),
+    "part": Signal(AMBER, False, 0.5, (523, 659, 784), "PART FINISHED, NO CYCLE RUNNING"),
+    "runs": Signal(GREEN, False, 0.0, (), "CYCLE RUNNING"),
 }
 """By the kind of what happens, as it is announced (MQTT, web hook) too."""

@@ -62,7 +62,7 @@ class MotionLimits:
         _demand_positive("interval", self.interval)
         if not 0.0 <= self.grain < math.inf:
             raise MotionError(
-                f"The step of the slides is {self.grain} mm; give a positive number, or 0.", "grain"
+                f"The rounding step of the axes is {self.grain} mm. Enter 0 or a positive number.", "grain"
             )
 
     @classmethod
@@ -103,5 +103,5 @@ class MotionLimits:
 def _demand_positive(what: str, value: float) -> None:
     if not (math.isfinite(value) and value > 0.0):
         raise MotionError(
-            f"Motion limit {what} is {value}; give a positive number in the machine file.", "axis-limit"
+            f"Motion limit {what} is {value}. Enter a positive number in the machine file.", "axis-limit"
         )

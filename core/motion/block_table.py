@@ -163,7 +163,7 @@ def _travels(blocks: Sequence[MotionBlock]) -> tuple[FloatArray, FloatArray, Flo
     travels = [block.travel for block in blocks if block.travel is not None]
     if len(travels) != len(blocks):
         raise MotionError(
-            f"Block {blocks[0].n} tells of all axes, another behind it does not.", "axes-differ"
+            f"Block {blocks[0].n} specifies all axes, but another block after it does not.", "axes-differ"
         )
     start, end = (np.array([getattr(t, name) for t in travels], order="F") for name in ("start", "end"))
     return start, end, np.array([t.length for t in travels])
@@ -175,7 +175,7 @@ def _kinds(blocks: Sequence[MotionBlock]) -> FloatArray:
     except KeyError:
         block = next(b for b in blocks if b.kind not in KINDS)
         raise MotionError(
-            f"Block {block.n}: a {block.kind} block has no time law of its own.", "no-time-law"
+            f"Block {block.n}: a {block.kind} block cannot be planned as a motion.", "no-time-law"
         ) from None
 
 
@@ -195,7 +195,7 @@ def _surface(blocks: Sequence[MotionBlock], rpm_max: float) -> tuple[FloatArray,
         if block.css is not None:
             if not 0.0 <= block.css < math.inf:
                 raise MotionError(
-                    f"Block {block.n}: css is {block.css} mm/s; program a surface speed with S.",
+                    f"Block {block.n}: css is {block.css} mm/s. Program a surface speed with S.",
                     "surface-speed",
                 )
             surface[i], lo[i] = block.css, block.modal.css_min

@@ -143,7 +143,10 @@ def _slide_by_c(piece: Pieces, table: BlockTable, index: int) -> Pieces:
     needed, turn = way / feed * 360.0, float(end[2] - start[2])
     if abs(turn) < needed * (1.0 - _ROUNDING):
         raise MotionError(
-            f"Block {table.n[index]:.0f}: the slide needs {needed:g} degrees of C; it turns {abs(turn):g}.",
+            (
+                f"Block {table.n[index]:.0f}: the move needs {needed:g} degrees of C, but C turns "
+                f"{abs(turn):g} degrees."
+            ),
             "rotary-range",
         )
     there = end.copy()

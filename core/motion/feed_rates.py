@@ -19,14 +19,14 @@ def constant_rates(table: BlockTable) -> FloatArray:
 
     Raises MotionError for a feed that is not positive and for a feed per revolution with the spindle still.
     """
-    _refuse(table, ~(table.feed > 0.0), "the feed is not above zero; program an F", "no-feed")
+    _refuse(table, ~(table.feed > 0.0), "the feed is not above zero; program an F word", "no-feed")
     surface = by_radius(table)
     middle = 0.5 * (table.start[:, 0] + table.end[:, 0]) - table.axis
     rpm = np.where(surface, surface_rpms(table, middle), table.rpm)
     _refuse(
         table,
         table.per_rev & ~(rpm > 0.0),
-        "feed per revolution with the spindle stopped; start it first",
+        "feed per revolution with the spindle stopped; start the spindle first",
         "spindle-stopped",
     )
     on_axis = (table.start[:, 0] - table.axis) * (table.end[:, 0] - table.axis) <= 0.0
@@ -34,7 +34,7 @@ def constant_rates(table: BlockTable) -> FloatArray:
     _refuse(
         table,
         endless,
-        "the spindle speed on the axis has no upper limit: program one, or give rpm_max",
+        "the spindle speed at the axis has no upper limit; program one, or set rpm_max",
         "no-speed-limit",
     )
     rate = np.where(table.per_rev, table.feed * rpm / 60.0, table.feed)
@@ -46,7 +46,7 @@ def _per_lead(table: BlockTable) -> FloatArray:
     _refuse(
         table,
         table.thread & (table.start[:, 1] == table.end[:, 1]),
-        "a thread does not advance along Z",
+        "the thread does not advance along Z",
         "no-lead",
     )
     way = np.hypot(table.end[:, 0] - table.start[:, 0], table.end[:, 1] - table.start[:, 1])

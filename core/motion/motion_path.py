@@ -116,7 +116,7 @@ class PathBuilder:
         table = table_of(batch, self.rpm_max)
         if self._closed:
             raise MotionError(
-                f"Block {table.n[0]:.0f} comes after the end of the path; begin another path.", "path-ended"
+                f"Block {table.n[0]:.0f} comes after the end of the path. Begin a new path.", "path-ended"
             )
         _demand_unbroken(table, self._end)
         pieces, counts = _pieces(table, self._limits)
@@ -173,7 +173,7 @@ class PathBuilder:
 
     def _make(self) -> Path:
         if self._start is None:
-            raise MotionError("There is no block to plan a path of; add the blocks first.", "no-block")
+            raise MotionError("The path has no blocks to plan. Add the blocks first.", "no-block")
         pieces = joined(self._parts)
         cap, a, corner = piece_limits(pieces, self._limits, more=not self._closed)
         return Path(
@@ -212,7 +212,9 @@ def _demand_unbroken(table: BlockTable, end: FloatArray | None) -> None:
     if (gap > GAP).any():
         i = int(gap.max(axis=1).argmax()) + len(table.n) - len(before)
         raise MotionError(
-            f"Block {table.n[i]:.0f} starts {gap.max():.4f} mm from the end of the block before it; "
-            "plan it from where the machine stands.",
+            (
+                f"Block {table.n[i]:.0f} starts {gap.max():.4f} mm from the end of the previous "
+                "block. Plan it from the current machine position."
+            ),
             "broken-path",
         )

@@ -273,8 +273,10 @@ def _braked_into(run: _Run, allowed: FloatArray, square: float, slack: float) ->
     fits = fits[fits > 0]
     if not len(fits):
         raise MotionError(
-            f"A speed of {math.sqrt(square):.3f} mm/s cannot come to rest within the "
-            f"{run.length.sum():.4f} mm that are left; plan from a state of this path.",
+            (
+                f"The axes cannot stop from {math.sqrt(square):.3f} mm/s within the remaining "
+                f"{run.length.sum():.4f} mm. Plan from a state of this path."
+            ),
             "cannot-stop",
         )
     k = int(fits[0])
@@ -289,8 +291,10 @@ def _demand_passable(braked: FloatArray, hard: FloatArray, slack: float) -> None
     if over.any():
         i = int(over.argmax())
         raise MotionError(
-            f"A speed of {math.sqrt(braked[i]):.3f} mm/s is too high for what follows, which allows "
-            f"{math.sqrt(hard[i]):.3f} mm/s; plan from a state of this path.",
+            (
+                f"A speed of {math.sqrt(braked[i]):.3f} mm/s is too high for the rest of the path, "
+                f"which allows {math.sqrt(hard[i]):.3f} mm/s. Plan from a state of this path."
+            ),
             "too-fast",
         )
 
@@ -321,7 +325,10 @@ def _brake(path: Path, at: float, v: float, first: int) -> Profile:
 def _rest(path: Path, v: float) -> Profile:
     if v * v > 2.0 * NEAR * float(path.a.max(initial=1.0)):
         raise MotionError(
-            f"A speed of {v:.3f} mm/s at the end of the path cannot come to rest; plan before it.",
+            (
+                f"The axes cannot stop from {v:.3f} mm/s at the end of the path. Plan before the end "
+                "of the path."
+            ),
             "cannot-stop-at-end",
         )
     return at_rest(path, float(path.s[-1]))
@@ -331,17 +338,18 @@ def _start(path: Path, start_s: float | None) -> float:
     at = float(path.s[0]) if start_s is None else start_s
     if not path.s[0] - NEAR <= at <= path.s[-1] + NEAR:
         raise MotionError(
-            f"Distance {at} is not on the path from {path.s[0]:.6f} to {path.s[-1]:.6f} mm.", "not-on-path"
+            (f"Distance {at} is not on the path, which runs from {path.s[0]:.6f} to {path.s[-1]:.6f} mm."),
+            "not-on-path",
         )
     return min(max(at, float(path.s[0])), float(path.s[-1]))
 
 
 def _demand_sane(start_v: float, feed_scale: float, rapid_scale: float) -> None:
     if not (math.isfinite(start_v) and start_v >= 0.0):
-        raise MotionError(f"The present speed is {start_v}; it must be zero or above.", "negative-speed")
+        raise MotionError(f"The current speed is {start_v}; it must be zero or above.", "negative-speed")
     for name, scale in (("feed", feed_scale), ("rapid", rapid_scale)):
         if not 0.0 <= scale <= OVERRIDE_MAX:
             raise MotionError(
-                f"The {name} override is {scale}; it must lie between 0 and {OVERRIDE_MAX}.",
+                f"The {name} override is {scale}; it must be between 0 and {OVERRIDE_MAX}.",
                 f"{name}-override",
             )

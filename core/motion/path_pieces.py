@@ -141,8 +141,11 @@ def _settled_centre(table: BlockTable, arc: IntArray) -> FloatArray:
     if (off > RADII_DIFFER).any():
         worst = int(off.argmax())
         raise MotionError(
-            f"Block {table.n[arc[worst]]:.0f}: start and end of the arc lie {radii[0][worst]:.4f} and "
-            f"{radii[1][worst]:.4f} mm from its centre; correct the centre or the end point.",
+            (
+                f"Block {table.n[arc[worst]]:.0f}: the start of the arc is {radii[0][worst]:.4f} mm "
+                f"and its end {radii[1][worst]:.4f} mm from its center. Correct the center or the end "
+                "point."
+            ),
             "arc-radii-differ",
         )
     chord = end - start

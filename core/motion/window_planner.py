@@ -40,7 +40,7 @@ class ChunkPlanner:
     def __init__(self, limits: MotionLimits, *, rpm_max: float = math.inf, window: int = 20_000) -> None:
         if window < 1:
             raise MotionError(
-                f"A planning window of {window} blocks holds nothing; give at least 1.", "empty-window"
+                f"A planning window of {window} blocks is too small. Set at least 1.", "empty-window"
             )
         self._limits = limits
         self._rpm_max = rpm_max
@@ -115,7 +115,7 @@ def sample_positions(
     """
     if not dt > 0.0:
         raise MotionError(
-            f"A sampling interval of {dt} s gives no samples; give a time above zero.", "sampling-interval"
+            f"A sampling interval of {dt} s gives no samples. Set a time above zero.", "sampling-interval"
         )
     count = max(math.ceil((profile.duration - t_offset) / dt), 0)
     t: FloatArray = t_offset + dt * np.arange(count, dtype=np.float64)

@@ -180,13 +180,14 @@ def _check_letters(code: str, head: str, *, older: bool) -> None:
             if older:
                 return
             raise InsertCodeError(
-                f"{code}: character {place} is missing; it is the {what}", "character-missing"
+                f"{code}: character {place} is missing; it specifies the {what}", "character-missing"
             )
         if head[place - 1] not in known:
             raise _meaningless(code, place, head[place - 1], what, known)
     if len(head) > len(_LETTERS):
         raise InsertCodeError(
-            f"{code}: character 5, {head[4]}, means nothing; the size begins there", "unknown-character"
+            f"{code}: character 5, {head[4]}, is not valid; the size begins at this position",
+            "unknown-character",
         )
 
 
@@ -204,7 +205,7 @@ class _Size:
         if not found or len(found) < len(min(known, key=len)):
             place, figures = self.place + len(found) + 1, " ".join(sorted(known))
             raise InsertCodeError(
-                f"{self.code}: character {place} is missing; there stands the {what}: {figures}",
+                (f"{self.code}: character {place} is missing; it specifies the {what}, one of: {figures}"),
                 "character-missing",
             )
         if found not in known:
@@ -215,11 +216,11 @@ class _Size:
 
 
 def _meaningless(code: str, place: int, found: str, what: str, known: Iterable[str]) -> InsertCodeError:
-    where = f"character {place}, {found}, means"
+    where = f"character {place}, {found}, is"
     if len(found) > 1:
-        where = f"characters {place} and {place + len(found) - 1}, {found}, mean"
+        where = f"characters {place} and {place + len(found) - 1}, {found}, are"
     return InsertCodeError(
-        f"{code}: {where} nothing as {what}; known: {' '.join(sorted(known))}", "unknown-character"
+        f"{code}: {where} not a valid {what}; use one of: {' '.join(sorted(known))}", "unknown-character"
     )
 
 
@@ -251,7 +252,7 @@ def _inch(size: _Size) -> tuple[float, float, float]:
     nose = size.take(corner, "corner radius (1/64 in)", _SIXTY_FOURTHS)
     if size.left[:1].isdigit():
         raise InsertCodeError(
-            f"{size.code}: character {size.place + 1}, {size.left[0]}, is one figure too many",
+            f"{size.code}: character {size.place + 1}, {size.left[0]}, is one digit too many",
             "too-many-characters",
         )
     return circle * MM_PER_INCH, thickness * MM_PER_INCH, nose * MM_PER_INCH

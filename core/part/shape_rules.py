@@ -54,7 +54,7 @@ def _insert(shape: ToolShape) -> Iterator[ShapeMistake]:
         return
     if insert.corners and 2.0 * shape.nose_radius >= insert.inscribed_circle:
         yield ShapeMistake(
-            "nose_radius", f"the nose radius is larger than the insert {shape.insert}", "nose-too-large"
+            "nose_radius", f"the nose radius is too large for insert {shape.insert}", "nose-too-large"
         )
     yield from _entry(shape, insert.shape, insert.point_angle)
 
@@ -68,22 +68,23 @@ def _entry(shape: ToolShape, letter: str, point: float) -> Iterator[ShapeMistake
     angle = shape.entry or coded or usual
     if angle + point > 180.0:
         text = (
-            f"an entering angle of {angle:g}° leaves a point of {point:g}° no clearance; "
-            f"at most {180 - point:g}°"
+            f"an entering angle of {angle:g}° leaves no clearance for a point angle of {point:g}"
+            f"°; use at most {180 - point:g}°"
         )
         yield ShapeMistake("entry", text, "no-clearance")
 
 
 def _tip(shape: ToolShape) -> Iterator[ShapeMistake]:
     if shape.turns_itself and 0 not in TIP_DIRECTIONS[shape.tip]:
-        text = f"tip {shape.tip} is no end of a round tool: 7 along the spindle, 8 across it, 6 from behind"
+        text = (
+            f"tip {shape.tip} does not fit a rotating tool; use 7 (along the spindle), 8 (across "
+            "it) or 6 (from the rear)"
+        )
         yield ShapeMistake("tip", text, "not-an-end")
     across = TIP_DIRECTIONS[shape.tip][1]
     if shape.rear and across and not shape.turns_itself and (across > 0) is shape.internal:
         where, which = ("X−", "3, 4 or 8") if shape.internal else ("X+", "1, 2 or 6")
-        text = (
-            f"tip {shape.tip} is that of a tool in front; behind the spindle the tip lies at {where}: {which}"
-        )
+        text = f"tip {shape.tip} is for a front tool; on a rear tool the tip is at {where}: use {which}"
         yield ShapeMistake("tip", text, "tool-in-front")
 
 
@@ -91,18 +92,20 @@ def _sizes(shape: ToolShape) -> Iterator[ShapeMistake]:
     groove = shape.kind in {ToolKind.GROOVING, ToolKind.PARTING}
     if groove and shape.width and 2.0 * shape.nose_radius > shape.width:
         yield ShapeMistake(
-            "nose_radius", "two corners of this nose radius are wider than the edge", "corners-too-wide"
+            "nose_radius",
+            "two corners with this nose radius are wider than the cutting edge",
+            "corners-too-wide",
         )
     if shape.kind is ToolKind.END_MILL and shape.diameter and 2.0 * shape.nose_radius > shape.diameter:
         yield ShapeMistake(
-            "nose_radius", "the corner radius is larger than half of the diameter", "nose-too-large"
+            "nose_radius", "the corner radius is larger than half the diameter", "nose-too-large"
         )
     if shape.turns_itself and shape.stick_out and shape.length > shape.stick_out:
-        yield ShapeMistake("length", "what cuts is longer than the tool sticks out", "too-long")
+        yield ShapeMistake("length", "the cutting length is more than the stick-out of the tool", "too-long")
     if shape.kind is ToolKind.CENTRE_DRILL and shape.diameter and shape.width >= shape.diameter:
-        yield ShapeMistake("width", "the pilot is as thick as the centre drill", "pilot-too-thick")
+        yield ShapeMistake("width", "the pilot is as thick as the center drill", "pilot-too-thick")
     if shape.kind is ToolKind.TAP and shape.diameter and 2.0 * shape.pitch >= shape.diameter:
-        yield ShapeMistake("pitch", "the pitch is too coarse for the diameter of the tap", "pitch-too-coarse")
+        yield ShapeMistake("pitch", "the pitch is too coarse for the tap diameter", "pitch-too-coarse")
 
 
 def _outlines(shape: ToolShape) -> Iterator[ShapeMistake]:
@@ -118,7 +121,7 @@ def _outlines(shape: ToolShape) -> Iterator[ShapeMistake]:
             continue
         if not pieces:
             yield ShapeMistake(
-                field, "an outline takes three points that do not lie on one line", "too-few-points"
+                field, "an outline needs three points that are not on one line", "too-few-points"
             )
 
 

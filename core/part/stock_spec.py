@@ -62,11 +62,13 @@ def stock_spec(text: str) -> StockSpec:
     kind, _, rest = text.strip().partition(":")
     if kind in {"profile", "after"}:
         if not rest:
-            raise StockError(f"{text!r} names no file; say {kind}:FILE", "no-file")
+            raise StockError(f"{text!r} has no file name; write {kind}:FILE", "no-file")
         name, allowance = _file_and_allowance(rest)
         return StockSpec(text, allowance=allowance, **{kind: name})  # type: ignore[arg-type]
     if kind not in {"bar", "tube"}:
-        raise StockError(f"{text!r} is no stock; say one of {FORMS}", "unknown-form")
+        raise StockError(
+            f"{text!r} is not a stock specification; use one of these forms: {FORMS}", "unknown-form"
+        )
     sizes, plus, extra = rest.partition("+")
     allowance = _length(extra, text) if plus else 0.0
     lengths = [_length(each, text) for each in sizes.split(":")]
@@ -76,17 +78,19 @@ def stock_spec(text: str) -> StockSpec:
 def _round_stock(text: str, kind: str, lengths: list[float], allowance: float) -> StockSpec:
     diameters = 1 if kind == "bar" else 2
     if not diameters <= len(lengths) <= diameters + 1:
-        raise StockError(f"{text!r} has {len(lengths)} sizes; say one of {FORMS}", "size-count")
+        raise StockError(f"{text!r} has {len(lengths)} sizes; use one of these forms: {FORMS}", "size-count")
     diameter, bore = lengths[0], lengths[1] if kind == "tube" else 0.0
     if not 0.0 < diameter <= _LARGEST:
         raise StockError(
-            f"{text!r}: a diameter is more than 0 and up to {_LARGEST / _INCH:.0f} in", "diameter"
+            f"{text!r}: a diameter must be more than 0 and at most {_LARGEST / _INCH:.0f} in", "diameter"
         )
     if kind == "tube" and not 0.0 < bore < diameter:
-        raise StockError(f"{text!r}: the bore of a tube is more than 0 and less than its diameter", "bore")
+        raise StockError(
+            (f"{text!r}: the bore of a tube must be more than 0 and less than its diameter"), "bore"
+        )
     length = lengths[diameters] if len(lengths) > diameters else 0.0
     if len(lengths) > diameters and not 0.0 < length <= 10.0 * _LARGEST:
-        raise StockError(f"{text!r}: a length is more than 0", "length")
+        raise StockError(f"{text!r}: a length must be more than 0", "length")
     return StockSpec(text, diameter, bore, length, allowance)
 
 
@@ -102,7 +106,7 @@ def _length(text: str, whole: str) -> float:
     """mm."""
     found = _LENGTH.fullmatch(text.strip())
     if found is None:
-        raise StockError(f"{whole!r}: {text!r} is no length; say 1.25 (inches) or 30mm", "not-a-length")
+        raise StockError(f"{whole!r}: {text!r} is not a length; write 1.25 (inches) or 30mm", "not-a-length")
     return float(found[1]) * (1.0 if (found[2] or "").lower() == "mm" else _INCH)
 
 
@@ -110,15 +114,19 @@ def profile_stock(given: str, text: str, scale: float, allowance: float) -> Stoc
     """A blank by the points of a CSV text: Z, r (, bore r) in units of ``scale`` mm. Raises StockError."""
     rows = _rows(text)
     if len(rows) < 2:
-        raise StockError("a profile needs two points at least: z, r in each row", "too-few-points")
+        raise StockError("a profile needs at least two points: z, r in each row", "too-few-points")
     if len({len(row) for row in rows}) > 1:
-        raise StockError("a profile has z, r, or z, r, bore in every row alike", "rows-differ")
+        raise StockError(
+            "all rows of a profile must have the same columns: z, r or z, r, bore", "rows-differ"
+        )
     if rows[0][0] > rows[-1][0]:
         rows.reverse()
     if any(a[0] > b[0] for a, b in pairwise(rows)):
-        raise StockError("the points of a profile go one way along Z", "turns-back")
+        raise StockError("the points of a profile must run in one direction along Z", "turns-back")
     if any(row[1] < 0.0 for row in rows) or any(len(row) > 2 and not 0.0 <= row[2] <= row[1] for row in rows):
-        raise StockError("radii of a profile are not negative, and a bore is within its outside", "radius")
+        raise StockError(
+            ("profile radii cannot be negative, and the bore cannot be larger than the outside"), "radius"
+        )
     outside: tuple[Point, ...] = tuple((row[0] * scale + allowance, row[1] * scale) for row in rows)
     bore: tuple[Point, ...] = tuple(
         (row[0] * scale + allowance, row[2] * scale) for row in rows if len(row) > 2
@@ -130,7 +138,11 @@ def _rows(text: str) -> list[list[float]]:
     """The numbers; a head and lines that begin with # are left out."""
     import csv
 
-    with failures_as(lambda _error: StockError("the profile is damaged; it is CSV text of z, r", "damaged")):
+    with failures_as(
+        lambda _error: StockError(
+            ("the profile is damaged; it must be CSV text with columns z, r"), "damaged"
+        )
+    ):
         return _numbered_rows(csv.reader(io.StringIO(text)))
 
 
@@ -149,11 +161,14 @@ def _numbers(row: list[str], number: int) -> list[float]:
         values = [math.nan]
     if not all(map(math.isfinite, values)):
         shown = " ".join(",".join(row).split())[:80]
-        raise StockError(f"row {number} of the profile is no numbers: {shown}", "not-numbers")
+        raise StockError(f"row {number} of the profile is not all numbers: {shown}", "not-numbers")
     if max(map(abs, values)) > 10.0 * _LARGEST:
-        raise StockError(f"row {number} of the profile lies too far out: check its unit", "too-far-out")
+        raise StockError(
+            f"row {number} of the profile is too far from the others; check its unit", "too-far-out"
+        )
     if not 2 <= len(values) <= 3:
         raise StockError(
-            f"row {number} of the profile has {len(values)} numbers; it has z, r (, bore)", "number-count"
+            (f"row {number} of the profile has {len(values)} numbers; it must have z, r or z, r, bore"),
+            "number-count",
         )
     return values

@@ -59,7 +59,7 @@ class AirChecks:
             return
         (z0, r0), (z1, r1) = move.points[0], move.points[-1]
         if self._went_in is not None and z1 > self.stock.front:
-            text = "This rapid goes in beside the part, and out again with nothing cut."
+            text = "This rapid moves in alongside the part, but the tool retracts without cutting."
             yield Found("unmade-cut", text, self._went_in)
             self._went_in = None
         beside = min(abs(r0), abs(r1)) < self.stock.radius + _BESIDE
@@ -79,7 +79,7 @@ class AirChecks:
             self._tool, self._went_in = tool, None
         fresh, self._fresh = self._fresh, False
         if met and forward < 0 and self._out_of_part(move, cutter, fresh=fresh):
-            yield Found("unmade-cut", "This move leads out of the part through metal, backwards.")
+            yield Found("unmade-cut", ("This move feeds backward out of the part, through material."))
         close = bool(met) or self._comes_near(move, cutter, part)
         if drill and fresh and not met and self._is_inside(move):
             self._in_hole = move
@@ -95,7 +95,7 @@ class AirChecks:
             self._air, self._cut_before = 0.0, bool(met)
             return
         if self._outside_stock(move):
-            yield Found("larger-than-stock", "This move turns a larger diameter than the stock has.")
+            yield Found("larger-than-stock", ("This move turns a diameter larger than the stock."))
         yield from self._leads_away(move, gone, cutter, part, fresh=fresh)
         yield from self._in_air(move, cutter, part)
         self._cut_before = close
@@ -119,10 +119,10 @@ class AirChecks:
         in_hole, self._in_hole = self._in_hole, None
         self._fed, self._fed_length, self._has_cut = None, 0.0, False
         if in_hole is not None and has_cut:
-            yield Found("unmade-cut", "A drill is fed into a hole that is there already.", in_hole)
+            yield Found("unmade-cut", ("A drill feeds into an existing hole."), in_hole)
         if fed is not None and not has_cut and length >= _LEAST:
-            what = "A thread is cut" if fed.kind is Kind.THREAD else "A tool is fed"
-            yield Found("unmade-cut", f"{what} where there is no metal, from one rapid to the next.", fed)
+            what = "A thread is cut" if fed.kind is Kind.THREAD else "A tool feeds"
+            yield Found("unmade-cut", f"{what} only in air between two rapids.", fed)
 
     def _comes_near(self, move: TipMove, cutter: Cutter, part: TurnedPart) -> bool:
         middle = move.points[len(move.points) // 2]
@@ -135,11 +135,11 @@ class AirChecks:
         self, move: TipMove, gone: TipMove | None, cutter: Cutter, part: TurnedPart, *, fresh: bool
     ) -> Iterator[Found]:
         if gone is not None and not near(cutter, part, *move.points):
-            text = "This move leads away from the part and cuts nothing, and so does the next."
+            text = "This move and the next one feed away from the part and cut nothing."
             yield Found("unmade-cut", text, gone)
         elif move.length >= _AWAY and not near(cutter, part, move.points[-1]):
             if self._out_of_part(move, cutter, fresh=fresh):
-                text = "This move leads out of the part before its face, inside what the stock measures."
+                text = "This move feeds out in front of the part face, inside the stock diameter."
                 yield Found("unmade-cut", text)
             elif near(cutter, part, move.points[0]) and not self._cut_before:  # behind a cut it is a retract
                 self._left_part = move
@@ -168,12 +168,10 @@ class AirChecks:
         share = _share_in_air(cutter, part, move)
         before, self._air = self._air, self._air + move.seconds * share
         if move.seconds * share >= _AIR_TIME and move.length * share >= _AIR_WAY:
-            text = f"This move feeds for {move.seconds * share:.0f} s where there is no metal."
+            text = f"This move feeds through air for {move.seconds * share:.0f} s."
             yield Found("cuts-air", text)
         elif before < _LONG_AIR <= self._air:
-            yield Found(
-                "cuts-air", f"Up to here tools have fed for {_LONG_AIR:.0f} s where there is no metal."
-            )
+            yield Found("cuts-air", f"Tools have fed through air for {_LONG_AIR:.0f} s up to this move.")
 
     def _outside_stock(self, move: TipMove) -> bool:
         """Whether it cuts along Z beside the stock, and further out."""

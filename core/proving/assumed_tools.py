@@ -16,7 +16,7 @@ from core.part.tool_shape import Hand, ToolKind, ToolShape
 from core.proving.tip_moves import QUICK, LiveStep, TipMove
 from core.tool_edges import edge_name
 
-_BY_MOVES = "by its moves"
+_BY_MOVES = "based on its moves"
 _ON_AXIS = 0.05  # mm; a tool that feeds along Z no further off it is a drill
 _SQUARE = 0.02  # mm of Z, in a plunge
 _NAMES = {
@@ -26,7 +26,7 @@ _NAMES = {
     ToolKind.PARTING: "a parting tool",
     ToolKind.THREADING: "a threading tool",
     ToolKind.DRILL: "a drill",
-    ToolKind.CENTRE_DRILL: "a centre drill",
+    ToolKind.CENTRE_DRILL: "a center drill",
     ToolKind.REAMER: "a reamer",
     ToolKind.TAP: "a tap",
     ToolKind.END_MILL: "an end mill",
@@ -143,7 +143,7 @@ class Assumed:
         bore = bore if shape.kind in OPENS else ()
         inside = [abs(r) for m in bore if not m.quick for z, r in m.points if z < -_SQUARE]
         diameter = max(2.0 * min(inside) - _ALLOWANCE, _SMALLEST) if inside else _USUAL
-        words = f"{self.words}, its diameter as {_size(diameter, use)}"
+        words = f"{self.words}, assumed diameter {_size(diameter, use)}"
         return replace(self, shape=replace(shape, diameter=diameter), words=words, sized=True)
 
     def with_width(self, use: ToolUse, threads: Sequence[TipMove]) -> Assumed:
@@ -152,7 +152,7 @@ class Assumed:
         if shape is None or shape.kind not in GROOVERS or shape.width:
             return self
         width = groove_width(shape, use.moves, threads)
-        words = f"{self.words}, its width as {_size(width, use)}"
+        words = f"{self.words}, assumed width {_size(width, use)}"
         return replace(self, shape=replace(shape, width=width), words=words)
 
 
@@ -172,11 +172,11 @@ def groove_width(shape: ToolShape, moves: Iterable[TipMove], threads: Iterable[T
 
 def assumed_tool(use: ToolUse, said: ToolShape | None = None) -> Assumed:
     """The shape to be taken for a tool that has none, or for one that lacks a size, and a sentence of it."""
-    kind, why = (said.kind, "by its shape") if said is not None else _kind(use)
+    kind, why = (said.kind, "based on its shape") if said is not None else _kind(use)
     if kind is None:
-        return Assumed(None, f"{edge_name(use.number)} is taken for a bar stop")
+        return Assumed(None, f"{edge_name(use.number)} is treated as a bar stop")
     shape = said or _shape(kind, use)
-    words = f"{edge_name(use.number)} is taken for {_names(kind, shape, use)} ({why})"
+    words = f"{edge_name(use.number)} is treated as {_names(kind, shape, use)} ({why})"
     return Assumed(shape, words, why != _BY_MOVES)
 
 
@@ -184,7 +184,7 @@ def _kind(use: ToolUse) -> tuple[ToolKind | None, str]:
     text = " ".join(use.comments).upper()
     for words, kind in _WORDS if text.strip() else ():
         if re.search(words, text):
-            return kind, "by its comment"
+            return kind, "based on its comment"
     if use.pushes_bar:
         return None, _BY_MOVES
     if use.live:

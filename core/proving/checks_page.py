@@ -50,9 +50,9 @@ def _row(name: str, check: Check) -> str:
 
 def _lines(name: str, check: Check) -> Iterator[str]:
     yield f"**{name}** ({check.severity}): {check.looks_for}  "
-    yield f"Found when: {check.decides}  "
+    yield f"Condition: {check.decides}  "
     if name in CHECKS:
-        yield f"Rests on: {' and '.join(check.rests_on) or 'what the machine file says'}.  "
+        yield f"Depends on: {' and '.join(check.rests_on) or 'the machine file'}.  "
     yield f"Do: {check.remedy}"
     yield ""
 

@@ -62,13 +62,13 @@ def _feed(move: TipMove, shape: ToolShape, tool: int, *, held: bool) -> Iterator
     breaks, least = _BREAKS, 0.0
     if shape.kind in _DRILLS and held:
         limit = (_OF_REAMER if shape.kind is ToolKind.REAMER else _OF_DRILL) * shape.diameter
-        words = f"{name} feeds {shown} with a diameter of {text(shape.diameter)}."
+        words = f"{name} feeds {shown}, too much for a diameter of {text(shape.diameter)}."
     elif shape.kind in GROOVERS and held:
         limit = _OF_WIDTH * shape.width
-        words = f"{name} feeds {shown} with an edge {text(shape.width)} wide."
+        words = f"{name} feeds {shown}, too much for an edge {text(shape.width)} wide."
     elif shape.kind in INSERTS:
         limit, breaks, least = _COARSE * shape.nose_radius, _BREAKS_INSERT, _NEVER_BREAKS
-        words = f"{name} feeds {shown} with a nose radius of {text(shape.nose_radius)}."
+        words = f"{name} feeds {shown}, too much for a nose radius of {text(shape.nose_radius)}."
     if feed > max(breaks * limit, least) and limit:
         yield Found("feed-breaks-tool", words)
     elif feed > limit > 0.0:
@@ -93,7 +93,8 @@ def _blade_turns(move: TipMove, met: Cut, shape: ToolShape, tool: int) -> Iterat
     if met.depth > limit > 0.0 and met.width > shape.width:
         text = move.modal.length_text
         words = (
-            f"{edge_name(tool)} turns {text(met.depth)} deep along Z; a blade like it takes {text(limit)}."
+            f"{edge_name(tool)} turns {text(met.depth)} deep along Z; this type of blade allows "
+            f"at most {text(limit)}."
         )
         yield Found("blade-turns", words)
 
@@ -110,7 +111,10 @@ def _depth(
     along, text = _is_along(move), move.modal.length_text
     deep = _mean(met, along=along)
     if along and cutter.held and met.depth > cutter.height:
-        words = f"{edge_name(tool)} cuts {text(met.depth)} deep; its edge is {text(cutter.height)} long."
+        words = (
+            f"{edge_name(tool)} cuts {text(met.depth)} deep, but its cutting edge is only "
+            f"{text(cutter.height)} long."
+        )
         yield Found("feed-into-holder", words)
         return
     if not stock_given:
@@ -119,10 +123,10 @@ def _depth(
         shape = replace(shape, insert="", diameter=0.0)
     largest, usual = _largest(shape), depth_limit(shape)
     if deep > largest and move.rpm:  # a spindle that is switched by hand may stand
-        words = f"{edge_name(tool)} cuts {text(deep)} deep in one pass; it can take {text(largest)}."
+        words = f"{edge_name(tool)} cuts {text(deep)} deep in one pass, but its limit is {text(largest)}."
         yield Found("depth-breaks-tool", words)
     elif deep > usual:
-        words = f"{edge_name(tool)} cuts {text(deep)} deep in one pass; {text(usual)} is usual at most."
+        words = f"{edge_name(tool)} cuts {text(deep)} deep in one pass; the usual maximum is {text(usual)}."
         yield Found("depth-of-cut", words)
 
 

@@ -89,8 +89,11 @@ class CuttingChecks:
         """An incremental first move leads from wherever the slides stand, and was proved from home."""
         self.placed = True
         if block.modal.absolute is False:
-            text = "The first move is incremental: it begins where the slides stand, and is proved from home."
-            hint = "Begin with X and Z under G90."
+            text = (
+                "The first move is incremental: it starts from the current axis position, but was "
+                "proved from home."
+            )
+            hint = "Start with a move to X and Z under G90."
             self._add(_finding(block, Severity.WARNING, "start-place", text, hint))
 
     def _act(self, block: Block) -> None:
@@ -140,14 +143,19 @@ class CuttingChecks:
         radii = sorted((abs(block.x0), abs(block.x)))
         slowest, fastest = (surface_rpm(speed, r, 0.0, math.inf) for r in reversed(radii))
         if speed > _FASTEST and slowest > 2.0 * most:
-            text = f"The surface speed asks for {slowest:.0f} rpm here; the spindle has {most:.0f}."
-            self._report(block, Severity.ERROR, "surface-speed", text, "Correct S, or write G97 for rpm.")
+            text = (
+                f"The surface speed requires {slowest:.0f} rpm here, but the spindle maximum is "
+                f"{most:.0f} rpm."
+            )
+            self._report(
+                block, Severity.ERROR, "surface-speed", text, ("Correct S, or write G97 if S is in rpm.")
+            )
         limited = abs(block.x) <= abs(block.x0) and abs(block.rpm) < most  # as G26 does
         if modal.css_max is None and fastest > most and not limited:
-            text = f"G96 has no limit: here the spindle goes to its highest speed, {most:.0f} rpm."
-            hint = "Write G77S with the highest speed for this chuck and bar."
+            text = f"G96 has no speed limit, so the spindle reaches its maximum of {most:.0f} rpm here."
+            hint = "Write G77Sn, where n is the maximum rpm for this chuck and bar."
             if self.dialect is Dialect.SINUMERIK:
-                hint = "Write LIMS= with the highest speed for this chuck and bar."
+                hint = "Write LIMS= with the maximum speed for this chuck and bar."
             self._report(block, Severity.WARNING, "no-speed-limit", text, hint)
 
     def _cut_elsewhere(self, block: Block) -> None:
@@ -165,14 +173,14 @@ class CuttingChecks:
             self._spindle_off(block)
 
     def _no_tool(self, block: Block) -> None:
-        text = "This move cuts with no tool: its numbers count from the machine's home."
-        hint = "Write T with the tool's number before it."
+        text = "This move cuts with no tool active, so its coordinates are relative to machine home."
+        hint = "Write T and the tool number before this move."
         if self.dialect is not Dialect.OMNITURN:
-            text = "This move cuts with no tool: no length and no radius of one count."
-            hint = "Write TOOL CALL before it." if self.dialect is Dialect.KLARTEXT else hint
+            text = "This move cuts with no tool active, so no tool length or radius applies."
+            hint = "Write TOOL CALL before this move." if self.dialect is Dialect.KLARTEXT else hint
         elif self._tool_off:
             after = f"the T0 on line {self._tool_off}"
-            text = f"This move cuts after {after}: its numbers count from the machine's home."
+            text = f"This move cuts after {after}, so its coordinates are relative to machine home."
         if "no-tool" not in self._reported:
             self._without_tool.append(_finding(block, Severity.ERROR, "no-tool", text, hint))
         self._reported |= {"no-tool"}
@@ -180,11 +188,15 @@ class CuttingChecks:
     def _collet_open(self, block: Block) -> None:
         """Bar work moves a stop or a gripper while the collet is open; nothing is cut in it."""
         if block.per_rev or block.kind in _METAL or block.modal.c_locked:
-            text = "This move cuts with the collet open: the part is held by nothing."
-            self._report(block, Severity.ERROR, "collet-open", text, "Close the collet with M12 before it.")
+            text = "This move cuts with the collet open, so the part is not clamped."
+            self._report(
+                block, Severity.ERROR, "collet-open", text, ("Close the collet with M12 before this move.")
+            )
         elif block.x != block.x0 or block.z < block.z0:
-            text = "This move feeds with the collet open, and not away from the spindle as a bar is pulled."
-            self._report(block, Severity.WARNING, "collet-open", text, "Close the collet with M12 before it.")
+            text = "This move feeds with the collet open, but not away from the spindle as in a bar pull."
+            self._report(
+                block, Severity.WARNING, "collet-open", text, ("Close the collet with M12 before this move.")
+            )
 
     def _live_tool_off(self, block: Block) -> None:
         codes = sorted(
@@ -192,21 +204,21 @@ class CuttingChecks:
         )
         if not codes:
             return  # a live tool that this control does not switch
-        hint = f"Switch it on with {' or '.join(f'M{code:02d}' for code in codes)} before it."
+        hint = f"Turn on the live tool with {' or '.join(f'M{code:02d}' for code in codes)} before this move."
         if block.kind in _MILLING:
-            text = "This move mills, and no live tool is on."
+            text = "This move mills with no live tool running."
             self._report(block, Severity.ERROR, "live-tool-off", text, hint)
         else:
-            text = "This move cuts with the spindle held as C, and no live tool is on."
+            text = "This move cuts with the spindle locked as the C axis and no live tool running."
             self._report(block, Severity.WARNING, "live-tool-off", text, hint)
 
     def _spindle_off(self, block: Block) -> None:
-        text = "This move cuts with the spindle stopped, and no live tool is on."
+        text = "This move cuts with the spindle stopped and no live tool running."
         if not self._has_run:
             text = "S sets a speed, but nothing starts the spindle before this cut."
-        hint = "Start it with M03 or M04 before it."
+        hint = "Start the spindle with M03 or M04 before this cut."
         if self.dialect is not Dialect.OMNITURN:
-            hint = "Start it with M3 or M4 before it."
+            hint = "Start the spindle with M3 or M4 before this cut."
         self._report(block, Severity.WARNING, "spindle-off", text, hint)
 
     def _input(self, block: Block, terminal: str) -> None:
@@ -214,9 +226,9 @@ class CuttingChecks:
             return
         self._asked |= {terminal}
         text = f"This machine has no input {terminal}."
-        hint = "Correct the number, or name the input under [io.in] of the machine file."
+        hint = "Correct the number, or define the input under [io.in] in the machine file."
         if isinstance(block.action, WaitInput):
-            text = f"This machine has no input {terminal}: the wait would never end."
+            text = f"This machine has no input {terminal}, so the wait would never end."
         self._add(_finding(block, Severity.ERROR, "no-input", text, hint))
 
     def _end(self, block: Block) -> None:
@@ -227,7 +239,13 @@ class CuttingChecks:
             f"The program ends with the collet open, and the next cycle cuts on line {line} before any M12."
         )
         self._add(
-            _finding(block, Severity.WARNING, "collet-open", text, "Write M12 at its end or its start.")
+            _finding(
+                block,
+                Severity.WARNING,
+                "collet-open",
+                text,
+                ("Write M12 at the end or the start of the program."),
+            )
         )
 
     def _report(self, block: Block, severity: Severity, check: str, text: str, hint: str) -> None:

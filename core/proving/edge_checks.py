@@ -76,7 +76,7 @@ class EdgeChecks:
             return
         if cutter.held and shape.kind in INSERTS and _turning(move) > _LOOP and not is_round(shape):
             around = f"{_turning(move):.0f}°"
-            yield Found("arc-loop", f"{edge_name(tool)} is fed around {around} of an arc through the part.")
+            yield Found("arc-loop", (f"{edge_name(tool)} feeds along {around} of an arc through the part."))
             return
         yield from _hollow_at_edge(move, shape, cutter, part, tool)
         yield from size_faults(move, met, shape, cutter, tool, stock_given=self.stock_given)
@@ -84,7 +84,7 @@ class EdgeChecks:
         yield from _off_axis(move, shape, tool)
         yield from _without_limit(move, shape, tool)
         if self._solid > _ENTERS and met.width > _ENTERS:
-            words = f"{edge_name(tool)} is fed {move.modal.length_text(self._solid)} into solid material."
+            words = f"{edge_name(tool)} feeds {move.modal.length_text(self._solid)} into solid material."
             yield Found("no-bore", words)
         yield from self._past_stock(move, shape, tool)
         yield from self._over_axis(move, met, cutter, tool)
@@ -115,9 +115,7 @@ class EdgeChecks:
         way = math.copysign(1.0, move.rpm) * math.copysign(1.0, radii[0])
         if self._turned.setdefault(tool, way) != way and tool not in self._told:
             self._told.add(tool)
-            words = (
-                f"{edge_name(tool)} cuts with the spindle turning the other way than where it has cut before."
-            )
+            words = f"{edge_name(tool)} cuts with the spindle turning opposite to its earlier cuts."
             yield Found("wrong-spindle-direction", words)
 
     def _over_axis(self, move: TipMove, met: Cut, cutter: Cutter, tool: int) -> Iterator[Found]:
@@ -129,7 +127,10 @@ class EdgeChecks:
             deep = move.modal.length_text(beyond)
             yield Found(
                 "over-axis",
-                f"{edge_name(tool)} cuts {deep} beyond the axis, on the side where it is not mounted.",
+                (
+                    f"{edge_name(tool)} cuts {deep} past the spindle axis, on the side opposite to where "
+                    "it is mounted."
+                ),
             )
 
     def _past_part_off(self, move: TipMove, shape: ToolShape, cutter: Cutter, tool: int) -> Iterator[Found]:
@@ -141,7 +142,7 @@ class EdgeChecks:
             text = move.modal.length_text
             yield Found(
                 "past-part-off",
-                f"{edge_name(tool)} cuts at Z {text(z)}; the part ends at {text(self.parted_at)}.",
+                (f"{edge_name(tool)} cuts at Z {text(z)}, but the part ends at Z {text(self.parted_at)}."),
             )
 
     def _contour_past_part_off(self, move: TipMove, shape: ToolShape, tool: int) -> Iterator[Found]:
@@ -152,7 +153,8 @@ class EdgeChecks:
         if front < self.parted_at - _BEYOND_CUT:
             text = move.modal.length_text
             words = (
-                f"{edge_name(tool)} cuts an arc at Z {text(front)}; the part ends at {text(self.parted_at)}."
+                f"{edge_name(tool)} cuts an arc at Z {text(front)}, but the part ends at Z "
+                f"{text(self.parted_at)}."
             )
             yield Found("contour-past-part-off", words)
 
@@ -165,7 +167,9 @@ class EdgeChecks:
             allowed += shape.diameter
         if z < self.stock.back - allowed:
             text = move.modal.length_text
-            words = f"{edge_name(tool)} is fed to Z {text(z)}; the stock ends at {text(self.stock.back)}."
+            words = (
+                f"{edge_name(tool)} feeds to Z {text(z)}, but the stock ends at Z {text(self.stock.back)}."
+            )
             yield Found("past-stock", words)
 
     def _drilled(self, move: TipMove, shape: ToolShape, tool: int) -> Iterator[Found]:
@@ -173,7 +177,11 @@ class EdgeChecks:
         if shape.turns_itself and shape.length and deep > shape.length:
             text = move.modal.length_text
             yield Found(
-                "drill-too-deep", f"{edge_name(tool)} goes {text(deep)} deep; it cuts {text(shape.length)}."
+                "drill-too-deep",
+                (
+                    f"{edge_name(tool)} goes {text(deep)} deep, but its cutting length is only "
+                    f"{text(shape.length)}."
+                ),
             )
 
 
@@ -204,7 +212,7 @@ def _without_limit(move: TipMove, shape: ToolShape, tool: int) -> Iterator[Found
     """A round tool under constant surface speed: on the axis that asks for any speed."""
     off = min(abs(r) for _, r in move.points)
     if shape.kind in _DRILLS and move.modal.css and move.modal.css_max is None and off < _OFF_AXIS:
-        words = f"{edge_name(tool)} cuts on the axis under G96: the spindle runs at its highest speed."
+        words = f"{edge_name(tool)} cuts at the axis under G96, so the spindle runs at its maximum speed."
         yield Found("drill-without-limit", words)
 
 
@@ -233,7 +241,8 @@ def _hollow_at_edge(
     along, away = -z_in > 5.0 * abs(r_in), r_out > 5.0 * abs(z_out)
     if along and away and radius < _EDGE and abs(points[0][0] - front) < _AT_FACE:
         words = (
-            f"{edge_name(tool)} hollows out the edge of the face, radius {move.modal.length_text(radius)}."
+            f"{edge_name(tool)} cuts a hollow of radius {move.modal.length_text(radius)} into the "
+            "edge of the face."
         )
         yield Found("hollow-at-edge", words)
 
@@ -260,7 +269,9 @@ def _wrong_side(
         default=0.0,
     )  # fmt: skip
     if deep > max(_WRONG_SIDE, 2.0 * shape.nose_radius):
-        yield Found("wrong-side", f"{edge_name(tool)} cuts {text(deep)} deep with the back of its insert.")
+        yield Found(
+            "wrong-side", (f"{edge_name(tool)} cuts {text(deep)} deep with the trailing edge of its insert.")
+        )
         return
     clears = cutter.clears(forward)
     for start, end, met, steep in _steep_runs(move.points, cuts, shape, clears + _STEEPER):
@@ -268,7 +279,8 @@ def _wrong_side(
         faces = behind <= _FACED and not _stands_behind(part, met, forward, abs(end[1]), cutter.side)
         if behind > 2.0 * shape.nose_radius + _BEHIND and met.depth > _BEHIND and not faces:
             words = (
-                f"{edge_name(tool)} goes in at {steep:.0f}°, and the back of its insert clears {clears:.0f}°."
+                f"{edge_name(tool)} cuts in at {steep:.0f}°, but the trailing edge of its insert "
+                f"clears only {clears:.0f}°."
             )
             yield Found("wrong-side", words)
             return

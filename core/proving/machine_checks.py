@@ -61,7 +61,7 @@ def _beyond(
         severity=Severity.ERROR,
         code="soft-limit",
         message=(
-            f"{axis.name} would go to {at * scale:.{places}f} {unit} from home{radius}, "
+            f"{axis.name} would move to {at * scale:.{places}f} {unit} from home{radius}, "
             f"{over:.{places}f} {unit} beyond the travel limit of {limit * scale:.{places}f}"
         ),
         hint=_hint(machine, dialect, block, axis),
@@ -70,7 +70,7 @@ def _beyond(
 
 def _hint(machine: Machine, dialect: Dialect, block: Block, axis: Axis) -> str:
     if machine.kind != "lathe" or axis.rotary:
-        return f"check the {axis.name} word and the shifts in force"
+        return f"check the {axis.name} word and all active shifts"
     where = f"check the {axis.name} word, the offset of {edge_name(block.modal.tool)}"
     if dialect is Dialect.OMNITURN:
         return f"{where} and any G10 or G92"
@@ -91,6 +91,8 @@ def c_findings(blocks: Sequence[Block], machine: Machine) -> Iterator[Diagnostic
                 column=1,
                 severity=Severity.ERROR,
                 code="c-is-spindle",
-                message="C moves while the spindle turns, and on this machine the spindle itself is C",
-                hint="stop it with M5 first, or take a lathe whose C has its own drive: sinumerik-modulo",
+                message=("C moves while the spindle turns, but on this machine C is the spindle itself"),
+                hint=(
+                    "stop the spindle with M5 first, or use a lathe with a separate C drive: sinumerik-modulo"
+                ),
             )

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from core.language.diagnostics import Diagnostic, Severity
 
-STOCK, TOOL, KIND, HOLES = "stock", "tool", "kind of tool", "earlier holes"
+STOCK, TOOL, KIND, HOLES = "stock", "tool", "tool type", "previously drilled holes"
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,291 +30,368 @@ _ERROR, _WARNING = Severity.ERROR, Severity.WARNING
 CHECKS: Mapping[str, Check] = {
     "rapid-into-stock": Check(
         _ERROR,
-        "A rapid, or a feed of 100 in/min and more, takes off metal.",
-        "The edge meets more than .001 in of metal in r and in Z.",
-        "Stop short of the metal and feed in: look for a rapid left on, and for a sign or a decimal point.",
+        "A rapid, or a feed of 100 in/min or more, removes material.",
+        "The edge meets more than .001 in of material on the radius and in Z.",
+        (
+            "Stop short of the material and feed in; look for a rapid that is still active, and "
+            "for a wrong sign or decimal point."
+        ),
     ),
     "feed-into-holder": Check(
         _ERROR,
-        "Metal is fed into holder, shank or boring bar.",
-        "At a feed an outline that cannot cut meets more than .001 in.",
-        "Use a longer or slimmer tool, or another direction of cut, or less depth.",
+        "A feed runs the holder, shank or boring bar into material.",
+        "During a feed, the non-cutting outline of a tool overlaps material by more than .001 in.",
+        "Use a longer or slimmer tool, another cutting direction, or a smaller depth of cut.",
     ),
     "holder-into-stock": Check(
         _ERROR,
-        "Holder, shank or boring bar runs into metal at a rapid.",
-        "An outline that cannot cut overlaps metal by more than .001 in.",
-        "Use a longer or slimmer tool, or another direction of cut.",
+        "A holder, shank or boring bar collides with material in rapid.",
+        "The non-cutting outline of a tool overlaps material by more than .001 in.",
+        "Use a longer or slimmer tool, or another cutting direction.",
     ),
     "into-chuck": Check(
         _ERROR,
-        "A tool, or its holder, runs into chuck, jaws or collet.",
-        "An outline comes into the contour that the machine file gives under [clamping], or within .001 in "
-        "of it.",
-        "Let the part stick out further, or stop earlier.",
+        "A tool or its holder collides with the chuck, jaws or collet.",
+        (
+            "A tool outline enters the contour that the machine file defines under [clamping], "
+            "or comes within .001 in of it."
+        ),
+        "Increase the part stick-out, or stop the move earlier.",
         (TOOL,),
     ),
     "near-chuck": Check(
         _WARNING,
-        "A tool, or its holder, nearly touches chuck, jaws or collet.",
-        "Less than .01 in of Z is left between an outline and the contour under [clamping].",
-        "Let the part stick out further, or stop earlier.",
+        "A tool or its holder nearly touches the chuck, jaws or collet.",
+        (
+            "The Z clearance between the outline of the tool or holder and the contour under "
+            "[clamping] is less than .01 in."
+        ),
+        "Increase the part stick-out, or stop the move earlier.",
         (TOOL,),
     ),
     "into-tailstock": Check(
         _ERROR,
-        "A tool, or its holder, runs into the tailstock's centre or quill.",
-        "An outline comes into the contour of quill and centre that the machine file gives under [clamping].",
-        "Take another way there, or a slimmer holder; draw the quill back for what needs the face.",
+        "A tool or its holder collides with the tailstock center or quill.",
+        (
+            "The outline of a tool or holder enters the contour of the quill and center defined "
+            "under [clamping] in the machine file."
+        ),
+        "Use a different path or a slimmer holder; retract the quill for work on the face.",
         (TOOL,),
     ),
     "neighbour-tool": Check(
         _ERROR,
-        "Another tool of the gang plate runs into the stock.",
-        'With [tooling] kind = "gang": its outline, placed by its tool offset, overlaps metal.',
-        "Take another way there, a shorter tool, or another place on the plate.",
+        "Another tool on the gang plate collides with the stock.",
+        (
+            'With [tooling] kind = "gang": the outline of the other tool, placed by its tool '
+            "offset, overlaps material."
+        ),
+        "Use a different path, a shorter tool, or another position on the gang plate.",
         (STOCK,),
     ),
     "tools-in-one-place": Check(
         Severity.NOTE,
         "Two tools have the same offset.",
-        "The offsets of two described tools are less than .04 in apart.",
+        "The offsets of two tools with defined shapes are less than .04 in apart.",
         "Remove the offset of the tool that is not mounted.",
         (),
     ),
     "spindle-overspeed": Check(
         _ERROR,
-        "The spindle turns faster than chuck or collet may.",
-        "A commanded speed over max_rpm under [clamping] of the machine file.",
+        "The spindle turns faster than the chuck or collet allows.",
+        "The commanded speed is higher than max_rpm under [clamping] in the machine file.",
         "Lower S, or limit the speed under G96.",
         (),
     ),
     "drill-without-limit": Check(
         _ERROR,
-        "A drill works on the axis under constant surface speed.",
-        "A drill, centre drill, reamer or tap cuts under G96 with no limit in force: the spindle runs at its "
-        "highest speed.",
+        "A drill works at the axis under constant surface speed.",
+        (
+            "A drill, center drill, reamer or tap cuts under G96 without an active speed limit, "
+            "so the spindle runs at its maximum speed."
+        ),
         "Program the speed of a drill in rpm.",
         (TOOL,),
     ),
     "cut-standing": Check(
         _ERROR,
-        "A tool is fed into the part while neither tool nor spindle turns.",
-        "A drill, reamer, mill, turning tool or parting blade meets more than .001 in of material while no "
-        "live tool is on and the spindle, which has turned before, is stopped or held as C. Not where the "
-        "machine file has no M code for a live tool.",
-        "Start the spindle, or the live tool, before this move.",
+        "A tool feeds into the part while neither the tool nor the spindle turns.",
+        (
+            "A drill, reamer, mill, turning tool or parting blade cuts more than .001 in of "
+            "material while no live tool is on and the spindle is stopped or clamped as the C "
+            "axis after it has turned. Not checked where the machine file has no M code for a "
+            "live tool."
+        ),
+        "Start the spindle or the live tool before this move.",
     ),
     "stock-whips": Check(
         _WARNING,
-        "The spindle turns so fast that the stock may whirl.",
-        "More than half of the first critical speed of what sticks out, as a bar of brass held at one end.",
-        "Lower S, limit the speed under G96, let the part stick out less, or support it.",
+        "The spindle turns so fast that the stock may whip.",
+        (
+            "The speed is more than half the first critical speed of the protruding stock, "
+            "calculated as a brass bar clamped at one end."
+        ),
+        "Lower S, limit the speed under G96, reduce the overhang of the part, or support it.",
     ),
     "larger-than-stock": Check(
         _ERROR,
-        "The part is larger than its stock: a contour is cut in the air outside the bar.",
-        "A feed along Z beside the stock, .1 in and longer, stays .08 in and more outside of it.",
-        "Check the stock, and X as a radius or a diameter.",
+        "The part is larger than its stock: a contour is cut in air outside the bar.",
+        "A feed of .1 in or more along Z next to the stock stays at least .08 in outside it.",
+        "Check the stock, and whether X is a radius or a diameter.",
         (STOCK,),
     ),
     "cuts-air": Check(
         _WARNING,
-        "A feed goes on where there is no metal.",
-        "One stays more than .08 in from all metal for 5 s and .2 in, or several in a row for 20 s.",
-        "Look for a lost minus or decimal point; move there by a rapid.",
+        "A tool feeds through air without cutting.",
+        (
+            "A feed stays more than .08 in from any material for 5 s and .2 in, or several feeds "
+            "in a row do so for 20 s."
+        ),
+        "Look for a missing minus sign or decimal point; use a rapid to move through air.",
     ),
     "unmade-cut": Check(
         _ERROR,
-        "A cutting move leads away from the part, and nothing is cut where the program seems to mean it.",
-        "A feed leads away from the part, or out before its face; feeds between two rapids, or those of a "
-        "live tool, come near no metal; a rapid goes in and out beside the part with nothing cut; a tool "
-        "that comes to the part is never fed; a drill is fed into a hole that is there already.",
-        "Look for a lost minus (Z.5 for Z-.5) or a lost decimal point (X4 for X.4).",
+        (
+            "A cutting move feeds away from the part, and nothing is cut where the program seems "
+            "to intend a cut."
+        ),
+        (
+            "A feed moves away from the part, or out in front of its face; the feeds between two "
+            "rapids, or those of a live tool, never come near material; a rapid moves in and out "
+            "alongside the part and nothing is cut; a tool that reaches the part never feeds; a "
+            "drill feeds into an existing hole."
+        ),
+        "Look for a missing minus sign (Z.5 for Z-.5) or a missing decimal point (X4 for X.4).",
     ),
     "part-off-unsupported": Check(
         _WARNING,
-        "What is parted off is long and held by nothing.",
-        "It is longer than five times its diameter.",
-        "Support it, or part it off in two steps.",
+        "The parted-off piece is long and unsupported.",
+        "The parted-off piece is longer than five times its diameter.",
+        "Support the part, or part it off in two steps.",
     ),
     "through-part": Check(
         _ERROR,
         "The tool retracts through the part.",
-        "A rapid right behind a cut takes off metal at a smaller radius than the cut.",
-        "Go out along X before Z, or in a bore along Z before X.",
+        "A rapid directly after a cut removes material at a smaller radius than the cut.",
+        "Retract along X before Z; in a bore, along Z before X.",
     ),
     "rubs-surface": Check(
         _WARNING,
         "The tool rubs along the finished surface.",
-        "A described turning tool returns along Z by a rapid, .1 in and more, on the radius it has turned.",
+        (
+            "A turning tool with a defined shape returns in rapid along Z, by .1 in or more, at "
+            "the radius it has turned."
+        ),
         "Move X away from the part before Z.",
     ),
     "drill-too-deep": Check(
         _ERROR,
-        "A drill goes deeper than its flutes are long.",
-        "The hole is deeper than the cutting length of the drill; without a length the proof says so.",
-        "Use a longer drill, or peck and check the length that was entered.",
+        "A drill goes deeper than its flute length.",
+        (
+            "The hole is deeper than the cutting length of the drill; if no length is defined, "
+            "the proof reports that."
+        ),
+        "Use a longer drill, or peck and check the entered flute length.",
     ),
     "drill-off-axis": Check(
         _ERROR,
-        "A drill, reamer or tap cuts beside the spindle axis.",
-        "It takes off material more than .004 in off the axis while the spindle turns.",
+        "A drill, reamer or tap is not on the spindle axis when it cuts.",
+        "The tool removes material more than .004 in from the axis while the spindle turns.",
         "Move to X0 before drilling, and check the X offset of the tool.",
         (TOOL,),
     ),
     "past-stock": Check(
         _ERROR,
-        "A tool is fed beyond the far end of the stock.",
-        "A cut ends more than .1 in, and a drill more than .1 in and its diameter, beyond the stated stock.",
+        "A tool feeds past the far end of the stock.",
+        (
+            "A cut ends more than .1 in (a drill: .1 in plus its diameter) beyond the end of the "
+            "specified stock."
+        ),
         "Check Z, the length of the stock and how far it sticks out of the chuck.",
         (STOCK,),
     ),
     "no-bore": Check(
         _ERROR,
         "A boring tool enters solid material.",
-        "A tool that works in a bore is fed .04 in and more into material that has no bore yet.",
+        "An internal tool feeds .04 in or more into material that has no bore yet.",
         "Drill the bore first, or check the bore of the stock.",
         (STOCK, KIND),
     ),
     "tap-no-hole": Check(
         _ERROR,
-        "A tap cuts more than its thread: it has no hole, or goes beyond the bottom of the hole.",
-        "It takes off more than its pitch in r.",
-        "Drill the hole for the tap, deep enough for its chamfer.",
+        "A tap cuts more than its thread because it has no hole or goes past the bottom of the hole.",
+        "The tap cuts deeper than its pitch, measured on the radius.",
+        "Drill the tap hole, deep enough for the chamfer of the tap.",
         (STOCK, TOOL, HOLES),
     ),
     "wrong-spindle-direction": Check(
         _ERROR,
-        "The spindle turns against the cutting edge.",
-        "M04 with a right-hand drill, reamer or tap, M03 with a left-hand one; M04 with a turning or boring "
-        "tool in front of the axis that is mounted upright; or one edge is made to cut both ways.",
-        "Reverse the spindle, or correct the hand in the shape of the tool.",
+        "The spindle turns in the wrong direction for the cutting edge.",
+        (
+            "M04 is used with a right-hand drill, reamer or tap, or M03 with a left-hand one; "
+            "M04 is used with an upright turning or boring tool in front of the axis; or one "
+            "edge cuts in both spindle directions."
+        ),
+        "Reverse the spindle, or correct the hand in the tool shape.",
     ),
     "wrong-side": Check(
         _WARNING,
-        "An insert cuts with its back.",
-        "Fed backwards over .02 in and two nose radii deep, or into a wall that is steeper than its back.",
-        "Use a tool of the other hand, a slimmer insert, or cut from the other side.",
+        "An insert cuts with its trailing edge.",
+        (
+            "The insert feeds backward more than .02 in and two nose radii deep, or into a wall "
+            "steeper than its trailing edge."
+        ),
+        "Use a tool of the opposite hand or a slimmer insert, or cut from the other side.",
     ),
     "arc-loop": Check(
         _ERROR,
-        "An insert is fed around a loop through the part.",
-        "An arc through more than 200° meets material; not of a round insert.",
-        "Check the direction of the arc, and the signs of its center.",
+        "An insert feeds in a loop through the part.",
+        "An arc of more than 200° cuts material. Not checked for a round insert.",
+        "Check the direction of the arc and the signs of its center.",
     ),
     "hollow-at-edge": Check(
         _WARNING,
-        "An arc hollows out the front edge of the part, where an edge is usually rounded.",
-        "A quarter circle, radius up to .118 in, begins along Z at the face and ends away from the axis.",
-        "Check the direction of the arc: the other one rounds the edge.",
+        "An arc cuts a hollow into the front edge of the part, where an edge is usually rounded.",
+        (
+            "A quarter circle with a radius of up to .118 in starts along Z at the face and ends "
+            "away from the axis."
+        ),
+        "Check the direction of the arc; the opposite direction rounds the edge.",
     ),
     "over-axis": Check(
         _ERROR,
-        "An outside tool cuts beyond the axis.",
-        "Behind the face it cuts more than .06 in beyond the axis, where it is not mounted, or .004 in on a "
-        "cut along Z.",
-        "Look at the sign of X, and for a lost decimal point (X-03 for X-.03).",
+        "An external tool cuts past the spindle axis.",
+        (
+            "Between the face and the chuck, the tool cuts more than .06 in past the axis (.004 "
+            "in when cutting along Z), on the side opposite to where it is mounted."
+        ),
+        "Check the sign of X, and look for a missing decimal point (X-03 for X-.03).",
     ),
     "past-part-off": Check(
         _ERROR,
-        "The bar is cut far behind where the part is parted off.",
-        "A feed along Z ends more than .5 in, and more than the part is long, behind the deepest part-off.",
-        "Look for a lost decimal point (Z-3 for Z-.3).",
+        "The bar is cut far past the part-off.",
+        (
+            "A feed along Z ends on the bar side of the deepest part-off, by more than .5 in and "
+            "more than the part length."
+        ),
+        "Look for a missing decimal point (Z-3 for Z-.3).",
     ),
     "contour-past-part-off": Check(
         _WARNING,
-        "An arc of the contour is not on the part.",
-        "An insert cuts an arc more than .008 in on the bar's side of the deepest part-off.",
-        "Check the Z of the part-off: the part would lack what is behind it.",
+        "An arc of the contour is not on the finished part.",
+        "An insert cuts an arc more than .008 in past the deepest part-off, on the bar side.",
+        "Check the Z of the part-off; the part would be missing everything past it.",
     ),
     "part-off-left": Check(
         _WARNING,
-        "A parting tool stops just before the axis.",
-        "It comes nearer than .04 in to the axis, not to it, and nothing falls off.",
-        "Go on to X0 or a little beyond: look for a lost minus.",
+        "A parting tool stops just short of the spindle axis.",
+        "The tool comes within .04 in of the axis without reaching it, and no part falls off.",
+        "Feed to X0 or slightly past it; look for a missing minus sign.",
     ),
     "depth-of-cut": Check(
         _WARNING,
-        "One pass is deeper than usual for its insert.",
-        "With a stated stock, the mean depth: over .5 of the cutting edge of a C or S insert, .4 of W, .3 of "
-        "T and D, .2 of V (Widia's limits for medium geometries, nose radius left off; CNMG432 where no "
-        "insert is stated). The material is not known: soft metal may allow more.",
-        "Take it off in several passes: look for a lost or exchanged digit in X.",
+        "One pass is deeper than usual for the insert.",
+        (
+            "With a stated stock, the mean depth: over .5 of the cutting edge of a C or S "
+            "insert, .4 of W, .3 of T and D, .2 of V (Widia's limits for medium geometries, "
+            "without the nose radius; CNMG432 where no insert is stated). The material is not "
+            "known; a soft material may allow more."
+        ),
+        "Use several passes; look for a missing or wrong digit in X.",
     ),
     "depth-breaks-tool": Check(
         _ERROR,
-        "One pass is deeper than its insert or its boring bar can take.",
-        "With a stated stock and a spindle that turns, the mean depth: over 2/3 of the cutting edge of a "
-        "stated C or S insert, half of W, T and D, a quarter of V, .4 of a round one, or over half the "
-        "diameter of a boring bar.",
-        "Take it off in several passes: look for a lost or exchanged digit in X.",
+        "One pass is deeper than the insert or the boring bar can cut.",
+        (
+            "With a stated stock and a turning spindle, the mean depth: over 2/3 of the cutting "
+            "edge of a stated C or S insert, half of W, T and D, a quarter of V, .4 of a round "
+            "insert, or over half the diameter of a boring bar."
+        ),
+        "Use several passes; look for a missing or wrong digit in X.",
     ),
     "blade-turns": Check(
         _ERROR,
         "A parting or grooving blade turns along Z.",
-        "Further than it is wide, and deeper than .01 in (parting) or .8 of its width (grooving: Ingersoll).",
-        "Check the tool number; widen a groove by plunges side by side.",
+        (
+            "The blade turns farther than its width, and deeper than .01 in (parting) or .8 of "
+            "its width (grooving, per Ingersoll)."
+        ),
+        "Check the tool number; widen a groove with adjacent plunges.",
     ),
     "chip-load": Check(
         _WARNING,
-        "The feed per revolution is larger than the edge can cut.",
-        "Over .8 of the nose radius, .12 of the width of a groover, .04 of the diameter of a drill, .1 of a "
-        "reamer.",
-        "Lower F, or look for a lost decimal point (F.03 for F.003).",
+        "The feed per revolution is too high for the cutting edge.",
+        (
+            "The feed is over .8 of the nose radius, .12 of the width of a grooving tool, or .04 "
+            "of the diameter of a drill (.1 of a reamer)."
+        ),
+        "Lower F, or look for a missing decimal point (F.03 for F.003).",
     ),
     "feed-breaks-tool": Check(
         _ERROR,
-        "The feed per revolution is far over what the edge can cut.",
-        "An insert: more than twice its nose radius, and more than .006 in. A drill, a reamer or a blade: "
-        "more than five times the limit of chip-load.",
-        "Lower F: look for a lost decimal point, or for millimeters in a program in inches.",
+        "The feed per revolution is far too high for the cutting edge.",
+        (
+            "Insert: more than twice its nose radius, and more than .006 in. Drill, reamer or "
+            "blade: more than five times the chip-load limit."
+        ),
+        "Lower F; look for a missing decimal point, or for millimeters in an inch program.",
     ),
     "thread-run-up": Check(
         _WARNING,
-        "A thread begins before the slide has the speed of its lead, or ends while it brakes.",
-        "The metal begins nearer to the start of the pass than v²/2a of the slide; or the pass stops in "
-        "metal and v²/2a is more than a lead.",
-        "Start farther away, lower S, end in a groove, or pull out while the slide moves along Z.",
+        (
+            "A thread starts before the Z axis has reached the speed for its lead, or ends while "
+            "the axis decelerates."
+        ),
+        (
+            "The distance from the start of the pass to the material is less than v²/2a of the Z "
+            "axis, or the pass stops in material and v²/2a is more than one lead."
+        ),
+        "Start farther away, lower S, end in a groove, or pull out while the tool moves along Z.",
     ),
     "thread-in-air": Check(
         _WARNING,
         "The first passes of a thread cut nothing.",
-        "With a stated stock, three passes and more stay outside the metal.",
-        "Begin at the diameter of the first pass: check X where the thread starts.",
+        "With specified stock, three or more passes stay outside the material.",
+        "Start at the diameter of the first pass; check X at the start of the thread.",
     ),
     "thread-cuts-nothing": Check(
         _ERROR,
-        "A thread is cut beside the part.",
-        "With a stated stock, no pass of one lead between the same two places in Z meets any material.",
+        "A thread pass does not touch the part.",
+        "With a stated stock, no pass of one lead over the same Z range cuts any material.",
         "Check X and Z of the thread, and whether X is a diameter.",
     ),
     "thread-form": Check(
         _WARNING,
-        "A thread does not fit its lead.",
-        "It is deeper than a sharp V of the lead.",
-        "Check K, X of the last pass, and the X where it starts.",
+        "A thread is too deep for its lead.",
+        "The thread is deeper than a sharp V thread of the same lead.",
+        "Check K, the X of the last pass and the X where the thread starts.",
     ),
     "thread-pitch": Check(
         _ERROR,
-        "A thread is not cut by the pitch of its insert.",
-        "The lead is not a multiple of the pitch that the shape of the tool states.",
-        "Check K and the insert. Leave the pitch of a partial-profile insert out of its shape.",
+        "The lead of a thread does not match the pitch of its insert.",
+        "The lead is not a multiple of the pitch in the tool shape.",
+        ("Check K and the insert. For a partial-profile insert, leave the pitch out of the tool shape."),
         (TOOL,),
     ),
     "tap-pitch": Check(
         _ERROR,
-        "A tap is not fed by its pitch.",
-        "The feed of a turn is off by more than .08 of the pitch that its shape or its comment gives.",
+        "The feed of a tap does not match its pitch.",
+        (
+            "The feed per revolution differs from the pitch in the tool shape or comment by more "
+            "than .08 of the pitch."
+        ),
         "Write F as the pitch: 1 divided by the threads per inch.",
         (TOOL,),
     ),
     "tap-reversal": Check(
         _ERROR,
-        "A tap is drawn out of its thread and not turned out.",
-        "It leaves by a rapid, with the spindle stopped or not reversed, by another feed, or the spindle "
-        "needs more than .5 in to stand. Not asked of a holder that reverses by itself, as its comment says.",
-        "Reverse the spindle at the bottom and feed out by the pitch.",
+        "A tap is pulled out of its thread instead of being turned out.",
+        (
+            "The tap leaves in rapid, with the spindle stopped or not reversed, or at a "
+            "different feed, or the spindle needs more than .5 in to stop. Not checked if the "
+            "comment says that the holder reverses automatically."
+        ),
+        "Reverse the spindle at the bottom of the hole, and feed out at the pitch.",
         (TOOL,),
     ),
 }
@@ -322,58 +399,72 @@ CHECKS: Mapping[str, Check] = {
 PROGRAM_CHECKS: Mapping[str, Check] = {
     "no-tool": Check(
         _ERROR,
-        "A cut with no tool in force.",
-        "A move that cuts before the first T or after T0; a warning where the program names no tool at all.",
-        "Write T with the tool's number before it.",
+        "A move cuts with no tool active.",
+        "A move cuts before the first T or after T0; a warning if the program never calls a tool.",
+        "Write T and the tool number before this move.",
     ),
     "collet-open": Check(
         _ERROR,
-        "A cut with the collet open.",
-        "Metal is cut behind M13; a warning where a feed does not lead away as a bar is pulled, or the next "
-        "cycle would begin with an open collet.",
+        "A move cuts with the collet open.",
+        (
+            "A move cuts after M13; a warning if a feed does not move away as in a bar pull, or "
+            "if the next cycle would start with the collet open."
+        ),
         "Close the collet with M12.",
     ),
     "live-tool-off": Check(
         _ERROR,
-        "A live tool stands while it mills.",
-        "A move of plane switching with no live tool on; a warning with the spindle held as C.",
-        "Switch it on by the M code that the machine file gives.",
+        "A move mills while the live tool is off.",
+        ("A move in plane switching with no live tool running; a warning when the spindle is locked as C."),
+        "Turn on the live tool with its M code from the machine file.",
     ),
     "no-speed-limit": Check(
         _WARNING,
-        "Constant surface speed without a limit.",
-        "A cut under G96 without G77 asks for more than the spindle's highest speed, as at the axis.",
-        "Write G77S with the highest speed for this chuck and bar after G96.",
+        "Constant surface speed has no speed limit.",
+        (
+            "A cut under G96 without G77 requires more than the maximum spindle speed, for "
+            "example at the axis."
+        ),
+        "Write G77Sn after G96, where n is the maximum rpm for this chuck and bar.",
     ),
     "surface-speed": Check(
         _ERROR,
-        "An rpm where a surface speed is meant.",
-        "S under G96 is over 1000 m/min (3280 ft/min), and asks for twice the spindle's speed.",
-        "Correct S, or write G97 for rpm.",
+        "S is an rpm value where a surface speed is expected.",
+        (
+            "S under G96 is over 1000 m/min (3280 ft/min) and requires more than twice the "
+            "maximum spindle speed."
+        ),
+        "Correct S, or write G97 if S is in rpm.",
     ),
     "spindle-off": Check(
         _WARNING,
-        "A cut with the spindle stopped.",
-        "A feed by time after M05, with no live tool on; an error with a feed per turn, G33 or G96.",
-        "Start it with M03 or M04.",
+        "A move cuts with the spindle stopped.",
+        (
+            "A feed per minute after M05 with no live tool running; an error with feed per "
+            "revolution, G33 or G96."
+        ),
+        "Start the spindle with M03 or M04.",
     ),
     "start-place": Check(
         _WARNING,
         "The first move is incremental.",
-        "G91 before any move to a place: it begins where the slides stand.",
-        "Begin with X and Z under G90.",
+        ("G91 comes before any absolute move, so the first move starts from the current axis position."),
+        "Start with a move to X and Z under G90.",
     ),
     "no-input": Check(
         _ERROR,
-        "The machine has no such input.",
-        "M91 to M97 ask for one that the machine file does not name.",
-        "Correct the number, or name it under [io.in].",
+        "The program uses an input that the machine does not have.",
+        "M91 to M97 use an input that the machine file does not define.",
+        "Correct the number, or define the input under [io.in].",
     ),
     "unreached-branch": Check(
         _WARNING,
-        "Lines that no way through the program has reached.",
-        "Calls by inputs, block delete and loops are followed both ways, as far as the proof goes.",
-        "Look at the call, or prove again with the inputs that lead there.",
+        "No proved path reaches some lines of the program.",
+        (
+            "The proof follows both branches of input-dependent calls, block delete and loops, "
+            "up to its limits."
+        ),
+        "Check the call, or prove again with the inputs that lead to the unreached lines.",
     ),
 }
 """What is found without the stock: beside tool, collet, spindle, inputs and ways through the program."""

@@ -104,7 +104,7 @@ class PartFindings:
         cuts, struck = _executed(move, cutter, part)
         met = _together(move, cuts)
         if struck:
-            text = f"The holder of {edge_name(tool)} runs into metal, {_depth(struck, move)}."
+            text = f"The holder of {edge_name(tool)} collides with material, {_depth(struck, move)}."
             if move.quick:
                 self._add("holder-into-stock", move, text)
             else:
@@ -116,7 +116,10 @@ class PartFindings:
             self._add(
                 "neighbour-tool",
                 move,
-                f"{edge_name(other)} beside {edge_name(tool)} on the plate runs into the stock.",
+                (
+                    f"{edge_name(other)}, next to {edge_name(tool)} on the gang plate, collides with the "
+                    "stock."
+                ),
             )
         if move.quick:
             self._rapid(move, met, certain=inside)
@@ -152,7 +155,7 @@ class PartFindings:
             return
         if met := _reached(self._chuck, move, cutter):
             self.into_clamping["into-chuck", move.line] = met
-            text = f"{edge_name(tool)} runs into the chuck, {_depth(met, move)}."
+            text = f"{edge_name(tool)} collides with the chuck, {_depth(met, move)}."
             certain = self._chuck is not None and self._chuck.contains(move.points, RAPID)
             self._add("into-chuck", move, text, certain=certain)
         elif _reached(self._chuck, _deeper_in_z(move, _TOUCHES), cutter):
@@ -162,14 +165,18 @@ class PartFindings:
         if met := _reached(self._tailstock, move, cutter):
             self.into_clamping["into-tailstock", move.line] = met
             self._add(
-                "into-tailstock", move, f"{edge_name(tool)} runs into the tailstock, {_depth(met, move)}."
+                "into-tailstock",
+                move,
+                (f"{edge_name(tool)} collides with the tailstock, {_depth(met, move)}."),
             )
         highest = self.clamping.max_rpm
         if highest and abs(move.rpm) > highest:
-            text = f"The spindle turns at {abs(move.rpm):.0f} rpm; the chuck may turn at {highest:.0f}."
+            text = (
+                f"The spindle turns at {abs(move.rpm):.0f} rpm; the chuck allows at most {highest:.0f} rpm."
+            )
             self._add("spindle-overspeed", move, text)
         if self._whirls and abs(move.rpm) > _SAFE * self._whirls:
-            text = f"The stock sticks out so far that it whirls at {self._whirls:.0f} rpm; it turns at"
+            text = f"The stock sticks out so far that it whips at {self._whirls:.0f} rpm; it turns at"
             self._add("stock-whips", move, f"{text} {abs(move.rpm):.0f}.")
 
     def _rapid(self, move: TipMove, met: Cut, *, certain: bool) -> None:
@@ -179,13 +186,13 @@ class PartFindings:
         deep, fed = _depth(met, move), move.kind is not Kind.RAPID
         behind_cut = self._before is not None and not self._before.quick
         if behind_cut and fed:
-            text = f"A feed as fast as a rapid leaves a cut through the part, {deep}."
+            text = f"A feed as fast as a rapid retracts from a cut through the part, {deep}."
         elif behind_cut:
-            text = f"A rapid leaves a cut through the part, {deep}."
+            text = f"A rapid retracts from a cut through the part, {deep}."
         elif fed:
-            text = f"A feed as fast as a rapid goes into metal, {deep}."
+            text = f"A feed as fast as a rapid runs into material, {deep}."
         else:
-            text = f"A rapid goes into metal, {deep}."
+            text = f"A rapid runs into material, {deep}."
         self._add("through-part" if behind_cut else "rapid-into-stock", move, text, certain=certain)
 
     def _rubs(self, move: TipMove, met: Cut, cutter: Cutter, part: TurnedPart, tool: int) -> None:
@@ -200,7 +207,11 @@ class PartFindings:
             return
         deeper = r0 - math.copysign(RAPID, r0)
         if cutter.meets(part, (z0, deeper), (z1, deeper)).width > _LONG:
-            self._add("rubs-surface", move, f"{edge_name(tool)} returns by a rapid along what it has turned.")
+            self._add(
+                "rubs-surface",
+                move,
+                (f"{edge_name(tool)} returns in rapid along the surface it has just turned."),
+            )
 
     def pause(self) -> None:
         """The program waits, or switches something."""
@@ -214,18 +225,20 @@ class PartFindings:
                 self._add(check, at, text)
         for one, other in self.neighbours.in_one_place if self.neighbours is not None else ():
             words = (
-                f"{edge_name(one)} and {edge_name(other)} have the same offset; "
-                "neither is checked as a neighbour of the other."
+                f"{edge_name(one)} and {edge_name(other)} have the same offset, so neither is checked "
+                "for collision while the other cuts."
             )
             self._tell("tools-in-one-place", 0, 0, words)
         for line, n, tool in self._airs.never_milled:
             self._tell(
-                "unmade-cut", line, n, f"The live tool {edge_name(tool)} is fed, and never meets metal."
+                "unmade-cut", line, n, (f"Live tool {edge_name(tool)} feeds but never touches material.")
             )
 
     def standing(self, line: int, n: int, tool: int) -> None:
         """A tool has met material while nothing turns."""
-        self._tell("cut-standing", line, n, f"{edge_name(tool)} cuts while neither tool nor spindle turns.")
+        self._tell(
+            "cut-standing", line, n, (f"{edge_name(tool)} cuts while neither the tool nor the spindle turns.")
+        )
 
     def nothing_cut(self, line: int, n: int, text: str) -> None:
         """What the moves of a tool, or of a whole program, should have cut."""
@@ -237,14 +250,20 @@ class PartFindings:
         """A live tool has moved; ``touches`` tells whether it has gone along metal where it has met none."""
         if not move.axial and not _drills_across(move) and self._over_axis(move):
             self._tell(
-                "through-part", move.line, move.n, f"{edge_name(tool)} goes over the axis, through the part."
+                "through-part",
+                move.line,
+                move.n,
+                (f"{edge_name(tool)} crosses the spindle axis, through the part."),
             )
         if not move.quick:
             self._airs.mill(move.line, move.n, tool, lambda: bool(met) or touches())
         if move.quick and met.volume > RAPID * math.pi * (shape.diameter / 2.0) ** 2:
             where = f"Z {modal.length_text(met.front)} … {modal.length_text(met.back)}"
             self._tell(
-                "rapid-into-stock", move.line, move.n, f"A rapid of a live tool goes into metal at {where}."
+                "rapid-into-stock",
+                move.line,
+                move.n,
+                (f"A rapid of a live tool runs into material at {where}."),
             )
 
     def _over_axis(self, move: MillMove) -> bool:
@@ -267,7 +286,9 @@ class PartFindings:
             tool, move = self._left
             thick = move.modal.length_text(2.0 * abs(move.points[-1][1]))
             self._add(
-                "part-off-left", move, f"{edge_name(tool)} parts off down to {thick}, and nothing falls."
+                "part-off-left",
+                move,
+                (f"{edge_name(tool)} parts off down to {thick}, and no part falls off."),
             )
         self._left = None
 
@@ -279,7 +300,7 @@ class PartFindings:
         length = piece.outside[0][0] - piece.outside[-1][0]
         thick = 2.0 * max(r for _, r in piece.outside)
         if thick and length > _SLENDER * thick:
-            text = f"What is parted off is {length / thick:.0f} times as long as it is thick."
+            text = f"The parted-off piece is {length / thick:.0f} times as long as its diameter."
             self._add("part-off-unsupported", move, text)
 
     def _add(self, check: str, move: TipMove, text: str, *, certain: bool = False) -> None:
@@ -352,4 +373,4 @@ def _together(move: TipMove, cuts: Iterable[Cut]) -> Cut:
 
 def _depth(met: Cut, move: TipMove) -> str:
     deep = move.modal.length_text(met.depth)
-    return f"{deep} deep at Z {move.modal.length_text(met.front)} … {move.modal.length_text(met.back)}"
+    return f"{deep} deep from Z {move.modal.length_text(met.front)} to Z {move.modal.length_text(met.back)}"

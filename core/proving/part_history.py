@@ -67,8 +67,8 @@ class PartGathering:
         """Why there is no part, in a sentence; empty where it can be made."""
         if self._blocks <= MOST_MOVES:
             return ""
-        way = "'turndesk prove --stock' makes that of a longer one"
-        return f"{self._blocks} blocks: the desk makes the part of up to {MOST_MOVES}; {way}"
+        way = "use 'turndesk prove --stock' for longer programs"
+        return f"{self._blocks} blocks: TurnDesk computes the part only up to {MOST_MOVES} blocks; {way}"
 
     def moves(self) -> PartMoves | None:
         """What was gathered; None: nothing, or too much."""

@@ -257,7 +257,7 @@ class PartMaking:
         stock = self._stock
         assumed = [each.words for _, each in sorted(self._tools.assumed.items())]
         if stock is None and self._tools.uses:
-            assumed.append("no stock is assumed: the feeds cut before Z0, where no face of it can lie")
+            assumed.append("no stock assumed: the feeds cut in front of Z0, where the stock face cannot be")
         for line, n, text in self._tools.nothing_cut(stock):
             self.findings.nothing_cut(line, n, text)
         volume = TurnedPart(stock).volume if stock is not None else 0.0
@@ -279,6 +279,6 @@ class PartMaking:
 
 def _cut_standing(lines: Mapping[int, int]) -> list[str]:
     return [
-        f"what {edge_name(tool)} cuts from line {line} on while the spindle stands"
+        f"cuts of {edge_name(tool)} with the spindle stopped, from line {line} on"
         for tool, line in lines.items()
     ]

@@ -101,7 +101,7 @@ def _without_weaker(report: Iterable[Diagnostic], found: Iterable[Diagnostic]) -
 
 
 def _not_made(moves: int) -> PartReport:
-    words = f"{moves} moves: a part of so many is made where its stock is said"
+    words = f"{moves} moves: too many to compute the part without specified stock"
     return PartReport(None, 0.0, 0.0, 0.0, None, False, (), (words,), ())
 
 

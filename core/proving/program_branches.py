@@ -122,8 +122,8 @@ def uncalled(reading: ReadProgram) -> Iterator[Diagnostic]:
     reached = _reached(program)
     for number, at in sorted(program.structure.subroutines.items()):
         if number not in reached:
-            text = f"Subroutine {number} is called from nowhere, so it was not proved."
-            hint = f"Call it with M98P{number}, or take it out."
+            text = f"Subroutine {number} is never called, so it was not proved."
+            hint = f"Call the subroutine with M98P{number}, or remove it."
             yield Diagnostic(
                 at + 1, 0, Severity.NOTE, "unreached-branch", text, hint, check="unreached-branch"
             )
@@ -352,11 +352,15 @@ class Branches:
             return
         last = [branch_pass.choices[-1] for _, branch_pass in self._waiting]
         never = {choice.words for choice in last if (choice.line, choice.on) not in self._covered}
-        text = f"{left} ways through the program by its inputs were not proved; {self._proved} were."
+        text = (
+            f"{left} paths through the program, depending on its inputs, were not proved; "
+            f"{self._proved} were."
+        )
         if never:
             text = f"{text} Never proved: {', '.join(sorted(never)[:5])}."
         hint = (
-            "Fewer conditional calls in loops, or subroutines that end where they begin, make all provable."
+            "To prove all paths, use fewer conditional calls in loops, or end each subroutine at "
+            "its start position."
         )
         line = min((choice.line for choice in last), default=0)
         yield Diagnostic(line, 0, Severity.WARNING, "unreached-branch", text, hint, check="unreached-branch")

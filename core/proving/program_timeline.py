@@ -330,7 +330,7 @@ class Timeline:
 
     def _refuse(self, why: str) -> None:
         line = self._moving.first.line if self._moving.first else 0
-        hint = "change the move that the message names"
+        hint = "change the move named in the message"
         self._refused.append(Diagnostic(line, 0, Severity.ERROR, "impossible-motion", why, hint))
         self._source, self._back = iter(()), None
 

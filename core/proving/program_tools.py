@@ -146,18 +146,22 @@ class ProgramTools:
         cutting = [use for n, use in self.uses.items() if self.shape(n) is not None]
         for use in cutting:
             if (move := use.never_fed) is not None:
-                yield move.line, move.n, f"{edge_name(use.number)} is never fed: all its moves are rapids."
+                yield move.line, move.n, (f"{edge_name(use.number)} never feeds: all its moves are rapids.")
         if stock is not None:
             return
         if (lost := self.fed_away) is not None:
-            yield lost.line, lost.n, "This feed leads away from the part, and no other cuts behind Z0."
+            yield (
+                lost.line,
+                lost.n,
+                ("This feed moves away from the part, and no other feed cuts past Z0 toward the spindle."),
+            )
         for use in cutting:
             fed = [block for block in use.live_blocks if not block.rapid and block.feed < QUICK]
             if fed:
                 yield (
                     fed[0].line,
                     fed[0].n,
-                    f"The live tool {edge_name(use.number)} is fed, and never comes behind Z0.",
+                    (f"Live tool {edge_name(use.number)} feeds, but never past Z0 toward the spindle."),
                 )
 
     @property

@@ -292,7 +292,7 @@ def _as_assumed(found: Diagnostic) -> Diagnostic:
     """What holds only for a place that a proof assumes is a warning; a run that comes to it stops there."""
     if not found.assumed or found.severity is not Severity.ERROR:
         return found
-    hint = f"{found.hint} Assumed: {', '.join(found.assumed)}; nothing behind it is proved."
+    hint = f"{found.hint} Assumed: {', '.join(found.assumed)}; nothing after this point is proved."
     return replace(found, severity=Severity.WARNING, hint=hint)
 
 

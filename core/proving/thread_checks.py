@@ -108,7 +108,9 @@ class ThreadChecks:
         if uncut is not None and self.stock_given:
             tool, move = uncut
             yield Found(
-                "thread-cuts-nothing", f"No pass of this thread of {edge_name(tool)} meets the part.", move
+                "thread-cuts-nothing",
+                (f"No pass of this thread by {edge_name(tool)} touches the part."),
+                move,
             )
 
     # --- threads that are cut
@@ -131,29 +133,31 @@ class ThreadChecks:
         self._idle = 0 if met or deep else self._idle + 1
         yield from self._counted(move, tool, cuts=bool(met) or deep > 0.0)
         if self._idle == _IDLE and self.stock_given:
-            yield Found("thread-in-air", f"The first {_IDLE} passes of this thread meet no metal.")
+            yield Found("thread-in-air", (f"The first {_IDLE} passes of this thread touch no material."))
         if shape is not None and shape.kind is ToolKind.THREADING and shape.point:
             angle = shape.point
         sharp = move.per_rev / 2.0 / math.tan(math.radians(angle / 2.0))
         if deep > _DEEPER * sharp:
             yield Found(
                 "thread-form",
-                f"The thread is {text(deep)} deep; with a lead of {text(move.per_rev)} and {angle:g}° its "
-                f"flanks meet at {text(sharp)}.",
+                (
+                    f"The thread is {text(deep)} deep, but with a lead of {text(move.per_rev)} and "
+                    f"{angle:g}° its flanks meet at a depth of {text(sharp)}."
+                ),
             )
         if shape is not None and shape.pitch and shape.kind is ToolKind.THREADING:
             starts = move.per_rev / shape.pitch
             if abs(starts - round(starts)) > 0.02 * max(starts, 1.0) or not 0 < round(starts) <= _MOST_STARTS:
                 words = (
-                    f"{edge_name(tool)} cuts a pitch of {text(shape.pitch)}; "
-                    f"the lead is {text(move.per_rev)}."
+                    f"The insert of {edge_name(tool)} has a pitch of {text(shape.pitch)}, but the lead is "
+                    f"{text(move.per_rev)}."
                 )
                 yield Found("thread-pitch", words)
         before, needed = self._run_up(move, met), self._braking(move)
         if met and before < needed:
             words = (
-                f"The metal begins {text(max(before, 0.0))} behind the start of the pass; the slide needs "
-                f"{text(needed)} to reach the speed of the lead."
+                f"The material begins {text(max(before, 0.0))} after the start of the pass, but the Z "
+                f"axis needs {text(needed)} to reach the speed for the lead."
             )
             yield Found("thread-run-up", words)
 
@@ -194,8 +198,11 @@ class ThreadChecks:
             text = cut.modal.length_text
             yield Found(
                 "thread-run-up",
-                f"The slide needs {text(needed)} to stop from the speed of the lead, and metal ends "
-                f"{text(max(left, 0.0))} before the end of the pass: its last turns have another lead.",
+                (
+                    f"The Z axis needs {text(needed)} to stop from the speed for the lead, but the "
+                    f"material ends {text(max(left, 0.0))} before the end of the pass: the last turns of "
+                    "the thread have a different lead."
+                ),
                 cut,
             )
 
@@ -211,7 +218,10 @@ class ThreadChecks:
             pitch = shape.pitch or _per_turn(move)
             if pitch and met.depth > _SOLID * pitch:
                 text = move.modal.length_text
-                words = f"{edge_name(tool)} takes off {text(met.depth)} in r; its pitch is {text(pitch)}."
+                words = (
+                    f"{edge_name(tool)} cuts {text(met.depth)} deep on the radius, but its pitch is "
+                    f"{text(pitch)}."
+                )
                 yield Found("tap-no-hole", words)
         elif along > _NEAR and self._fed is not None and self._inside(move):
             fed = self._fed
@@ -229,20 +239,24 @@ class ThreadChecks:
         if feed and shape.pitch and abs(feed - shape.pitch) > _OTHER_PITCH * shape.pitch:
             text = move.modal.length_text
             yield Found(
-                "tap-pitch", f"{edge_name(tool)} feeds {text(feed)} a turn; its pitch is {text(shape.pitch)}."
+                "tap-pitch",
+                (
+                    f"{edge_name(tool)} feeds {text(feed)} per revolution, but its pitch is "
+                    f"{text(shape.pitch)}."
+                ),
             )
 
     def _out(self, move: TipMove, fed: TipMove, tool: int) -> Iterator[Found]:
         if not fed.rpm:
             return  # a spindle that is switched by hand
         if move.quick:
-            yield Found("tap-reversal", f"{edge_name(tool)} is torn out of its thread by a rapid.")
+            yield Found("tap-reversal", f"{edge_name(tool)} is pulled out of its thread in rapid.")
         elif fed.rpm * move.rpm > 0.0:
-            words = "while the spindle turns on as it went in"
-            yield Found("tap-reversal", f"{edge_name(tool)} is drawn out of its thread {words}.")
+            words = "while the spindle still turns in the tapping direction"
+            yield Found("tap-reversal", f"{edge_name(tool)} is pulled out of its thread {words}.")
         elif not move.rpm:
             yield Found(
-                "tap-reversal", f"{edge_name(tool)} is drawn out of its thread with the spindle stopped."
+                "tap-reversal", (f"{edge_name(tool)} is pulled out of its thread with the spindle stopped.")
             )
         else:
             yield from self._reversed(move, fed, tool)
@@ -250,15 +264,15 @@ class ThreadChecks:
     def _reversed(self, move: TipMove, fed: TipMove, tool: int) -> Iterator[Found]:
         text, into, out = move.modal.length_text, _per_turn(fed), _per_turn(move)
         if abs(out - into) > _OTHER_FEED * into:
-            words = f"{edge_name(tool)} goes in by {text(into)} a turn and out by {text(out)}."
+            words = f"{edge_name(tool)} feeds in at {text(into)} per revolution, but out at {text(out)}."
             yield Found("tap-reversal", words)
         slows = self.drives.spindle_decel
         if not slows:
             return
         turns = abs(fed.rpm) / 60.0 * (_LATENCY + abs(fed.rpm) / slows / 2.0)
         if turns * into > _GIVES:
-            words = f"{edge_name(tool)} goes on for {text(turns * into)} until the spindle stands"
-            yield Found("tap-reversal", f"{words}: more than a holder gives.")
+            words = f"{edge_name(tool)} travels another {text(turns * into)} until the spindle stops"
+            yield Found("tap-reversal", f"{words}: more than a tap holder compensates.")
 
 
 def _of_one_thread(before: TipMove, move: TipMove) -> bool:

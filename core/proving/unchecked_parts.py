@@ -31,15 +31,15 @@ def _phrases(
 ) -> Iterator[str]:
     used = list(used)
     if without := [n for n in used if n and n not in shapes]:
-        yield f"holder, edge length and hand of {_names(without)}, which nobody has described"
+        yield f"{_names(without)}: holder, edge length and hand not defined"
     if short := [n for n in used if n in shapes and shapes[n].kind in _DEEP and not shapes[n].length]:
-        yield f"how deep {_names(short)} can go, without a flute length"
+        yield f"{_names(short)}: maximum depth (no flute length defined)"
     if clamping is None or not clamping.diameter:
-        yield "chuck, jaws and whirling stock, without a diameter under [clamping] and a stick-out"
+        yield "chuck, jaws and stock whip (needs a diameter under [clamping] and a stick-out)"
     if clamping is None or not clamping.max_rpm:
-        yield "the speed that the chuck may turn at, without max_rpm under [clamping]"
+        yield "maximum chuck speed (no max_rpm under [clamping])"
     if gang and (beside := sorted(gang.keys() - shapes.keys())):
-        yield f"{_names(beside)} as neighbours on the plate, without a shape"
+        yield (f"{_names(beside)}: collisions as neighboring tools on the gang plate (no shape defined)")
 
 
 def _names(numbers: Iterable[int]) -> str:

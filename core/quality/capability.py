@@ -44,11 +44,15 @@ def capability(
     Raises QualityError for fewer than 10 values, no limit at all, or limits the wrong way round.
     """
     if lower is None and upper is None:
-        raise QualityError("a capability needs a tolerance; enter one for this feature", "no-tolerance")
+        raise QualityError("process capability needs a tolerance; enter one for this feature", "no-tolerance")
     if lower is not None and upper is not None and lower >= upper:
-        raise QualityError("the lower limit is not below the upper; correct the tolerance", "limits-reversed")
+        raise QualityError(
+            "the lower limit must be below the upper limit; correct the tolerance", "limits-reversed"
+        )
     if len(values) < LEAST:
-        raise QualityError(f"{len(values)} of {LEAST} readings that a Cpk needs at least", "too-few-readings")
+        raise QualityError(
+            f"{len(values)} readings are not enough; a Cpk needs at least {LEAST}", "too-few-readings"
+        )
     within = charts_of(values, size).within
     mean, overall = float(np.mean(values)), float(np.std(values, ddof=1))  # of all values, n − 1
     cp, cpk = _indices(mean, within, lower, upper)

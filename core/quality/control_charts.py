@@ -82,7 +82,8 @@ def charts_of(values: Sequence[float], size: int) -> ChartPair:
         return individuals(values)
     if size not in SAMPLE_SIZES:
         raise QualityError(
-            f"a sample of {size} has no control chart; take 1 to {SAMPLE_SIZES[-1]} parts", "sample-size"
+            f"no control chart exists for a sample of {size}; use 1 to {SAMPLE_SIZES[-1]} parts",
+            "sample-size",
         )
     whole = len(values) // size * size
     return average_and_range(np.asarray(values[:whole], dtype=np.float64).reshape(-1, size))
@@ -93,12 +94,12 @@ def average_and_range(samples: npt.ArrayLike) -> ChartPair:
     table = np.asarray(samples, dtype=np.float64)
     if table.ndim != 2 or table.shape[1] not in SAMPLE_SIZES:
         raise QualityError(
-            "samples of an X-bar chart have 2 to 10 values, all the same number", "sample-size"
+            "the samples of an X-bar chart must all have the same size, 2 to 10 values", "sample-size"
         )
     _demand_finite(table)
     if len(table) < 2:
         raise QualityError(
-            f"an X-bar chart needs 2 whole samples of {table.shape[1]}; measure more parts",
+            f"an X-bar chart needs 2 complete samples of {table.shape[1]}; measure more parts",
             "too-few-readings",
         )
     factors = CONSTANTS[table.shape[1]]
@@ -117,7 +118,7 @@ def individuals(values: Sequence[float]) -> ChartPair:
     points = np.asarray(values, dtype=np.float64)
     _demand_finite(points)
     if len(points) < 2:
-        raise QualityError("a chart of individuals needs 2 values; measure more parts", "too-few-readings")
+        raise QualityError("an individuals chart needs 2 values; measure more parts", "too-few-readings")
     factors = CONSTANTS[2]
     moving = np.abs(np.diff(points))
     mean, spread = float(points.mean()), float(moving.mean())
@@ -132,4 +133,4 @@ def individuals(values: Sequence[float]) -> ChartPair:
 
 def _demand_finite(values: FloatArray) -> None:
     if not np.isfinite(values).all():
-        raise QualityError("a value is no number; take the reading out", "not-a-number")
+        raise QualityError("a value is not a number; delete the reading", "not-a-number")

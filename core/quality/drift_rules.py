@@ -66,12 +66,24 @@ def _so_many(zones: Zones, count: int, beyond: float) -> bool:
 
 RULES: dict[int, tuple[str, Callable[[Zones], Iterator[int]]]] = {
     1: ("beyond a control limit", _beyond),
-    2: ("nine in a row on one side of the centre line", lambda z: _runs(z, 9, _one_side)),
-    3: ("six in a row rising or falling", lambda z: _runs(z, 6, _steady)),
-    4: ("fourteen in a row going up and down by turns", lambda z: _runs(z, 14, _alternating)),
-    5: ("two of three beyond two sigma on one side", lambda z: _runs(z, 3, lambda s: _so_many(s, 2, 2.0))),
-    6: ("four of five beyond one sigma on one side", lambda z: _runs(z, 5, lambda s: _so_many(s, 4, 1.0))),
-    7: ("fifteen in a row within one sigma", lambda z: _runs(z, 15, lambda s: bool((np.abs(s) < 1.0).all()))),
-    8: ("eight in a row beyond one sigma", lambda z: _runs(z, 8, lambda s: bool((np.abs(s) > 1.0).all()))),
+    2: ("nine points in a row on one side of the center line", lambda z: _runs(z, 9, _one_side)),
+    3: ("six points in a row rising or falling", lambda z: _runs(z, 6, _steady)),
+    4: ("fourteen points in a row alternating up and down", lambda z: _runs(z, 14, _alternating)),
+    5: (
+        "two of three points beyond two sigma on one side",
+        lambda z: _runs(z, 3, lambda s: _so_many(s, 2, 2.0)),
+    ),
+    6: (
+        "four of five points beyond one sigma on one side",
+        lambda z: _runs(z, 5, lambda s: _so_many(s, 4, 1.0)),
+    ),
+    7: (
+        "fifteen points in a row within one sigma",
+        lambda z: _runs(z, 15, lambda s: bool((np.abs(s) < 1.0).all())),
+    ),
+    8: (
+        "eight points in a row beyond one sigma",
+        lambda z: _runs(z, 8, lambda s: bool((np.abs(s) > 1.0).all())),
+    ),
 }
 """By Nelson's number: in words, and the points at which it is broken. 1, 5, 6 are Western Electric's too."""

@@ -83,31 +83,36 @@ class Feature:
 def check_feature(feature: Feature) -> None:
     """Raises QualityError, with what to enter, for a feature that nobody could measure or correct."""
     if not feature.name.strip() or len(feature.name) > NAME_LONGEST or not feature.name.isprintable():
-        raise QualityError(f"a feature has a name of 1 to {NAME_LONGEST} characters", "invalid-name")
+        raise QualityError(f"a feature name must have 1 to {NAME_LONGEST} characters", "invalid-name")
     if not all(map(math.isfinite, (feature.nominal, feature.low, feature.high))):
-        raise QualityError(f"{feature.name}: nominal and limits are numbers", "not-a-number")
+        raise QualityError(f"{feature.name}: nominal and limits must be numbers", "not-a-number")
     if not 0.0 < feature.nominal <= SIZE_MOST:
         raise QualityError(
-            f"{feature.name}: the nominal is more than 0 and at most {SIZE_MOST:g} mm", "nominal"
+            f"{feature.name}: the nominal must be more than 0 and at most {SIZE_MOST:g} mm", "nominal"
         )
     if feature.low >= feature.high:
         raise QualityError(
-            f"{feature.name}: the lower deviation is not below the upper; correct one of them",
+            (f"{feature.name}: the lower deviation must be below the upper deviation; correct one of them"),
             "limits-reversed",
         )
     if feature.limits[0] <= 0.0:
         raise QualityError(
-            f"{feature.name}: its lower limit is nothing or less; correct the deviation", "lower-limit"
+            f"{feature.name}: the lower limit is 0 or less; correct the deviation", "lower-limit"
         )
     if feature.number not in NUMBERS:
         raise QualityError(
-            f"{feature.name}: offsets are 1 to {NUMBERS[-1]}, not {feature.number}", "offset-number"
+            f"{feature.name}: the offset number must be 1 to {NUMBERS[-1]}, not {feature.number}",
+            "offset-number",
         )
     if feature.grows not in {1, -1}:
         raise QualityError(
-            f"{feature.name}: it grows with its correction or shrinks with it, +1 or -1", "direction"
+            (f"{feature.name}: the direction must be +1 (grows with its correction) or -1 (shrinks with it)"),
+            "direction",
         )
     if not 0 <= feature.every <= EVERY_MOST:
-        raise QualityError(f"{feature.name}: measured every 1 to {EVERY_MOST} parts, 0: no plan", "interval")
+        raise QualityError(
+            (f"{feature.name}: the measuring interval must be 1 to {EVERY_MOST} parts, or 0 for no plan"),
+            "interval",
+        )
     if feature.sample != 1 and feature.sample not in SAMPLE_SIZES:
-        raise QualityError(f"{feature.name}: a sample has 1 to {SAMPLE_SIZES[-1]} parts", "sample-size")
+        raise QualityError(f"{feature.name}: a sample must have 1 to {SAMPLE_SIZES[-1]} parts", "sample-size")

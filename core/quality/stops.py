@@ -32,7 +32,8 @@ def pareto(stops: Iterable[Stop]) -> tuple[ReasonShare, ...]:
     for stop in stops:
         if stop.seconds < 0.0:
             raise QualityError(
-                f"{stop.reason}: a stop that ends before it begins; the clock was set back", "clock-set-back"
+                f"{stop.reason}: a stop ends before it starts because the clock was set back",
+                "clock-set-back",
             )
         count, seconds = counts.get(stop.reason, (0, 0.0))
         counts[stop.reason] = count + 1, seconds + stop.seconds

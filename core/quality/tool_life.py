@@ -78,12 +78,17 @@ def check_life(life: ToolLife) -> None:
     """Raises QualityError for limits that nobody can mean."""
     if not 0 <= life.limit_parts <= PARTS_MOST:
         raise QualityError(
-            f"T{life.number}: a life is 0 to {PARTS_MOST} parts, 0: no limit", "limit-in-parts"
+            f"T{life.number}: tool life must be 0 to {PARTS_MOST} parts; 0 means no limit", "limit-in-parts"
         )
     if not (math.isfinite(life.limit_seconds) and 0.0 <= life.limit_seconds <= SECONDS_MOST):
         raise QualityError(
-            f"T{life.number}: a life is 0 to {SECONDS_MOST / 60.0:g} cutting minutes, 0: no limit",
+            (
+                f"T{life.number}: tool life must be 0 to {SECONDS_MOST / 60.0:g} cutting minutes; 0 "
+                "means no limit"
+            ),
             "limit-in-minutes",
         )
     if not 0.0 < life.warn <= 1.0:
-        raise QualityError(f"T{life.number}: it is warned at 1 to 100 % of the life", "warning-share")
+        raise QualityError(
+            (f"T{life.number}: the warning must be set at 1 to 100 % of the tool life"), "warning-share"
+        )

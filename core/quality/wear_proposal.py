@@ -54,26 +54,38 @@ def propose(
     """
     rule = rule or CorrectionRule()
     if not readings:
-        raise QualityError(f"{feature.name}: no part was measured since the last correction", "no-readings")
+        raise QualityError(
+            f"{feature.name}: no part has been measured since the last correction", "no-readings"
+        )
     newest = np.asarray(readings[-rule.last :], dtype=np.float64)
     if not np.isfinite(newest).all():
-        raise QualityError(f"{feature.name}: a reading is no number; take it out", "not-a-number")
+        raise QualityError(f"{feature.name}: a reading is not a number; delete it", "not-a-number")
     if float(np.abs(newest - feature.middle).max()) > _FAR * feature.width:
         raise QualityError(
-            f"{feature.name}: a reading is more than {_FAR:g} tolerances off; that is no wear, measure again",
+            (
+                f"{feature.name}: a reading is off by more than {_FAR:g} tolerances, too much for "
+                "wear; measure again"
+            ),
             "reading-too-far",
         )
     mean = float(newest.mean())
     deviation = mean - feature.middle
     if abs(deviation) <= rule.dead * feature.width + 1e-12:
-        return _nothing(feature, len(newest), mean, "within the dead band: nothing to correct")
+        return _nothing(
+            feature, len(newest), mean, ("the deviation is within the dead band: nothing to correct")
+        )
     change = -feature.grows * _whole_steps(rule.step * deviation, resolution)
     if change == 0.0:
-        return _nothing(feature, len(newest), mean, "less than the smallest step: nothing to correct")
+        return _nothing(
+            feature,
+            len(newest),
+            mean,
+            ("the correction would be less than the smallest step: nothing to correct"),
+        )
     at_offset = change / 2.0 if feature.axis == "x" else change
     if abs(at_offset) > WEAR_MOST:
         raise QualityError(
-            f"{feature.name}: a correction of {change:.4f} mm is no wear; touch the tool off",
+            (f"{feature.name}: a correction of {change:.4f} mm is too large for wear; touch the tool off"),
             "correction-too-large",
         )
     return Proposal(feature, len(newest), mean, change, at_offset, mean + feature.grows * change, "")

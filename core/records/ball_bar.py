@@ -65,20 +65,21 @@ def ball_bar(demand: FloatArray, actual: FloatArray) -> BallBar:
     """Setpoints (m, 2) and measured positions (m, 2) of one arc. Raises AnalysisError."""
     if len(demand) < LEAST or len(actual) != len(demand):
         raise AnalysisError(
-            f"a ball-bar plot needs {LEAST} samples of an arc; run it slower or larger", "too-few-samples"
+            f"a ball-bar plot needs {LEAST} samples of an arc; run the arc slower or larger",
+            "too-few-samples",
         )
     if not (np.isfinite(demand).all() and np.isfinite(actual).all()):
         raise AnalysisError(
-            "the driver does not tell where the slides are; there is no arc to see", "no-positions"
+            "the driver does not report the axis positions, so no arc can be shown", "no-positions"
         )
     u0, v0, radius = circle_of(demand)
     away = demand - (u0, v0)
     if np.abs(np.hypot(*away.T) - radius).max() > _ROUND or not np.isfinite(radius):
-        raise AnalysisError("there is no arc in this time: choose the line of an arc", "no-arc")
+        raise AnalysisError("no arc in this time range: choose the line of an arc", "no-arc")
     turned = np.unwrap(np.arctan2(away[:, 1], away[:, 0]))
     if abs(np.ptp(turned)) < math.radians(LEAST_ANGLE):
         raise AnalysisError(
-            f"the arc is shorter than {LEAST_ANGLE:g} degrees: too short for a ball-bar plot", "arc-too-short"
+            f"the arc is shorter than {LEAST_ANGLE:g} degrees, too short for a ball-bar plot", "arc-too-short"
         )
     seen = actual - (u0, v0)
     theta = np.arctan2(seen[:, 1], seen[:, 0])

@@ -15,8 +15,8 @@ from core.records.record_errors import AnalysisError
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 LEAST = 10  # samples that a path needs
-UNTOLD = "the driver does not tell where the slides are; there is no path to compare"
-STOOD = "nothing moved in this time; record while a program runs"
+UNTOLD = "the driver does not report the axis positions, so no path can be compared"
+STOOD = "no axis moved in this time range; record while a program runs"
 _SAME = 1e-9  # mm: points nearer than that are one
 
 
@@ -94,11 +94,11 @@ def path_error(
 def _check(programmed: FloatArray, lines: IntArray, measured: FloatArray, due: IntArray) -> None:
     if len(measured) < LEAST or len(programmed) < 2:
         raise AnalysisError(
-            f"a path error needs {LEAST} samples of a path at least; record while a program runs",
+            (f"a path error plot needs at least {LEAST} samples of a path; record while a program runs"),
             "too-few-samples",
         )
     if len(lines) != len(programmed) or len(due) != len(measured):
-        raise AnalysisError("points and lines of the path do not belong together", "lengths-differ")
+        raise AnalysisError("path points and line numbers do not match", "lengths-differ")
     if not (np.isfinite(programmed).all() and np.isfinite(measured).all()):
         raise AnalysisError(UNTOLD, "no-positions")
     if not (np.ptp(programmed, axis=0) > _SAME).any():
@@ -114,7 +114,7 @@ def of_samples(
     """
     if len(demand) < LEAST:
         raise AnalysisError(
-            f"a path error needs {LEAST} samples of a path at least; record while a program runs",
+            (f"a path error plot needs at least {LEAST} samples of a path; record while a program runs"),
             "too-few-samples",
         )
     if not (np.isfinite(demand).all() and np.isfinite(actual).all()):

@@ -94,15 +94,15 @@ def _is_unicode(text: str) -> bool:
 def checked_record(record: Record) -> Record:
     """Return a record from a file, with infinite values as unknown. Raises UnsoundError."""
     if not 0.0 <= record.started <= _LATEST:
-        raise UnsoundError(f"it began {record.started:g} s after 1970")
+        raise UnsoundError(f"it started {record.started:g} s after 1970")
     if not 0.0 <= record.rate < np.inf:
-        raise UnsoundError(f"it has {record.rate:g} samples a second")
+        raise UnsoundError(f"it has {record.rate:g} samples per second")
     if not all(text.isprintable() for channel in record.channels for text in channel[:2]):
-        raise UnsoundError("the name of a channel is no text")
+        raise UnsoundError("a channel name is not text")
     if not all(_is_unicode(text) for each in record.about.items() for text in each):
-        raise UnsoundError("what it says of itself is no text")
+        raise UnsoundError("its description is not text")
     if not np.isfinite(record.times).all() or (np.diff(record.times) < 0.0).any():
-        raise UnsoundError("its times do not rise")
+        raise UnsoundError("its times do not increase")
     known = {
         name: np.where(np.isinf(column), np.nan, column) if np.isinf(column).any() else column
         for name, column in record.columns.items()

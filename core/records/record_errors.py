@@ -36,10 +36,10 @@ def why(path: Path, error: OSError) -> RecordError:
     """The same as a sentence."""
     if isinstance(error, TooLargeError):
         return RecordError(
-            f"{path}: {error.strerror}, so it is no record of the scope; look at its name", "too-large"
+            f"{path}: {error.strerror}, so it is not a scope record; check the file name", "too-large"
         )
     if error.errno in _FULL:
-        return RecordError(f"{path}: the disk is full; make room on it", "disk-full")
+        return RecordError(f"{path}: the disk is full; free space on it", "disk-full")
     if isinstance(error, FileNotFoundError):
-        return RecordError(f"{path}: there is no such file", "not-found")
+        return RecordError(f"{path}: file not found", "not-found")
     return RecordError(f"{path}: {error.strerror or error}", "unusable")

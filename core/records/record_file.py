@@ -76,9 +76,12 @@ def _read(path: Path, data: io.BytesIO) -> Record:
     if not zipfile.is_zipfile(data):
         part = data.getvalue()[:2] == b"PK"
         raise RecordError(
-            f"{path} is cut off; it cannot be read"
+            f"{path} is incomplete and cannot be read"
             if part
-            else f"{path} is no record of the scope; name one of the folder records, {ENDING} or .ring",
+            else (
+                f"{path} is not a scope record; choose a file in the records folder that ends in "
+                f"{ENDING} or .ring"
+            ),
             "cut-off" if part else "not-a-record",
         )
     _check_size(data)
@@ -87,13 +90,13 @@ def _read(path: Path, data: io.BytesIO) -> Record:
         warnings.simplefilter("error")  # numpy warns of arrays that it did not write itself
         if _ABOUT not in archive.files:
             raise RecordError(
-                f"{path} is no record of the scope; name a file that ends in {ENDING}", "not-a-record"
+                f"{path} is not a scope record; choose a file that ends in {ENDING}", "not-a-record"
             )
         told = json.loads(archive[_ABOUT].tobytes())
         version = told["version"]
         if version > _VERSION:
             raise RecordError(
-                f"{path} was written by a newer TurnDesk (version {version}); open it with that one",
+                (f"{path} was written by a newer TurnDesk (version {version}); open it with that version"),
                 "newer-version",
             )
         return _record(told, lambda name: archive[name])
@@ -104,25 +107,25 @@ def _check_size(data: io.BytesIO) -> None:
     with zipfile.ZipFile(data) as archive:
         size = sum(each.file_size for each in archive.infolist())
     if size > MOST_BYTES:
-        raise UnsoundError(f"unpacked, it has more than {MOST_BYTES // MB} MB")
+        raise UnsoundError(f"it has more than {MOST_BYTES // MB} MB when unpacked")
 
 
 def _record(told: dict[str, object], column: Callable[[str], object]) -> Record:
     """Raises UnsoundError for what does not fit together, and ValueError, KeyError, TypeError."""
     channels, about = told["channels"], told["about"]
     if not isinstance(channels, list) or not isinstance(about, dict):
-        raise UnsoundError("its description is of another kind")
+        raise UnsoundError("its description has another format")
     made = tuple(Channel(str(name), str(unit), bool(logic)) for name, unit, logic in channels)
     times = np.asarray(column("times"), dtype=np.float64)
     columns: dict[str, FloatArray] = {}
     for i, channel in enumerate(made):
         found = np.asarray(column(f"column{i}"), dtype=np.float64)
         if found.shape != times.shape or times.ndim != 1:
-            raise UnsoundError(f"{channel.name} has {found.size} samples of {times.size}")
+            raise UnsoundError(f"{channel.name} has {found.size} of {times.size} samples")
         columns[channel.name] = np.where(found == _UNKNOWN, np.nan, found) if channel.logic else found
     started, rate = told["started"], told["rate"]
     if not isinstance(started, int | float) or not isinstance(rate, int | float):
-        raise UnsoundError("it does not say when it began")
+        raise UnsoundError("it has no start time")
     words = {str(name): str(text) for name, text in about.items()}
     return Record(made, times, columns, float(started), float(rate), words)
 

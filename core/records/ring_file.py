@@ -200,15 +200,16 @@ def _read_ring(path: Path, begin: float, end: float) -> Record:
 def _described(path: Path, start: bytes, read: Callable[[int], bytes]) -> _Found:
     if len(start) < _START.size or not start.startswith(_MAGIC):
         raise RecordError(
-            f"{path} is no record of TurnDesk; name a file of the folder records", "not-a-record"
+            f"{path} is not a TurnDesk record; choose a file in the records folder", "not-a-record"
         )
     _, version, length, head = _START.unpack(start)
     if version > _VERSION:
         raise RecordError(
-            f"{path} was written by a newer TurnDesk (version {version}); open it with that", "newer-version"
+            (f"{path} was written by a newer TurnDesk (version {version}); open it with that version"),
+            "newer-version",
         )
     if not _START.size + length + 2 * _COUNTS.size <= head <= MOST_BYTES:
-        raise UnsoundError("its head has no such length")
+        raise UnsoundError("its header has an invalid length")
     try:
         told = json.loads(read(length))
         recorded = Recorded(
@@ -224,7 +225,7 @@ def _described(path: Path, start: bytes, read: Callable[[int], bytes]) -> _Found
         samples, ticks = (int(room) for room in told["rooms"])
     except (ValueError, LookupError, TypeError, AttributeError, ArithmeticError, RecursionError) as error:
         raise RecordError(
-            f"{path} is damaged at its beginning; there is nothing to read in it", "damaged"
+            f"{path} is damaged at the start, so nothing in it can be read", "damaged"
         ) from error
     return _Found(recorded, (samples, ticks), head)
 
@@ -238,7 +239,7 @@ def _rings(path: Path, found: _Found, read: Callable[[int], bytes]) -> Iterator[
         data = read(size)
         if len(data) != size:
             raise RecordError(
-                f"{path} is cut off: {len(data)} of {size} bytes are there; it cannot be read", "cut-off"
+                f"{path} is incomplete, with {len(data)} of {size} bytes; it cannot be read", "cut-off"
             )
         yield np.frombuffer(data, dtype="<f8").reshape(room, width + 1)
 

@@ -45,7 +45,10 @@ def step_response(times: FloatArray, request: FloatArray, response: FloatArray, 
     way = float(request[-1] - request[0])
     if abs(way) <= 2.0 * band:
         raise AnalysisError(
-            f"a step of {abs(way):.4f} is no larger than its window of {band:.4f}: take more",
+            (
+                f"a step of {abs(way):.4f} is too small for the in-position window of {band:.4f}: use "
+                "a larger step"
+            ),
             "step-too-small",
         )
     asked = (request - request[0]) / way
@@ -88,11 +91,11 @@ def sine_response(
     _check(times, request, response)
     waves = math.floor((times[-1] - times[0]) * frequency + 1e-6)
     if waves < 1:
-        raise AnalysisError("the record holds less than one wave of the sine; take more", "too-short")
+        raise AnalysisError("the record is shorter than one sine period; record for longer", "too-short")
     cut = times <= times[0] + waves / frequency
     asked, got = (_wave(times[cut], each[cut], frequency) for each in (request, response))
     if abs(asked) < 1e-9:
-        raise AnalysisError(f"the request has no sine of {frequency:g} Hz", "no-sine")
+        raise AnalysisError(f"the commanded motion contains no sine wave of {frequency:g} Hz", "no-sine")
     ratio = got / asked
     return SineResponse(frequency, abs(ratio), -math.degrees(np.angle(ratio)), abs(asked - got))
 
@@ -127,7 +130,9 @@ def ramp_response(times: FloatArray, request: FloatArray, response: FloatArray) 
     top = float(speeds[np.argmax(np.abs(speeds))])
     even = np.flatnonzero(np.abs(speeds - top) <= 0.01 * abs(top))
     if abs(top) < 1e-9 or len(even) < LEAST:
-        raise AnalysisError("the request has no ramp of even speed; take a longer one", "no-ramp")
+        raise AnalysisError(
+            "the commanded motion has no ramp at constant speed; use a longer ramp", "no-ramp"
+        )
     late = even[len(even) // 2 :]
     error = float(np.mean(request[late] - response[late]))
     sign = math.copysign(1.0, top)
@@ -137,11 +142,12 @@ def ramp_response(times: FloatArray, request: FloatArray, response: FloatArray) 
 def _check(times: FloatArray, request: FloatArray, response: FloatArray) -> None:
     if len(times) < LEAST:
         raise AnalysisError(
-            f"a response needs {LEAST} samples at least; this driver gives too few", "too-few-samples"
+            (f"a response measurement needs at least {LEAST} samples, but this driver supplies too few"),
+            "too-few-samples",
         )
     if not (np.isfinite(request).all() and np.isfinite(response).all()):
         raise AnalysisError(
-            "the driver does not tell where the slide is; there is no response to see", "no-positions"
+            "the driver does not report the axis position, so no response can be shown", "no-positions"
         )
 
 

@@ -82,15 +82,16 @@ def find_thread(
     """
     if len(turns) < 100:
         raise AnalysisError(
-            "the passes of a thread need 100 samples at least; record while one is cut", "too-few-samples"
+            "an analysis of thread passes needs at least 100 samples; record while a thread is cut",
+            "too-few-samples",
         )
     if not np.isfinite(turns).all():
         raise AnalysisError(
-            "the spindle has no encoder that is counted: its angle is not in the record", "no-encoder"
+            "no spindle encoder count is available, so the spindle angle is not in the record", "no-encoder"
         )
     if abs(turns[-1] - turns[0]) < LEAST_TURNS:
         raise AnalysisError(
-            "the spindle does not turn in this time; record while a thread is cut", "spindle-stopped"
+            "the spindle does not turn in this time range; record while a thread is cut", "spindle-stopped"
         )
     runs = _runs(turns, along)
     if lead is not None:
@@ -99,7 +100,7 @@ def find_thread(
         runs = _alike(runs)
     if not runs:
         raise AnalysisError(
-            "there is no pass of a thread in this time: nothing goes two turns evenly", "no-pass"
+            "no thread pass in this time range: no axis moves evenly for two spindle revolutions", "no-pass"
         )
     if lead is None:
         slopes = [np.polyfit(turns[a : b + 1] - turns[a], along[a : b + 1], 1)[0] for a, b, *_ in runs]

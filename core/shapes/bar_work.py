@@ -33,7 +33,7 @@ def _loop(filled: Filled, _setting: Setting, code: Code) -> None:
 def _checks(_filled: Filled, setting: Setting) -> Iterator[Refusal]:
     if setting.called:
         yield Refusal(
-            "COUNT", "This stands in the loop of another bar: write it before that one, or after it."
+            "COUNT", ("This shape is in the loop of another bar: write it before or after that loop.")
         )
 
 
@@ -59,15 +59,15 @@ def _tail(filled: Filled) -> tuple[str, ...]:
 
 LOOP = Shape(
     "BAR LOOP",
-    "feeds the bar to a stop and makes so many parts: what comes behind it is the part",
+    ("feeds the bar to a stop and repeats for a number of parts: the lines that follow are the part"),
     (
         Field("COUNT", "PARTS", Kind.COUNT, None, most=100_000),
-        Field("LONG", "BAR A PART, CUT INCLUDED", Kind.LENGTH),
-        Field("FEEDS", "THE BAR IS FED", Kind.CHOICE, EACH, (EACH, ONCE)),
-        Field("STOP", "STOP IS TOOL", Kind.TOOL, lambda _v, s: float(next_tool(s)), most=32),
-        Field("STOCK", "LEFT FOR FACING", Kind.LENGTH, size(0.025, 0.6), zero=True),
-        Field("RATE", "FEED OF THE BAR A MINUTE", Kind.RATE, size(50.0, 1200.0)),
-        Field("SUB", "SUBROUTINE OF THE PART", Kind.COUNT, _sub, most=9999),
+        Field("LONG", "BAR PER PART, WITH CUT-OFF", Kind.LENGTH),
+        Field("FEEDS", "FEED THE BAR", Kind.CHOICE, EACH, (EACH, ONCE)),
+        Field("STOP", "TOOL USED AS STOP", Kind.TOOL, lambda _v, s: float(next_tool(s)), most=32),
+        Field("STOCK", "FACING ALLOWANCE", Kind.LENGTH, size(0.025, 0.6), zero=True),
+        Field("RATE", "BAR FEED PER MINUTE", Kind.RATE, size(50.0, 1200.0)),
+        Field("SUB", "PART SUBROUTINE NUMBER", Kind.COUNT, _sub, most=9999),
     ),
     _loop,
     _sketch,
@@ -79,8 +79,8 @@ LOOP = Shape(
 def no_chuck(setting: Setting, word: str) -> Iterator[Refusal]:
     """A machine on which a SINUMERIK program cannot open the chuck; told at this field."""
     if setting.shop.chuck is None:
-        words = "No M code of this machine opens and closes the chuck: bind two to the output collet"
-        yield Refusal(word, f"{words} under [m_codes] of the machine file.")
+        words = "No M code of this machine opens and closes the chuck: assign two to the output collet"
+        yield Refusal(word, f"{words} under [m_codes] in the machine file.")
 
 
 def _sinumerik_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:

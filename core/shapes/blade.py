@@ -32,7 +32,7 @@ def side_of(filled: Filled) -> float:
     return -1.0 if filled.t("SIDE") == REAR else 1.0
 
 
-BLADE_FIELD = Field("WIDE", "WIDTH OF THE BLADE", Kind.LENGTH, _width, marked=True)
+BLADE_FIELD = Field("WIDE", "BLADE WIDTH", Kind.LENGTH, _width, marked=True)
 CORNER_FIELD = Field("CORNER", "CORNER TOUCHED OFF", Kind.CHOICE, _corner, (LEFT, RIGHT))
 
 
@@ -89,7 +89,13 @@ def reach(filled: Filled, setting: Setting, deep: float, word: str) -> Iterator[
         return
     if shape.length and deep > shape.length / setting.mm + 1e-9:
         yield Refusal(
-            word, f"{deep:.4g} deep: {name} reaches {shape.length / setting.mm:.4g}. Take a longer blade."
+            word,
+            (
+                f"Depth {deep:.4g} is more than {name} reaches, {shape.length / setting.mm:.4g}. Use "
+                "a longer blade."
+            ),
         )
     if shape.width and abs(shape.width / setting.mm - wide) > 0.001 / setting.mm * 25.4:
-        yield Refusal("WIDE", f"{name} is {shape.width / setting.mm:.4g} wide by its sheet: type that.")
+        yield Refusal(
+            "WIDE", (f"{name} is {shape.width / setting.mm:.4g} wide in its tool data: enter that width.")
+        )

@@ -58,17 +58,17 @@ def _taper_checks(filled: Filled, _setting: Setting) -> Iterator[Refusal]:
     found = triangle({word: filled.n(word) for word in ("SMALL", "LARGE", "LONG")})
     angle = found.get("ANGLE", 0.0)
     if abs(angle - filled.n("ANGLE")) > 0.01:
-        words = f"These four are no taper: the angle would be {angle:.4g}. Delete one of them."
+        words = f"These four values do not make a taper: the angle would be {angle:.4g}. Clear one of them."
         yield Refusal("ANGLE", words)
     if filled.n("SMALL") < 0.0 or filled.n("LARGE") < 0.0:
-        yield Refusal("SMALL", "The taper goes through the axis: look at angle and length.")
+        yield Refusal("SMALL", "The taper crosses the axis: check the angle and the length.")
 
 
 def _taper_says(filled: Filled, _setting: Setting) -> tuple[str, ...]:
     rise, long = (filled.n("LARGE") - filled.n("SMALL")) / 2.0, filled.n("LONG")
     ratio = f"1 : {plain(long / (2.0 * rise), 4)}" if rise else "none"
     return (
-        f"slope {plain(math.hypot(rise, long), 4)}",
+        f"slant length {plain(math.hypot(rise, long), 4)}",
         f"included angle {plain(2.0 * filled.n('ANGLE'), 4)}°",
         f"taper on the diameter {ratio}",
     )
@@ -87,7 +87,7 @@ def _taper_sketch(_filled: Filled) -> Sketch:
 
 TRIANGLE = Shape(
     "TRIANGLE",
-    "a taper: type any three of both diameters, length and angle",
+    "a taper: enter any three of the two diameters, the length and the angle",
     (
         Field("SMALL", "DIAMETER AT THE FACE", Kind.COORDINATE, _of_triangle("SMALL")),
         Field("LARGE", "DIAMETER AT THE CHUCK", Kind.COORDINATE, _of_triangle("LARGE")),
@@ -154,7 +154,10 @@ def _speed_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
     yield from too_fast(filled, setting)
     rate = filled.n("RPM") * filled.n("FEED")
     if abs(rate - filled.n("RATE")) > 0.01 * max(rate, 1e-6):
-        words = f"{filled.n('RPM'):g} rpm at {filled.n('FEED'):g} a turn are {rate:.4g} a minute: delete one."
+        words = (
+            f"{filled.n('RPM'):g} rpm at {filled.n('FEED'):g} per revolution is {rate:.4g} per "
+            "minute: clear one of the values."
+        )
         yield Refusal("RATE", words)
 
 
@@ -164,7 +167,7 @@ def _speed_says(filled: Filled, setting: Setting) -> tuple[str, ...]:
     unit = "m/min" if setting.metric else "ft/min"
     return (
         f"G94F{plain(filled.n('RATE'), 3)} is the same feed",
-        f"S{filled.n('RPM'):.0f} is {real:.0f} {unit} there",
+        f"S{filled.n('RPM'):.0f} gives {real:.0f} {unit} at this diameter",
         *_depth_says(filled, setting),
     )
 
@@ -175,7 +178,7 @@ def _depth_says(filled: Filled, setting: Setting) -> Iterator[str]:
     if work in {Work.TURN, Work.BORE}:
         now = _of_material(filled.values, setting)
         depth = rough_depth(now, 0.0, filled.n("DIA"), inside=work is Work.BORE)
-        yield f"rough passes {plain(depth, 4)} deep a side"
+        yield f"roughing passes {plain(depth, 4)} deep per side"
 
 
 def _speed_sketch(_filled: Filled) -> Sketch:
@@ -186,15 +189,15 @@ def _speed_sketch(_filled: Filled) -> Sketch:
 
 SPEED = Shape(
     "FEED AND SPEED",
-    "rpm, surface speed, feed a turn and a minute: what is typed gives the rest",
+    ("rpm, surface speed, feed per revolution and per minute: enter some, and the others are calculated"),
     (
         Field("MATERIAL", "MATERIAL", Kind.CHOICE, "STEEL", tuple(MATERIALS)),
         Field("WORK", "WORK", Kind.CHOICE, Work.TURN.upper(), tuple(each.upper() for each in Work)),
         Field("DIA", "DIAMETER", Kind.DIAMETER, lambda _v, s: s.bar or None),
         Field("SURF", "SURFACE SPEED", Kind.SURFACE, _surface),
-        Field("RPM", "SPEED RPM", Kind.RPM, _turns, most=MOST_RPM),
-        Field("FEED", "FEED A TURN", Kind.FEED, _per_turn),
-        Field("RATE", "FEED A MINUTE", Kind.RATE, _per_minute),
+        Field("RPM", "SPINDLE SPEED, RPM", Kind.RPM, _turns, most=MOST_RPM),
+        Field("FEED", "FEED PER REVOLUTION", Kind.FEED, _per_turn),
+        Field("RATE", "FEED PER MINUTE", Kind.RATE, _per_minute),
     ),
     _speed_lines,
     _speed_sketch,
@@ -231,7 +234,10 @@ def _thread_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
     yield from THREAD.checks(filled, setting)
     deep = first_depth(filled)
     if abs(deep - filled.n("FIRST")) > 1e-4:
-        words = f"{filled.n('PASSES'):g} passes begin with {plain(deep, 5)}: delete one of both."
+        words = (
+            f"{filled.n('PASSES'):g} passes need a first pass depth of {plain(deep, 5)}: clear "
+            "one of the two values."
+        )
         yield Refusal("FIRST", words)
 
 
@@ -253,15 +259,15 @@ def _thread_says(filled: Filled, setting: Setting) -> tuple[str, ...]:
     ]
     start = filled.n("CREST") - outwards * 2.0 * first
     return (
-        f"depth {plain(deep, 4)} a side, the first pass {plain(first, 4)}",
+        f"depth {plain(deep, 4)} per side, first pass {plain(first, 4)}",
         f"the tool starts at X {plain(shown * start, 4)}",
-        "X of the passes: " + " ".join(plain(shown * x, 4) for x in at),
+        f"X of each pass: {' '.join(plain(shown * x, 4) for x in at)}",
     )
 
 
 THREADS = Shape(
     "THREAD PASSES",
-    "diameters, depth and passes of a thread by its standard",
+    "diameters, depth and passes of a standard thread",
     (
         *(_own(word) for word in ("SERIES", "SIZE", "SIDE", "CLASS", "PITCH", "CREST", "ROOT")),
         Field(
@@ -271,7 +277,7 @@ THREADS = Shape(
             lambda v, s: _own("LONG").proposed(v, s) or 10.0 * number(v, "PITCH") or None,
         ),
         Field("PASSES", "PASSES", Kind.RATIO, _passes, most=60),
-        Field("FIRST", "DEPTH OF THE FIRST PASS", Kind.LENGTH, _first),
+        Field("FIRST", "DEPTH OF FIRST PASS", Kind.LENGTH, _first),
         _own("INFEED"),
     ),
     _thread_lines,

@@ -94,10 +94,10 @@ def _read_sinumerik(lines: Iterable[str], setting: Setting) -> tuple[Row, ...] |
 def contour_refusals(rows: Sequence[Row]) -> Iterator[Refusal]:
     """What is wrong with a table of points, row by row."""
     if len(rows) < 2:
-        yield Refusal(row_word(len(rows) + 1), "A contour has two points at least: type the next.")
+        yield Refusal(row_word(len(rows) + 1), ("A contour needs at least two points: enter the next point."))
         return
     if rows[0].x is None or rows[0].z is None:
-        yield Refusal(row_word(1), "The first point says where the contour begins: type X and Z.")
+        yield Refusal(row_word(1), "The first point is the start of the contour: enter X and Z.")
         return
     there = points(rows)
     for number, (row, begin, end) in enumerate(zip(rows[1:], there, there[1:], strict=False), 2):
@@ -106,31 +106,41 @@ def contour_refusals(rows: Sequence[Row]) -> Iterator[Refusal]:
         yield from _corner(rows, there, number, row)
     if any(r < -SAME for _, r in there):
         number = next(n for n, (_, r) in enumerate(there, 1) if r < -SAME)
-        yield Refusal(row_word(number), f"Point {number} lies beyond the axis: X is a diameter, 0 or more.")
+        yield Refusal(
+            row_word(number), (f"Point {number} is beyond the axis: X is a diameter and must be 0 or more.")
+        )
 
 
 def _row(row: Row, number: int, begin: Point, end: Point) -> Iterator[Refusal]:
     chord = math.dist(begin, end)
     if chord < SAME:
-        yield Refusal(row_word(number), f"Point {number} is where the one before is: type another X or Z.")
+        yield Refusal(
+            row_word(number), (f"Point {number} is the same as the previous point: enter another X or Z.")
+        )
     elif row.arc and chord > 2.0 * abs(row.arc) + _OFF:
         yield Refusal(
             row_word(number),
-            f"The arc to point {number} spans {chord:.4f}, its radius {abs(row.arc):g} only "
-            f"{2 * abs(row.arc):.4f}: type a larger radius.",
+            (
+                f"The arc to point {number} spans {chord:.4f}, but with radius {abs(row.arc):g} it "
+                f"can span only {2 * abs(row.arc):.4f}: enter a larger radius."
+            ),
         )
 
 
 def _corner(rows: Sequence[Row], there: Sequence[Point], number: int, row: Row) -> Iterator[Refusal]:
     if row.chamfer < 0 or row.radius < 0:
-        yield Refusal(row_word(number), f"The corner of point {number} is less than 0: type its size.")
+        yield Refusal(
+            row_word(number), (f"The corner at point {number} has a size below 0: enter the correct size.")
+        )
     size = row.chamfer or row.radius
     if size <= 0:
         return
     if number == len(rows):
-        yield Refusal(row_word(number), f"The corner of point {number} needs a line behind it: add a point.")
+        yield Refusal(row_word(number), (f"The corner at point {number} needs a line after it: add a point."))
     elif row.arc or rows[number].arc:
-        yield Refusal(row_word(number), f"Point {number} has a corner beside an arc: the control cuts none.")
+        yield Refusal(
+            row_word(number), (f"Point {number} has a corner next to an arc, which the control cannot cut.")
+        )
     else:
         back = _set_back(row, there[number - 2], there[number - 1], there[number])
         room = min(
@@ -139,7 +149,10 @@ def _corner(rows: Sequence[Row], there: Sequence[Point], number: int, row: Row) 
         if back > room + SAME:
             yield Refusal(
                 row_word(number),
-                f"The corner of point {number} takes {back:.4f} of a line of {room:.4f}: make it smaller.",
+                (
+                    f"The corner at point {number} uses {back:.4f} of a line that is {room:.4f} long: "
+                    "make it smaller."
+                ),
             )
 
 

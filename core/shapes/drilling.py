@@ -37,17 +37,29 @@ def _drill(filled: Filled, setting: Setting, code: Code) -> None:
 def _drill_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
     deep, start, peck, across = (filled.n(word) for word in ("DEEP", "START", "PECK", "DIA"))
     if start >= deep:
-        yield Refusal("START", f"The hole begins {start:g} deep and ends at {deep:g}: nothing is drilled.")
+        yield Refusal(
+            "START", (f"The hole starts at a depth of {start:g} and ends at {deep:g}: nothing is drilled.")
+        )
     if peck and peck > deep - start + setting.near:
-        yield Refusal("PECK", f"A peck of {peck:g} is more than the hole: type 0 for none.")
+        yield Refusal("PECK", (f"A peck of {peck:g} is deeper than the hole: enter 0 for no pecking."))
     if not peck and deep - start > _DEEP * across:
-        yield Refusal("PECK", f"{(deep - start) / across:.1f} diameters in one go clog a drill: type a peck.")
+        yield Refusal(
+            "PECK",
+            (
+                f"Drilling {(deep - start) / across:.1f} diameters without pecking clogs the drill: "
+                "enter a peck."
+            ),
+        )
     shape = setting.tool(filled.n("T"))
     name = f"T{filled.n('T'):.0f}"
     yield from too_deep(filled, setting)
     if shape is not None and shape.diameter and abs(shape.diameter / setting.mm - across) > 1e-4:
         yield Refusal(
-            "DIA", f"{name} is a drill of {shape.diameter / setting.mm:.4g} by its sheet: type that."
+            "DIA",
+            (
+                f"{name} is a drill of diameter {shape.diameter / setting.mm:.4g} in its tool data: "
+                "enter that diameter."
+            ),
         )
     yield from too_fast(filled, setting)
     yield from per_rev(filled, setting, "FEED")
@@ -70,12 +82,12 @@ def _drill_sketch(_filled: Filled) -> Sketch:
 
 DRILL = Shape(
     "DRILL",
-    "on the axis, in one go or in pecks",
+    "a hole on the axis, drilled in one pass or with pecking",
     (
         tool_field(ToolKind.DRILL, ToolKind.CENTRE_DRILL),
-        Field("DIA", "DIAMETER OF THE DRILL", Kind.DIAMETER, _across, marked=True),
-        Field("DEEP", "DEPTH OF ITS POINT", Kind.LENGTH),
-        Field("START", "THE HOLE IS THERE TO", Kind.LENGTH, 0.0, zero=True),
+        Field("DIA", "DRILL DIAMETER", Kind.DIAMETER, _across, marked=True),
+        Field("DEEP", "DEPTH AT DRILL POINT", Kind.LENGTH),
+        Field("START", "PREDRILLED DEPTH", Kind.LENGTH, 0.0, zero=True),
         Field("PECK", "PECK", Kind.LENGTH, _peck, zero=True),
         feed_field(Work.DRILL),
         rpm_field(Work.DRILL, around("DIA")),

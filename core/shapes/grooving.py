@@ -123,23 +123,34 @@ def _groove_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
     inside = filled.t("SIDE") == INSIDE
     if wide > long + 1e-9:
         yield Refusal(
-            "LONG", f"The groove of {long:g} is narrower than the blade of {wide:g}: take a narrower one."
+            "LONG",
+            (f"The groove is {long:g} wide, narrower than the blade of {wide:g}: use a narrower blade."),
         )
     if inside and bottom <= top:
-        yield Refusal("BOTTOM", f"A groove in a bore of {top:g} goes outwards: {bottom:g} is not more.")
+        yield Refusal(
+            "BOTTOM",
+            (f"A groove in a bore of {top:g} is cut outward, so bottom diameter {bottom:g} is too small."),
+        )
     if not inside and bottom >= top:
-        yield Refusal("BOTTOM", f"The bottom of {bottom:g} is not less than the diameter of {top:g}.")
+        yield Refusal(
+            "BOTTOM", (f"The bottom diameter of {bottom:g} must be less than the diameter of {top:g}.")
+        )
     yield from reach(filled, setting, abs(top - bottom) / 2.0, "BOTTOM")
     if filled.n("COUNT") > 1 and filled.n("PITCH") < long:
-        words = f"Grooves of {long:g} at a pitch of {filled.n('PITCH'):g} run into each other: type more."
+        words = (
+            f"Grooves of width {long:g} overlap at a pitch of {filled.n('PITCH'):g}: enter a larger pitch."
+        )
         yield Refusal("PITCH", words)
     if filled.n("EDGE") >= abs(top - bottom) / 2.0:
-        yield Refusal("EDGE", "The chamfer is as deep as the groove: type less.")
+        yield Refusal("EDGE", "The chamfer is at least as deep as the groove: enter less.")
     over = filled.n("OVER")
     if inside and over > top:
-        yield Refusal("OVER", f"{over:g} is wider than the bore of {top:g}: nothing is in the way, type 0.")
+        yield Refusal(
+            "OVER",
+            (f"{over:g} is more than the bore diameter of {top:g}, so there is nothing to clear: enter 0."),
+        )
     if not inside and 0.0 < over < top:
-        yield Refusal("OVER", f"{over:g} is less than {top:g}: nothing is in the way, type 0.")
+        yield Refusal("OVER", (f"{over:g} is less than {top:g}, so there is nothing to clear: enter 0."))
     yield from _slant_checks(filled, abs(top - bottom) / 2.0)
     yield from too_fast(filled, setting)
     yield from per_rev(filled, setting, "FEED")
@@ -149,16 +160,18 @@ def _slant_checks(filled: Filled, deep: float) -> Iterator[Refusal]:
     wide, long = filled.n("WIDE"), filled.n("LONG")
     for word in ("FANGLE", "CANGLE"):
         if filled.n(word) < 0.0:
-            yield Refusal(word, "No blade gets behind a wall that leans over the groove: type 0 or more.")
+            yield Refusal(
+                word, ("No blade can reach under a wall that overhangs the groove: enter 0 or more.")
+            )
             return
     if not any(_slants(filled)):
         return
     bottom = long - deep * sum(_slants(filled))
     if bottom < wide - 1e-9:
-        words = f"With these walls the bottom is {bottom:.4g} wide, the blade {wide:g}"
-        yield Refusal("LONG", f"{words}: take a narrower one, or look at the angles.")
+        words = f"With these walls the bottom is {bottom:.4g} wide, but the blade is {wide:g} wide"
+        yield Refusal("LONG", f"{words}: use a narrower blade, or check the angles.")
     if filled.n("EDGE"):
-        yield Refusal("EDGE", "Edges of walls that lean are not chamfered here: type 0.")
+        yield Refusal("EDGE", "Edges of sloped walls cannot be chamfered here: enter 0.")
 
 
 def _groove_sketch(filled: Filled) -> Sketch:
@@ -189,23 +202,23 @@ def _several(values: Values) -> bool:
 
 GROOVE = Shape(
     "GROOVE",
-    "one or several, outside, from behind or in a bore, edges broken, walls square or leaning",
+    ("one or more grooves, outside, from the rear or in a bore, with broken edges, square or sloped walls"),
     (
         tool_field(ToolKind.GROOVING),
         Field("SIDE", "SIDE", Kind.CHOICE, FRONT, (FRONT, REAR, INSIDE)),
         Field("TOP", "DIAMETER", Kind.DIAMETER, bar),
         Field("BOTTOM", "BOTTOM DIAMETER", Kind.DIAMETER),
-        Field("AT", "BEGINS BEHIND Z0", Kind.LENGTH, zero=True),
+        Field("AT", "DISTANCE FROM Z0 TO START", Kind.LENGTH, zero=True),
         BLADE_FIELD,
-        Field("LONG", "WIDTH OF THE GROOVE", Kind.LENGTH, lambda v, _s: number(v, "WIDE") or None),
+        Field("LONG", "GROOVE WIDTH", Kind.LENGTH, lambda v, _s: number(v, "WIDE") or None),
         CORNER_FIELD,
         Field("EDGE", "CHAMFER AT BOTH EDGES", Kind.LENGTH, 0.0, zero=True),
-        Field("COUNT", "HOW MANY", Kind.COUNT, 1.0, most=1000),
+        Field("COUNT", "NUMBER OF GROOVES", Kind.COUNT, 1.0, most=1000),
         Field("PITCH", "PITCH", Kind.LENGTH, None, only=_several),
-        Field("DWELL", "DWELL AT THE BOTTOM", Kind.SECONDS, 0.1, zero=True, most=60),
-        Field("FANGLE", "WALL AT THE FACE LEANS BY", Kind.ANGLE, 0.0, most=80.0, zero=True),
-        Field("CANGLE", "WALL AT THE CHUCK LEANS BY", Kind.ANGLE, 0.0, most=80.0, zero=True),
-        Field("OVER", "DIAMETER TO PASS ON THE WAY", Kind.DIAMETER, 0.0, zero=True),
+        Field("DWELL", "DWELL AT BOTTOM", Kind.SECONDS, 0.1, zero=True, most=60),
+        Field("FANGLE", "SLOPE OF FACE-SIDE WALL", Kind.ANGLE, 0.0, most=80.0, zero=True),
+        Field("CANGLE", "SLOPE OF CHUCK-SIDE WALL", Kind.ANGLE, 0.0, most=80.0, zero=True),
+        Field("OVER", "DIAMETER TO CLEAR", Kind.DIAMETER, 0.0, zero=True),
         feed_field(Work.GROOVE),
         rpm_field(Work.GROOVE, around("TOP")),
     ),
@@ -249,13 +262,19 @@ def _sinumerik_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
     if not _by_cycle(filled.values):
         return
     if filled.n("DN") == 1.0:
-        yield Refusal("DN", "D1 is the corner that cuts: type the D of the other one, or 0 for G1.")
+        yield Refusal("DN", "D1 is the corner that cuts: enter D of the other corner, or 0 for G1.")
     if filled.t("SIDE") == REAR:
-        yield Refusal("SIDE", "CYCLE93 knows no tool at X negative: type 0 for the other corner.")
+        yield Refusal(
+            "SIDE", ("CYCLE93 does not support a tool at negative X: set D of the other corner to 0.")
+        )
     if filled.n("EDGE"):
-        yield Refusal("EDGE", "CYCLE93 breaks no edges here: type 0, or 0 for the other corner.")
+        yield Refusal(
+            "EDGE", ("CYCLE93 cannot break edges here: enter 0, or set D of the other corner to 0.")
+        )
     if any(_slants(filled)):
-        yield Refusal("FANGLE", "CYCLE93 has square walls here: type 0, or 0 for the other corner.")
+        yield Refusal(
+            "FANGLE", ("CYCLE93 cuts only square walls here: enter 0, or set D of the other corner to 0.")
+        )
 
 
 SINUMERIK_GROOVE = replace(
@@ -264,7 +283,7 @@ SINUMERIK_GROOVE = replace(
     checks=_sinumerik_checks,
     fields=(
         *GROOVE.fields,
-        Field("DN", "CYCLE93: D OF THE OTHER CORNER", Kind.OFFSET, 0.0, most=9, zero=True),
+        Field("DN", "CYCLE93: D OF OTHER CORNER", Kind.OFFSET, 0.0, most=9, zero=True),
     ),
 )
 """The same; CYCLE93 takes the width of the blade from two cutting edges, of which the form sets none."""

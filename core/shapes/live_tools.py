@@ -68,10 +68,17 @@ def _cross_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
     deep, across = filled.n("DEEP"), filled.n("FROM")
     if deep > across:
         yield Refusal(
-            "DEEP", f"{deep:g} is more than the diameter of {across:g}: the drill comes out behind it."
+            "DEEP",
+            (
+                f"Depth {deep:g} is more than the diameter of {across:g}: the drill would come out on "
+                "the far side."
+            ),
         )
     if filled.n("COUNT") > 1 and abs(filled.n("STEP")) * filled.n("COUNT") > 360.0 + 1e-6:
-        words = f"{filled.n('COUNT'):.0f} holes at {filled.n('STEP'):g}° go round more than once: type less."
+        words = (
+            f"{filled.n('COUNT'):.0f} holes at {filled.n('STEP'):g}° go around the part more than "
+            "once: enter a smaller angle."
+        )
         yield Refusal("STEP", words)
     yield from too_deep(filled, setting)
 
@@ -95,18 +102,18 @@ def _cross_sketch(_filled: Filled) -> Sketch:
 
 CROSS = Shape(
     "CROSS DRILL",
-    "holes from the side, all around, the spindle held",
+    ("holes from the side, all around the part, with the spindle stopped in position"),
     (
         tool_field(ToolKind.DRILL, ToolKind.END_MILL),
         Field("SIDE", "SIDE", Kind.CHOICE, FRONT, (FRONT, REAR)),
-        Field("DIA", "DIAMETER OF THE DRILL", Kind.DIAMETER, _across, marked=True),
-        Field("FROM", "DIAMETER OF THE PART", Kind.DIAMETER, bar),
-        Field("AT", "CENTRE BEHIND Z0", Kind.LENGTH),
+        Field("DIA", "DRILL DIAMETER", Kind.DIAMETER, _across, marked=True),
+        Field("FROM", "PART DIAMETER", Kind.DIAMETER, bar),
+        Field("AT", "DISTANCE FROM Z0 TO CENTER", Kind.LENGTH),
         Field("DEEP", "DEPTH", Kind.LENGTH),
         Field("ANGLE", "FIRST ANGLE", Kind.ANGLE, 0.0, zero=True),
         Field("COUNT", "HOLES", Kind.COUNT, 1.0, most=360),
-        Field("STEP", "ANGLE FROM HOLE TO HOLE", Kind.ANGLE, _step, only=lambda v: number(v, "COUNT") > 1),
-        Field("RATE", "FEED A MINUTE", Kind.RATE, _rate(Work.DRILL), most=300),
+        Field("STEP", "ANGLE BETWEEN HOLES", Kind.ANGLE, _step, only=lambda v: number(v, "COUNT") > 1),
+        Field("RATE", "FEED PER MINUTE", Kind.RATE, _rate(Work.DRILL), most=300),
     ),
     _cross,
     _cross_sketch,
@@ -150,14 +157,18 @@ def _flats_checks(filled: Filled, _setting: Setting) -> Iterator[Refusal]:
     across, stock, many = filled.n("ACROSS"), filled.n("FROM"), int(filled.n("FLATS"))
     if across >= stock:
         yield Refusal(
-            "ACROSS", f"{across:g} across flats is not less than the part of {stock:g}: nothing is cut."
+            "ACROSS",
+            (f"{across:g} across flats is not less than the part diameter of {stock:g}: nothing is cut."),
         )
     corner = across / math.cos(math.pi / many) if many > 2 else 0.0
     if many > 2 and corner > stock + 1e-9 and filled.t("CORNERS") == "SHARP":
-        words = f"{many} flats of {across:g} have corners at {corner:.4f}, the part is {stock:g}"
-        yield Refusal("ACROSS", f"{words}: type less, or CORNERS ROUND.")
+        words = (
+            f"{many} flats of {across:g} have corners at diameter {corner:.4f}, but the part "
+            f"diameter is {stock:g}"
+        )
+        yield Refusal("ACROSS", f"{words}: enter less, or choose CORNERS ROUND.")
     if filled.n("DEEP") > filled.n("LONG"):
-        yield Refusal("DEEP", "A pass is deeper than the flats are long: type less.")
+        yield Refusal("DEEP", ("The depth per pass is more than the length of the flats: enter less."))
 
 
 def _flats_sketch(filled: Filled) -> Sketch:
@@ -191,11 +202,11 @@ def _flats_sketch(filled: Filled) -> Sketch:
 
 FLATS = Shape(
     "MILL FLATS",
-    "flats or a hexagon on the end, in the plane XC",
+    ("flats or a hexagon on the end of the part, in the XC plane"),
     (
         tool_field(ToolKind.END_MILL),
-        Field("DIA", "DIAMETER OF THE MILL", Kind.DIAMETER, _across, marked=True),
-        Field("FROM", "DIAMETER OF THE PART", Kind.DIAMETER, bar),
+        Field("DIA", "CUTTER DIAMETER", Kind.DIAMETER, _across, marked=True),
+        Field("FROM", "PART DIAMETER", Kind.DIAMETER, bar),
         Field("FLATS", "FLATS", Kind.COUNT, 6.0, most=36),
         Field("ACROSS", "ACROSS FLATS", Kind.DIAMETER),
         Field(
@@ -207,8 +218,8 @@ FLATS = Shape(
             only=lambda v: number(v, "FLATS") > 2,
         ),
         Field("LONG", "LENGTH", Kind.LENGTH),
-        Field("DEEP", "DEPTH OF A PASS", Kind.LENGTH, lambda v, _s: number(v, "LONG") or None),
-        Field("RATE", "FEED A MINUTE", Kind.RATE, _rate(Work.MILL), most=300),
+        Field("DEEP", "DEPTH PER PASS", Kind.LENGTH, lambda v, _s: number(v, "LONG") or None),
+        Field("RATE", "FEED PER MINUTE", Kind.RATE, _rate(Work.MILL), most=300),
     ),
     _flats,
     _flats_sketch,
@@ -234,12 +245,18 @@ def _slot(filled: Filled, setting: Setting, code: Code) -> None:
 def _slot_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
     if filled.n("DEEP") > filled.n("FROM") / 2.0:
         yield Refusal(
-            "DEEP", f"{filled.n('DEEP'):g} goes beyond the axis of {filled.n('FROM'):g}: type less."
+            "DEEP",
+            (
+                f"Depth {filled.n('DEEP'):g} goes past the axis of a part of diameter "
+                f"{filled.n('FROM'):g}: enter less."
+            ),
         )
     if not filled.n("LONG") and not filled.n("TURN"):
-        yield Refusal("LONG", "The slot goes nowhere: type its length, or the angle that it goes round.")
+        yield Refusal(
+            "LONG", ("The slot has no length: enter its length along Z, or its angle around the part.")
+        )
     if filled.n("PASS") > filled.n("DEEP"):
-        yield Refusal("PASS", "A pass is deeper than the slot: type less.")
+        yield Refusal("PASS", ("The depth per pass is more than the slot depth: enter less."))
     yield from too_deep(filled, setting)
 
 
@@ -261,20 +278,20 @@ def _slot_sketch(_filled: Filled) -> Sketch:
 
 SLOT = Shape(
     "MILL SLOT",
-    "a keyway along, around or on a helix, in the plane ZC",
+    ("a keyway along Z, around the part or on a helix, in the ZC plane"),
     (
         tool_field(ToolKind.END_MILL),
-        Field("DIA", "DIAMETER OF THE MILL", Kind.DIAMETER, _across, marked=True),
-        Field("FROM", "DIAMETER OF THE PART", Kind.DIAMETER, bar),
-        Field("AT", "BEGINS BEHIND Z0", Kind.LENGTH, 0.0, zero=True),
+        Field("DIA", "CUTTER DIAMETER", Kind.DIAMETER, _across, marked=True),
+        Field("FROM", "PART DIAMETER", Kind.DIAMETER, bar),
+        Field("AT", "DISTANCE FROM Z0 TO START", Kind.LENGTH, 0.0, zero=True),
         Field("LONG", "LENGTH ALONG Z", Kind.LENGTH, 0.0, zero=True),
-        Field("TURN", "ANGLE THAT IT GOES ROUND", Kind.ANGLE, 0.0, zero=True, most=3600),
+        Field("TURN", "ANGLE AROUND THE PART", Kind.ANGLE, 0.0, zero=True, most=3600),
         Field("DEEP", "DEPTH", Kind.LENGTH),
-        Field("PASS", "DEPTH OF A PASS", Kind.LENGTH, lambda v, _s: number(v, "DEEP") or None),
+        Field("PASS", "DEPTH PER PASS", Kind.LENGTH, lambda v, _s: number(v, "DEEP") or None),
         Field("ANGLE", "FIRST ANGLE", Kind.ANGLE, 0.0, zero=True),
         Field("COUNT", "SLOTS", Kind.COUNT, 1.0, most=60),
-        Field("STEP", "ANGLE FROM SLOT TO SLOT", Kind.ANGLE, _step, only=lambda v: number(v, "COUNT") > 1),
-        Field("RATE", "FEED A MINUTE", Kind.RATE, _rate(Work.MILL), most=300),
+        Field("STEP", "ANGLE BETWEEN SLOTS", Kind.ANGLE, _step, only=lambda v: number(v, "COUNT") > 1),
+        Field("RATE", "FEED PER MINUTE", Kind.RATE, _rate(Work.MILL), most=300),
     ),
     _slot,
     _slot_sketch,
@@ -288,20 +305,20 @@ SLOT = Shape(
 def _live_checks(checks: Checks) -> Checks:
     def checked(filled: Filled, setting: Setting) -> Iterator[Refusal]:
         if not setting.shop.third_axis:
-            yield Refusal("T", "This machine has no third axis: nothing holds the part and turns it.")
+            yield Refusal("T", ("This machine has no third axis that holds and turns the part."))
         elif setting.shop.third_axis.startswith("Y") and filled.shape.name != CROSS.name:
-            words = "The third axis of this machine is called Y, and the plane needs a Y of its own"
-            yield Refusal("T", f"{words}: mill it elsewhere.")
+            words = "The third axis of this machine is named Y, but this plane needs a separate Y"
+            yield Refusal("T", f"{words}: mill this shape on another machine.")
         elif not setting.shop.live_output:
-            words = "No output of this machine turns a live tool"
-            yield Refusal("T", f"{words}: name one live under [io.out] of the machine file.")
+            words = "No output of this machine drives a live tool"
+            yield Refusal("T", f"{words}: name an output live under [io.out] in the machine file.")
         yield from checks(filled, setting)
 
     return checked
 
 
 def _spindle_two(shape: Shape) -> Shape:
-    speed = Field("LRPM", "SPEED OF THE LIVE TOOL", Kind.RPM, _LIVE_RPM, most=MOST_RPM)
+    speed = Field("LRPM", "LIVE TOOL SPEED", Kind.RPM, _LIVE_RPM, most=MOST_RPM)
     fields = (*shape.fields[:-1], speed, shape.fields[-1])
     return replace(shape, fields=fields, checks=_live_checks(shape.checks))
 

@@ -51,12 +51,15 @@ def _part_off(filled: Filled, setting: Setting, code: Code) -> None:
 def _part_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
     top, end = filled.n("FROM"), filled.n("TO")
     if end >= top:
-        yield Refusal("TO", f"It parts off from {top:g} inwards: {end:g} is not less.")
+        yield Refusal(
+            "TO",
+            (f"Parting off starts at diameter {top:g} and runs inward: end diameter {end:g} must be less."),
+        )
     for word in ("BACK", "NEXT"):
         if filled.n(word) >= (top - end) / 2.0 > 0.0:
-            yield Refusal(word, f"A chamfer of {filled.n(word):g} takes all of the wall: type less.")
+            yield Refusal(word, (f"A chamfer of {filled.n(word):g} removes the whole wall: enter less."))
     if filled.n("BACK") > filled.n("LONG"):
-        yield Refusal("BACK", "The chamfer is longer than the part: type less.")
+        yield Refusal("BACK", "The chamfer is longer than the part: enter less.")
     yield from reach(filled, setting, (top - end) / 2.0, "FROM")
     yield from too_fast(filled, setting)
     yield from per_rev(filled, setting, "FEED")
@@ -83,17 +86,17 @@ def _part_sketch(_filled: Filled) -> Sketch:
 
 PART_OFF = Shape(
     "PART OFF",
-    "to the centre or to a bore, chamfers on both sides of the cut",
+    "to the center or to a bore, with chamfers on both sides of the cut",
     (
         tool_field(ToolKind.PARTING, ToolKind.GROOVING),
         Field("SIDE", "SIDE", Kind.CHOICE, FRONT, (FRONT, REAR)),
         Field("FROM", "DIAMETER", Kind.DIAMETER, bar),
-        Field("TO", "TO DIAMETER", Kind.DIAMETER, 0.0, zero=True),
-        Field("LONG", "LENGTH OF THE PART", Kind.LENGTH),
+        Field("TO", "END DIAMETER", Kind.DIAMETER, 0.0, zero=True),
+        Field("LONG", "PART LENGTH", Kind.LENGTH),
         BLADE_FIELD,
         CORNER_FIELD,
-        Field("BACK", "CHAMFER OF THE PART", Kind.LENGTH, 0.0, zero=True),
-        Field("NEXT", "CHAMFER OF THE BAR", Kind.LENGTH, 0.0, zero=True),
+        Field("BACK", "CHAMFER ON THE PART", Kind.LENGTH, 0.0, zero=True),
+        Field("NEXT", "CHAMFER ON THE BAR", Kind.LENGTH, 0.0, zero=True),
         feed_field(Work.PART),
         rpm_field(Work.PART, around("FROM")),
         surface_field(),

@@ -50,14 +50,14 @@ def _sketch(_filled: Filled) -> Sketch:
 
 HEAD = Shape(
     "HEAD",
-    "how the program begins: unit, diameters, rapid, material",
+    "the start of the program: unit, diameters, rapid, material",
     (
         Field("UNIT", "UNIT", Kind.CHOICE, _unit, (INCH, MM)),
-        Field("WORDS", "X WORDS", Kind.CHOICE, DIAMETER, (DIAMETER, RADIUS)),
+        Field("WORDS", "X VALUES", Kind.CHOICE, DIAMETER, (DIAMETER, RADIUS)),
         Field("MATERIAL", "MATERIAL", Kind.CHOICE, "STEEL", tuple(MATERIALS)),
         Field("BAR", "BAR DIAMETER", Kind.DIAMETER, 0.0, zero=True),
         Field("COOLANT", "COOLANT", Kind.CHOICE, _YES, (_YES, _NO)),
-        Field("CLEAR", "TOOLS CHANGE AT Z", Kind.LENGTH, _length(CLEAR[False], CLEAR[True])),
+        Field("CLEAR", "TOOL CHANGE AT Z", Kind.LENGTH, _length(CLEAR[False], CLEAR[True])),
         Field("RAPID", "RAPID", Kind.RATE, _length(300.0, 7620.0)),
     ),
     _cut,

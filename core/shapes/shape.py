@@ -92,8 +92,11 @@ class Filled:
         known, sheet = self.shape.field(TOOL_WORD), setting.tool(self.n(TOOL_WORD))
         if known is not None and sheet is not None and sheet.kind not in {*known.tools, ToolKind.FORM}:
             wanted = " or ".join(known.tools)
-            text = f"T{self.n(TOOL_WORD):.0f} is of the kind {sheet.kind} by its sheet, this needs {wanted}"
-            yield Refusal(TOOL_WORD, f"{text}: type another.")
+            text = (
+                f"T{self.n(TOOL_WORD):.0f} is of type {sheet.kind} in its tool data, but this shape "
+                f"needs {wanted}"
+            )
+            yield Refusal(TOOL_WORD, f"{text}: enter another tool.")
 
     def lines(self, setting: Setting) -> list[str]:
         """The lines with their comment; without a complete set of fields they mean nothing."""

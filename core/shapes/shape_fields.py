@@ -84,21 +84,21 @@ class Field:
     def _wrong_word(self, value: str | None) -> str:
         if value is None:
             if self.kind is Kind.NAME:
-                return f"{self.label} is not said: type it, or choose one with the arrows."
-            return f"{self.label} is not said: type it."
+                return f"{self.label} is missing: enter it, or choose one with the arrows."
+            return f"{self.label} is missing: enter it."
         if self.choices and value not in self.choices:
-            return f"{self.label} {value} is none of {', '.join(self.choices)}: choose one."
+            return f"{self.label} {value} is not one of {', '.join(self.choices)}: choose one of these."
         return ""
 
     def _wrong_number(self, value: float) -> str:
         if self.kind in WHOLE and value != int(value):
-            return f"{self.label} {value:g} is no whole number: type 1, 2, 3."
+            return f"{self.label} {value:g} is not a whole number: enter one such as 1, 2 or 3."
         if value > self.most:
-            return f"{self.label} {value:g} is more than {self.most:g}: type less."
+            return f"{self.label} {value:g} is more than {self.most:g}: enter less."
         if self.kind in {Kind.COORDINATE, Kind.ANGLE}:
             return ""
         if value < 0.0 or (value == 0.0 and not self.zero):
-            return f"{self.label} is {value:g}: it is more than 0."
+            return f"{self.label} is {value:g}, but must be more than 0."
         return ""
 
 

@@ -81,6 +81,6 @@ SINUMERIK_THREADS = replace(THREADS, cut=_passes, says=_passes_say)
 SINUMERIK_START = replace(START, fields=SINUMERIK_HEAD.fields, cut=SINUMERIK_HEAD.cut)
 SINUMERIK_ROUGH = replace(ROUGH, name="CYCLE95 ROUGHING", cut=_rough, fields=(*ROUGH.fields, LABEL))
 SINUMERIK_THREADING = replace(
-    THREADING, name="THREAD CYCLE97", use="tool, run-up, passes by constant chip area", cut=_thread
+    THREADING, name="THREAD CYCLE97", use="tool, run-up, passes with constant chip area", cut=_thread
 )
 SINUMERIK_BAR_FEED = replace(BAR_FEED, cut=_bar_feed, checks=_bar_feed_checks, ends=SINUMERIK_LOOP.ends)

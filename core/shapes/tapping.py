@@ -71,23 +71,27 @@ def _tap(filled: Filled, setting: Setting, code: Code) -> None:
 def _checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
     series, pitch = series_of(filled.values), filled.n("PITCH")
     if series in TAPERED or series is Series.ACME:
-        yield Refusal("SERIES", f"{series} is not tapped here: cut it with G33.")
+        yield Refusal("SERIES", f"{series} cannot be tapped here: cut it with G33.")
     if pitch * setting.mm / 25.4 > _COARSEST:
         most = _COARSEST * 25.4 / setting.mm
-        yield Refusal("PITCH", f"A pitch of {pitch:g} is more than a feed may be, {most:g}: cut it with G33.")
+        yield Refusal(
+            "PITCH", (f"A pitch of {pitch:g} is more than the largest feed, {most:g}: cut it with G33.")
+        )
     if filled.n("SHORT") >= filled.n("DEEP") and not _rigid(filled.values):
         yield Refusal(
-            "SHORT", f"It stops {filled.n('SHORT'):g} short of {filled.n('DEEP'):g}: nothing is cut."
+            "SHORT",
+            (f"The tap stops {filled.n('SHORT'):g} short of depth {filled.n('DEEP'):g}: nothing is cut."),
         )
     speed = pitch * filled.n("RPM") * setting.mm / 25.4
     if speed > 300.0:
         yield Refusal(
-            "RPM", f"At S{filled.n('RPM'):g} the slide needs {speed:.0f} in/min, it has 300: type less."
+            "RPM",
+            (f"At S{filled.n('RPM'):g} the axis needs {speed:.0f} in/min, but its limit is 300: enter less."),
         )
     shape, name = setting.tool(filled.n("T")), f"T{filled.n('T'):.0f}"
     if shape is not None and shape.pitch and abs(shape.pitch / setting.mm - pitch) > 0.01 * pitch:
-        words = f"{name} has a pitch of {shape.pitch / setting.mm:.5g} by its sheet"
-        yield Refusal("T", f"{words}, this is {pitch:.5g}: take another tap.")
+        words = f"{name} has a pitch of {shape.pitch / setting.mm:.5g} in its tool data"
+        yield Refusal("T", f"{words}, but this thread has {pitch:.5g}: use another tap.")
     yield from too_deep(filled, setting)
     yield from too_fast(filled, setting)
 
@@ -99,9 +103,9 @@ def _says(filled: Filled, setting: Setting) -> tuple[str, ...]:
     series = series_of(filled.values)
     places, unit = (2 if setting.metric else 4), in_unit(1.0, series, metric=setting.metric)
     least, most = (plain(value * unit, places) for value in known.minor)
-    told = f"the hole before it: {plain(known.crest * unit, places)}, from {least} to {most}"
+    told = f"hole before tapping: {plain(known.crest * unit, places)}, from {least} to {most}"
     drill = drill_for(*known.minor, metric=series in METRIC)
-    return (told,) if drill is None else (told, f"a drill for it: {_called(*drill, series, setting)}")
+    return (told,) if drill is None else (told, f"tap drill: {_called(*drill, series, setting)}")
 
 
 def _called(name: str, size: float, series: Series, setting: Setting) -> str:
@@ -127,7 +131,7 @@ def _sketch(_filled: Filled) -> Sketch:
 
 TAP = Shape(
     "TAP",
-    "on the axis by a tap: in, spindle back, out at the pitch",
+    "tapping on the axis: feed in, reverse the spindle, feed out at the pitch",
     (
         tool_field(ToolKind.TAP),
         Field("SERIES", "SERIES", Kind.CHOICE, Series.UNC.value, tuple(each.value for each in Series)),
@@ -138,14 +142,14 @@ TAP = Shape(
         Field("HAND", "HAND", Kind.CHOICE, RIGHT, (RIGHT, LEFT)),
         Field(
             "SHORT",
-            "STOPS SHORT OF THE DEPTH",
+            "STOP DISTANCE BEFORE DEPTH",
             Kind.LENGTH,
             lambda v, _s: round(_SHORT * number(v, "PITCH"), 4),
             zero=True,
             only=lambda v: not _rigid(v),
         ),
-        Field("DWELL", "DWELL WHILE IT TURNS BACK", Kind.SECONDS, 0.5, zero=True, most=60),
-        Field("RPM", "SPEED RPM", Kind.RPM, _turns, most=MOST_RPM),
+        Field("DWELL", "DWELL DURING REVERSAL", Kind.SECONDS, 0.5, zero=True, most=60),
+        Field("RPM", "SPINDLE SPEED, RPM", Kind.RPM, _turns, most=MOST_RPM),
     ),
     _tap,
     _sketch,
@@ -160,11 +164,13 @@ def _sinumerik_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
     if not _rigid(filled.values):
         return
     if not setting.shop.spindle_is_c:
-        words = "The spindle of this machine cannot be held and turned with Z"
-        yield Refusal("HOLDER", f"{words}: take a holder that gives.")
+        words = "The spindle of this machine cannot be positioned and turned together with Z"
+        yield Refusal("HOLDER", f"{words}: use a floating tap holder.")
     elif filled.n("RPM") > setting.shop.c_rpm:
         most = f"{setting.shop.c_rpm:g}"
-        yield Refusal("RPM", f"A rigid tap turns as C, which does {most} rpm: type {most} or less.")
+        yield Refusal(
+            "RPM", (f"A rigid tap turns with the C axis, which reaches {most} rpm: enter {most} or less.")
+        )
 
 
 def _held_turns(values: Values, setting: Setting) -> Value | None:

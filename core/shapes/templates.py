@@ -15,7 +15,7 @@ from core.shapes.usual_fields import MOST_RPM, bar, feed_field, next_tool
 
 V60_DEEP = 0.6134  # of a thread of 60 degrees, in pitches; ISO 68-1
 _TOOL = Field("T", "TOOL", Kind.TOOL, lambda _v, s: float(next_tool(s)), most=32)
-_SPEED = Field("RPM", "SPEED RPM", Kind.RPM, 1000.0, most=MOST_RPM)
+_SPEED = Field("RPM", "SPINDLE SPEED, RPM", Kind.RPM, 1000.0, most=MOST_RPM)
 _ACROSS = Field("FROM", "DIAMETER", Kind.DIAMETER, lambda v, s: bar(v, s) or (25.0 if s.metric else 1.0))
 
 
@@ -87,15 +87,20 @@ START = Shape(
     "START OF PROGRAM", "unit, diameters, rapid, coolant", HEAD.fields, HEAD.cut, HEAD.sketch, noted=False
 )
 TOOL_CHANGE = Shape(
-    "TOOL CHANGE", "back, tool, spindle, to the part", (_TOOL, _SPEED, _ACROSS), _change, _bar, noted=False
+    "TOOL CHANGE",
+    "retract, tool, spindle, move to the part",
+    (_TOOL, _SPEED, _ACROSS),
+    _change,
+    _bar,
+    noted=False,
 )
 ROUGH = Shape(
     "G75 ROUGHING",
-    "passes down to a contour of points, which are changed by hand",
+    "roughing passes down to a contour of points, which you edit by hand",
     (
         _ACROSS,
-        Field("ROUGH", "DEPTH OF A ROUGH PASS", Kind.LENGTH, _depth),
-        Field("LEAVE", "LEFT FOR FINISHING", Kind.LENGTH, _leave, zero=True),
+        Field("ROUGH", "ROUGHING DEPTH OF CUT", Kind.LENGTH, _depth),
+        Field("LEAVE", "FINISHING ALLOWANCE", Kind.LENGTH, _leave, zero=True),
         feed_field(Work.TURN),
     ),
     _rough,
@@ -104,7 +109,7 @@ ROUGH = Shape(
 )
 THREADING = Shape(
     "THREAD G33",
-    "tool, run-up, passes by constant chip area, pull out",
+    "tool, run-up, passes with constant chip area, pull-out",
     (
         _TOOL,
         _SPEED,
@@ -118,12 +123,12 @@ THREADING = Shape(
 )
 BAR_FEED = Shape(
     "BAR FEED LOOP",
-    "a stop, the collet opens, the bar follows; the part is a subroutine",
+    "a stop, the collet opens, the bar feeds; the part is a subroutine",
     (
         Field("COUNT", "PARTS", Kind.COUNT, 10.0, most=100_000),
         _TOOL,
-        Field("LONG", "BAR A PART, CUT INCLUDED", Kind.LENGTH, size(1.0, 25.0)),
-        Field("SUB", "SUBROUTINE OF THE PART", Kind.COUNT, lambda _v, s: float(s.free_sub), most=9999),
+        Field("LONG", "BAR PER PART, WITH CUT-OFF", Kind.LENGTH, size(1.0, 25.0)),
+        Field("SUB", "PART SUBROUTINE NUMBER", Kind.COUNT, lambda _v, s: float(s.free_sub), most=9999),
     ),
     _loop,
     _loop_sketch,

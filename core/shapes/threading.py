@@ -240,8 +240,8 @@ def _says(filled: Filled, setting: Setting) -> tuple[str, ...]:
     if series_of(filled.values) in TAPERED:
         far = plain(_far(filled), places)
         return (
-            f"pitch diameter {low} where it begins",
-            f"the cone before it: {plain(filled.n('CREST'), places)} there, {far} where it ends",
+            f"pitch diameter {low} at the start",
+            (f"taper before threading: {plain(filled.n('CREST'), places)} at the start, {far} at the end"),
         )
     if inside:
         return (f"minor diameter {least} to {most}, pitch diameter {low} to {high}",)
@@ -263,13 +263,22 @@ def _checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
     inside = filled.t("SIDE") == INSIDE
     crest, root, pitch = filled.n("CREST"), filled.n("ROOT"), filled.n("PITCH")
     if inside and root <= crest:
-        yield Refusal("ROOT", f"In a bore the thread goes outwards: {root:g} is not more than {crest:g}.")
+        yield Refusal(
+            "ROOT",
+            (f"An inside thread is cut outward, so the last pass at {root:g} must be more than {crest:g}."),
+        )
     if not inside and root >= crest:
-        yield Refusal("ROOT", f"The thread goes inwards: {root:g} is not less than {crest:g}.")
+        yield Refusal(
+            "ROOT",
+            (f"An outside thread is cut inward, so the last pass at {root:g} must be less than {crest:g}."),
+        )
     sharp = pitch / 2.0 / math.tan(math.radians(flank_angle(filled.values, setting) / 2.0))
     if filled_depth(filled) > 1.02 * sharp:
-        words = f"{filled_depth(filled):.4f} deep: flanks of a pitch of {pitch:.5g} meet at {sharp:.4f}"
-        yield Refusal("ROOT", f"{words}. Look at both diameters.")
+        words = (
+            f"The thread is {filled_depth(filled):.4f} deep, but at a pitch of {pitch:.5g} its "
+            f"flanks meet at a depth of {sharp:.4f}"
+        )
+        yield Refusal("ROOT", f"{words}. Check both diameters.")
     if setting.dialect is Dialect.OMNITURN:
         yield from _lead_checks(filled, setting)
     pulls = filled.t("PULL") == YES or filled.shape.field("RELIEF") is None
@@ -284,8 +293,11 @@ def _flank_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
     """Passes that come in flatter than the flank cut away what the last one leaves."""
     angle, flank = filled.n("INFEED"), flank_angle(filled.values, setting) / 2.0
     if angle > flank + 1e-9:
-        words = f"{angle:g}° is flatter than the flank of {flank:g}°: the first passes cut into it"
-        yield Refusal("INFEED", f"{words}. Type {math.floor(flank):g} or less.")
+        words = (
+            f"An infeed angle of {angle:g}° is more than the flank angle of {flank:g}°, so the "
+            "first passes would cut into the flank"
+        )
+        yield Refusal("INFEED", f"{words}. Enter {math.floor(flank):g} or less.")
 
 
 def _lead_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
@@ -293,17 +305,22 @@ def _lead_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
     inch = lead * setting.mm / 25.4
     if inch > _COARSE[2]:
         yield Refusal(
-            "PITCH", f"A lead of {lead:g} is more than the control cuts, {_COARSE[2] / setting.mm * 25.4:g}."
+            "PITCH",
+            (f"A lead of {lead:g} is more than the control can cut, {_COARSE[2] / setting.mm * 25.4:g}."),
         )
     speed = inch * filled.n("RPM")
     if speed > 300.0:
         slow = math.floor(300.0 / inch)
         yield Refusal(
-            "RPM", f"At S{filled.n('RPM'):g} the slide needs {speed:.0f} in/min, it has 300: S{slow} or less."
+            "RPM",
+            (
+                f"At S{filled.n('RPM'):g} the axis needs {speed:.0f} in/min, but its limit is 300: "
+                f"enter S{slow} or less."
+            ),
         )
     turns = math.sqrt(filled_depth(filled) / max(first_depth(filled), 1e-9))
     if turns > 60:
-        yield Refusal("PASSES", "More than 60 passes: type fewer.")
+        yield Refusal("PASSES", "This thread needs more than 60 passes: enter fewer.")
 
 
 def _relief(filled: Filled) -> Iterator[Refusal]:
@@ -311,13 +328,16 @@ def _relief(filled: Filled) -> Iterator[Refusal]:
     lead = filled.n("PITCH") * filled.n("STARTS")
     relief = filled.n("RELIEF")
     if relief <= 0.0:
-        text_ = "Thread relief missing: where the tool stops it cuts a ring. Say its width, or pull out."
+        text_ = (
+            "Thread relief missing: the tool cuts a ring where it stops. Enter the relief width, "
+            "or set pull-out to YES."
+        )
         if filled.t("PULL") != NO:  # of a language in which no pass pulls out
-            text_ = "Thread relief missing: where the tool stops it cuts a ring. Say its width."
+            text_ = "Thread relief missing: the tool cuts a ring where it stops. Enter the relief width."
         yield Refusal("RELIEF", text_)
     elif relief < 1.5 * lead:
         yield Refusal(
-            "RELIEF", f"A relief of {relief:g} is less than 1.5 turns of the lead, {1.5 * lead:.4g}."
+            "RELIEF", (f"A relief width of {relief:g} is less than 1.5 times the lead, {1.5 * lead:.4g}.")
         )
 
 
@@ -327,13 +347,13 @@ def _by_sheet(filled: Filled, setting: Setting) -> Iterator[Refusal]:
         return
     angle = flank_angle(filled.values, setting)
     if shape.kind is ToolKind.THREADING and shape.point and abs(shape.point - angle) > 0.5:
-        words = f"{name} cuts {shape.point:g}°, this thread has {angle:g}°: take another insert."
+        words = f"{name} cuts {shape.point:g}°, but this thread has {angle:g}°: use another insert."
         yield Refusal("T", words)
     if shape.pitch and abs(shape.pitch / setting.mm - filled.n("PITCH")) > 0.02 * filled.n("PITCH"):
         words = f"{name} is made for a pitch of {shape.pitch / setting.mm:.5g}"
-        yield Refusal("T", f"{words}, not {filled.n('PITCH'):.5g}: take another insert.")
+        yield Refusal("T", f"{words}, not {filled.n('PITCH'):.5g}: use another insert.")
     if filled.t("SIDE") == INSIDE and shape.diameter and shape.diameter / setting.mm > filled.n("CREST"):
-        yield Refusal("T", f"The bar of {name} does not go into {filled.n('CREST'):g}.")
+        yield Refusal("T", f"The bar of {name} does not fit into a bore of {filled.n('CREST'):g}.")
 
 
 def unknown_name(filled: Filled, _setting: Setting) -> Iterator[Refusal]:
@@ -341,9 +361,11 @@ def unknown_name(filled: Filled, _setting: Setting) -> Iterator[Refusal]:
     series, allowed = series_of(filled.values), class_choices(filled.values)
     size, tolerance = filled.t("SIZE"), filled.t("CLASS")
     if series is not Series.OWN and size and size_of(series, size) is None:
-        yield Refusal("SIZE", f"{series} has no {size}: choose one with the arrows.")
+        yield Refusal("SIZE", f"{series} has no size {size}: choose one with the arrows.")
     elif filled.shape.field("CLASS") is not None and allowed and tolerance not in allowed:
-        yield Refusal("CLASS", f"CLASS {tolerance} is none of {', '.join(allowed)}: choose one.")
+        yield Refusal(
+            "CLASS", (f"CLASS {tolerance} is not one of {', '.join(allowed)}: choose one of these.")
+        )
 
 
 def _sketch(filled: Filled) -> Sketch:
@@ -383,7 +405,7 @@ _ALL_CLASSES = tuple(
 
 THREAD = Shape(
     "THREAD",
-    "by series, size and class: UNC, UNF, M, NPT, BSP, ACME, or its own figures",
+    "by series, size and class: UNC, UNF, M, NPT, BSP, ACME, or custom dimensions",
     (
         tool_field(ToolKind.THREADING),
         Field("SERIES", "SERIES", Kind.CHOICE, Series.UNC.value, tuple(each.value for each in Series)),
@@ -391,20 +413,18 @@ THREAD = Shape(
         Field("SIDE", "SIDE", Kind.CHOICE, OUTSIDE, (OUTSIDE, INSIDE)),
         Field("CLASS", "CLASS", Kind.CHOICE, _class, _ALL_CLASSES, only=lambda v: bool(class_choices(v))),
         Field("LONG", "LENGTH", Kind.LENGTH, _long),
-        Field("AT", "BEGINS BEHIND Z0", Kind.LENGTH, 0.0, zero=True),
-        Field("PULL", "PULLS OUT WHILE GOING ON", Kind.CHOICE, YES, (YES, NO)),
-        Field(
-            "RELIEF", "WIDTH OF THE RELIEF", Kind.LENGTH, 0.0, zero=True, only=lambda v: text(v, "PULL") == NO
-        ),
+        Field("AT", "DISTANCE FROM Z0 TO START", Kind.LENGTH, 0.0, zero=True),
+        Field("PULL", "PULL OUT WHILE FEEDING", Kind.CHOICE, YES, (YES, NO)),
+        Field("RELIEF", "RELIEF WIDTH", Kind.LENGTH, 0.0, zero=True, only=lambda v: text(v, "PULL") == NO),
         Field("PITCH", "PITCH", Kind.LENGTH, _pitch),
         Field("STARTS", "STARTS", Kind.COUNT, 1.0, most=24),
         Field("HAND", "HAND", Kind.CHOICE, RIGHT, (RIGHT, LEFT)),
-        Field("CREST", "DIAMETER BEFORE IT IS CUT", Kind.DIAMETER, _from_limits("crest")),
-        Field("ROOT", "DIAMETER OF THE LAST PASS", Kind.DIAMETER, _from_limits("root")),
+        Field("CREST", "DIAMETER BEFORE THREADING", Kind.DIAMETER, _from_limits("crest")),
+        Field("ROOT", "DIAMETER AT LAST PASS", Kind.DIAMETER, _from_limits("root")),
         Field("TAPER", "TAPER ON THE DIAMETER", Kind.RATIO, _taper, zero=True, most=1.0),
         Field("PASSES", "PASSES", Kind.COUNT, _passes, most=60),
         Field("INFEED", "INFEED ANGLE", Kind.ANGLE, _infeed, most=30.0, zero=True),
-        Field("RPM", "SPEED RPM", Kind.RPM, _rpm, most=MOST_RPM),
+        Field("RPM", "SPINDLE SPEED, RPM", Kind.RPM, _rpm, most=MOST_RPM),
         Field("RUNUP", "RUN-UP", Kind.LENGTH, _run_up),
     ),
     _thread,

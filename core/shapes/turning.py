@@ -74,9 +74,9 @@ def _leave(values: Values, setting: Setting) -> Value | None:
     return finish_depth(setting, number(values, "ROUGH"))
 
 
-_ROUGH = Field("ROUGH", "DEPTH OF A ROUGH PASS", Kind.LENGTH, _depth, zero=True)
-_LEAVE = Field("LEAVE", "LEFT FOR FINISHING", Kind.LENGTH, _leave, zero=True, only=_roughs)
-_RFEED = feed_field(Work.TURN, "RFEED", "FEED OF ROUGHING", only=_roughs)
+_ROUGH = Field("ROUGH", "ROUGHING DEPTH OF CUT", Kind.LENGTH, _depth, zero=True)
+_LEAVE = Field("LEAVE", "FINISHING ALLOWANCE", Kind.LENGTH, _leave, zero=True, only=_roughs)
+_RFEED = feed_field(Work.TURN, "RFEED", "ROUGHING FEED", only=_roughs)
 _COMP = Field("COMP", "NOSE COMPENSATION D", Kind.OFFSET, 0.0, zero=True, most=32)
 
 
@@ -84,7 +84,7 @@ def _next_label(_values: Values, setting: Setting) -> Value | None:
     return float(setting.free_sub)
 
 
-LABEL = Field("LABEL", "NUMBER OF THE CONTOUR", Kind.COUNT, _next_label, most=9999, only=_roughs)
+LABEL = Field("LABEL", "CONTOUR NUMBER", Kind.COUNT, _next_label, most=9999, only=_roughs)
 """Of a contour that CYCLE95 finds by its labels."""
 
 
@@ -141,7 +141,9 @@ def _contour_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
     if filled.n("ROUGH"):
         for at, (before, here) in enumerate(pairwise(there), 2):
             if here[0] > before[0] + 1e-9:
-                text_ = f"Point {at} goes back towards the face: roughing goes along Z to the chuck only."
+                text_ = (
+                    f"Point {at} runs back toward the face, but roughing moves only toward the chuck along Z."
+                )
                 yield Refusal(row_word(at), text_)
                 break
         yield from _falls_at_once(there, inside=inside)
@@ -151,7 +153,7 @@ def _contour_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
         and max((r for _, r in there), default=0.0) > filled.n("FROM") / 2 + 1e-9
     ):
         at = max(range(len(there)), key=lambda n: there[n][1])
-        words = f"Point {at + 1} lies outside the stock of {filled.n('FROM'):g}: type a smaller X."
+        words = f"Point {at + 1} is outside the stock of diameter {filled.n('FROM'):g}: enter a smaller X."
         yield Refusal(row_word(at + 1), words)
 
 
@@ -159,13 +161,13 @@ def _falls_at_once(there: Sequence[tuple[float, float]], *, inside: bool) -> Ite
     """Roughing comes back across a contour that leads into the metal from its first point on."""
     side = -1.0 if inside else 1.0
     if len(there) > 1 and there[1][0] < there[0][0] - SAME and side * (there[0][1] - there[1][1]) > SAME:
-        words = "The contour falls from its first point, and roughing cannot come back past it"
-        yield Refusal(row_word(1), f"{words}: put a point before it at the same Z, at the lowest X.")
+        words = "The contour drops from its first point, and roughing cannot return past that point"
+        yield Refusal(row_word(1), (f"{words}: add a point before it at the same Z and at the lowest X."))
 
 
 def _compensated(filled: Filled, setting: Setting) -> Iterator[Refusal]:
     if filled.n("COMP") and setting.called and setting.dialect is Dialect.OMNITURN:
-        yield Refusal("COMP", "G41 does not work in a subroutine, so not in a bar loop: type 0.")
+        yield Refusal("COMP", ("G41 does not work in a subroutine, and a bar loop is one: enter 0."))
 
 
 def _cutting_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
@@ -173,7 +175,9 @@ def _cutting_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
     yield from per_rev(filled, setting, "FEED", "RFEED")
     rough, leave = filled.n("ROUGH"), filled.n("LEAVE")
     if rough and leave >= rough:
-        yield Refusal("LEAVE", f"{leave:g} left for finishing is more than a pass of {rough:g}: type less.")
+        yield Refusal(
+            "LEAVE", (f"A finishing allowance of {leave:g} is more than a pass of {rough:g}: enter less.")
+        )
     stock, end = _stock_and_end({**filled.shape.extent(filled.rows), **filled.values})
     if filled.shape.field("ROUGH") is not None:
         yield from _too_deep(filled, setting, "ROUGH", rough or abs(stock - end) / 2.0)
@@ -183,8 +187,10 @@ def _too_deep(filled: Filled, setting: Setting, word: str, deep: float) -> Itera
     """Refuse a pass that is deeper than the insert takes."""
     most = most_depth(setting, filled.n("T"))
     if deep > most + SAME:
-        words = f"A pass would be {deep:.4g} deep, and the insert of T{filled.n('T'):.0f} takes {most:.4g}"
-        yield Refusal(word, f"{words}: type a smaller depth of a pass.")
+        words = (
+            f"A pass would be {deep:.4g} deep, but the insert of T{filled.n('T'):.0f} allows only {most:.4g}"
+        )
+        yield Refusal(word, f"{words}: enter a smaller depth of cut.")
 
 
 def _turn(filled: Filled, setting: Setting, code: Code) -> None:
@@ -212,12 +218,12 @@ def _outside(values: Values) -> bool:
 
 TURN = Shape(
     "TURN",
-    "along a profile of points, corners and arcs; roughed or not",
+    ("a profile of points, corners and arcs, with or without roughing"),
     (
         tool_field(ToolKind.TURNING, ToolKind.BORING),
         Field("SIDE", "SIDE", Kind.CHOICE, OUTSIDE, (OUTSIDE, INSIDE)),
-        Field("FROM", "DIAMETER OF THE STOCK", Kind.DIAMETER, bar, zero=True, only=_outside),
-        Field("HOLE", "DIAMETER OF THE HOLE", Kind.DIAMETER, None, only=lambda v: not _outside(v)),
+        Field("FROM", "STOCK DIAMETER", Kind.DIAMETER, bar, zero=True, only=_outside),
+        Field("HOLE", "HOLE DIAMETER", Kind.DIAMETER, None, only=lambda v: not _outside(v)),
         _ROUGH,
         _LEAVE,
         _RFEED,
@@ -266,7 +272,13 @@ def _facing(values: Values, setting: Setting) -> Value | None:
 def _face_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
     yield from _too_deep(filled, setting, "DEEP", min(filled.n("DEEP"), filled.n("STOCK")))
     if filled.n("TO") >= filled.n("FROM"):
-        yield Refusal("TO", f"It faces from {filled.n('FROM'):g} inwards: {filled.n('TO'):g} is not less.")
+        yield Refusal(
+            "TO",
+            (
+                f"Facing starts at diameter {filled.n('FROM'):g} and runs inward: end diameter "
+                f"{filled.n('TO'):g} must be less."
+            ),
+        )
     yield from too_fast(filled, setting)
     yield from per_rev(filled, setting, "FEED")
 
@@ -288,14 +300,14 @@ def _face_sketch(_filled: Filled) -> Sketch:
 
 FACE = Shape(
     "FACE",
-    "square across the end, in one pass or several",
+    ("the end of the part faced square, in one or more passes"),
     (
         tool_field(ToolKind.TURNING),
-        Field("FROM", "FROM DIAMETER", Kind.DIAMETER, bar),
-        Field("TO", "TO DIAMETER", Kind.COORDINATE, _past_axis),
+        Field("FROM", "START DIAMETER", Kind.DIAMETER, bar),
+        Field("TO", "END DIAMETER", Kind.COORDINATE, _past_axis),
         Field("AT", "FACE AT Z", Kind.COORDINATE, 0.0),
-        Field("STOCK", "STOCK BEFORE THE FACE", Kind.LENGTH, 0.0, zero=True),
-        Field("DEEP", "DEPTH OF A PASS", Kind.LENGTH, _facing, only=lambda v: number(v, "STOCK") > 0),
+        Field("STOCK", "STOCK ON THE FACE", Kind.LENGTH, 0.0, zero=True),
+        Field("DEEP", "DEPTH PER PASS", Kind.LENGTH, _facing, only=lambda v: number(v, "STOCK") > 0),
         feed_field(Work.FINISH),
         rpm_field(Work.TURN, around("FROM")),
         surface_field(),
@@ -328,10 +340,13 @@ def _taper(filled: Filled, setting: Setting, code: Code) -> None:
 def _taper_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
     if filled.n("LARGE") < filled.n("SMALL"):
         yield Refusal(
-            "LARGE", "The taper falls towards the chuck: a turning tool leads into metal behind it."
+            "LARGE", ("The taper gets smaller toward the chuck, so a turning tool would run into the stock.")
         )
     if filled.n("FROM") and filled.n("LARGE") > filled.n("FROM") + 1e-9:
-        yield Refusal("LARGE", f"{filled.n('LARGE'):g} is more than the stock of {filled.n('FROM'):g}.")
+        yield Refusal(
+            "LARGE",
+            (f"Diameter {filled.n('LARGE'):g} is more than the stock diameter of {filled.n('FROM'):g}."),
+        )
     yield from _compensated(filled, setting)
     yield from _cutting_checks(filled, setting)
 
@@ -355,12 +370,12 @@ _USUAL_CONTOUR = (_ROUGH, _LEAVE, _RFEED, feed_field(Work.FINISH))
 
 TAPER = Shape(
     "TAPER TURN",
-    "a cone by two diameters, or by a diameter and an angle",
+    ("a taper from two diameters, or from a diameter and an angle"),
     (
         tool_field(ToolKind.TURNING),
-        Field("FROM", "DIAMETER OF THE STOCK", Kind.DIAMETER, bar, zero=True),
+        Field("FROM", "STOCK DIAMETER", Kind.DIAMETER, bar, zero=True),
         Field("SMALL", "DIAMETER AT THE FACE", Kind.DIAMETER),
-        Field("AT", "BEGINS BEHIND Z0", Kind.LENGTH, 0.0, zero=True),
+        Field("AT", "DISTANCE FROM Z0 TO START", Kind.LENGTH, 0.0, zero=True),
         Field("LONG", "LENGTH", Kind.LENGTH),
         Field("ANGLE", "ANGLE TO THE AXIS", Kind.ANGLE, 0.0, most=89.0, zero=True),
         Field("LARGE", "DIAMETER AT THE CHUCK", Kind.DIAMETER, _large),
@@ -391,7 +406,13 @@ def _edge_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
     across, edge = filled.n("DIAM"), filled.n("EDGE")
     yield from _too_deep(filled, setting, "EDGE", edge * math.sqrt(0.5))
     if filled.t("SIDE") == OUTSIDE and 2.0 * edge > across + 1e-9:
-        yield Refusal("EDGE", f"{edge:g} is more than the radius of {across:g}: type {across / 2:g} or less.")
+        yield Refusal(
+            "EDGE",
+            (
+                f"An edge size of {edge:g} is more than the radius of diameter {across:g}: enter "
+                f"{across / 2:g} or less."
+            ),
+        )
     yield from _compensated(filled, setting)
     yield from _cutting_checks(filled, setting)
 
@@ -408,14 +429,14 @@ def _edge_sketch(filled: Filled) -> Sketch:
 
 EDGE = Shape(
     "EDGE TURN",
-    "an edge broken by a chamfer or a radius, outside or in a bore",
+    ("an edge with a chamfer or a radius, outside or in a bore"),
     (
         tool_field(ToolKind.TURNING, ToolKind.BORING),
         Field("SIDE", "SIDE", Kind.CHOICE, OUTSIDE, (OUTSIDE, INSIDE)),
         Field("KIND", "KIND", Kind.CHOICE, CHAMFER, (CHAMFER, ROUND)),
         Field("DIAM", "DIAMETER", Kind.DIAMETER, bar),
         Field("EDGE", "SIZE", Kind.LENGTH),
-        Field("AT", "FACE BEHIND Z0", Kind.LENGTH, 0.0, zero=True),
+        Field("AT", "DISTANCE FROM Z0 TO FACE", Kind.LENGTH, 0.0, zero=True),
         feed_field(Work.FINISH),
         rpm_field(Work.TURN, around("DIAM")),
         _COMP,
@@ -440,17 +461,20 @@ def _bore_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
     across, deep, hole = filled.n("DIAM"), filled.n("DEEP"), filled.n("HOLE")
     if hole >= across:
         yield Refusal(
-            "HOLE", f"The hole of {hole:g} is not less than the bore of {across:g}: nothing is cut."
+            "HOLE", (f"A hole of {hole:g} is not less than the bore diameter of {across:g}: nothing is cut.")
         )
     if filled.n("EDGE") >= deep:
-        yield Refusal("EDGE", f"The chamfer is as long as the bore of {deep:g}: type less.")
+        yield Refusal("EDGE", (f"The chamfer is at least as long as the bore depth of {deep:g}: enter less."))
     tool = setting.tool(filled.n("T"))
     if tool is not None and tool.diameter and tool.diameter > hole * setting.mm:
-        words = f"The bar of T{filled.n('T'):.0f} is {tool.diameter / setting.mm:.4g}, the hole {hole:g}"
-        yield Refusal("T", f"{words}: it does not go in; drill larger, or take a thinner bar.")
+        words = (
+            f"The bar of T{filled.n('T'):.0f} is {tool.diameter / setting.mm:.4g} thick, but the "
+            f"hole is {hole:g} wide"
+        )
+        yield Refusal("T", f"{words}, so the bar does not fit; drill larger, or use a thinner bar.")
     if tool is not None and tool.stick_out and tool.stick_out < deep * setting.mm:
-        words = f"T{filled.n('T'):.0f} reaches {tool.stick_out / setting.mm:.4g}"
-        yield Refusal("DEEP", f"{words}, the bore is {deep:g} deep: take a longer bar.")
+        words = f"T{filled.n('T'):.0f} reaches only {tool.stick_out / setting.mm:.4g}"
+        yield Refusal("DEEP", f"{words}, but the bore is {deep:g} deep: use a longer boring bar.")
     yield from _compensated(filled, setting)
     yield from _cutting_checks(filled, setting)
 
@@ -471,13 +495,13 @@ def _bore_sketch(_filled: Filled) -> Sketch:
 
 BORE = Shape(
     "BORE",
-    "a drilled hole opened to a diameter, with a chamfer at its mouth",
+    ("a drilled hole bored to a diameter, with a chamfer at its mouth"),
     (
         tool_field(ToolKind.BORING),
-        Field("HOLE", "DIAMETER OF THE HOLE", Kind.DIAMETER),
+        Field("HOLE", "HOLE DIAMETER", Kind.DIAMETER),
         Field("DIAM", "DIAMETER", Kind.DIAMETER),
         Field("DEEP", "DEPTH", Kind.LENGTH),
-        Field("EDGE", "CHAMFER AT THE MOUTH", Kind.LENGTH, 0.0, zero=True),
+        Field("EDGE", "CHAMFER AT BORE MOUTH", Kind.LENGTH, 0.0, zero=True),
         _ROUGH,
         _LEAVE,
         _RFEED,

@@ -52,7 +52,7 @@ def rpm_field(work: Work, across: Callable[[Values], float]) -> Field:
     def proposed(values: Values, setting: Setting) -> Value | None:
         return cutting_data.rpm(work, across(values) or setting.bar or 0.5, setting)
 
-    return Field("RPM", "SPEED RPM", Kind.RPM, proposed, most=MOST_RPM)
+    return Field("RPM", "SPINDLE SPEED, RPM", Kind.RPM, proposed, most=MOST_RPM)
 
 
 def feed_field(work: Work, word: str = "FEED", label: str = "FEED", **more: object) -> Field:
@@ -76,7 +76,9 @@ def too_fast(filled: Filled, setting: Setting) -> Iterator[Refusal]:
     turns = filled.n("RPM")
     if turns > setting.shop.max_rpm:
         most = f"{setting.shop.max_rpm:g}"
-        yield Refusal("RPM", f"S{turns:g} is more than the {most} rpm of this spindle: type {most} or less.")
+        yield Refusal(
+            "RPM", (f"S{turns:g} is more than the {most} rpm limit of this spindle: enter {most} or less.")
+        )
 
 
 def per_rev(filled: Filled, setting: Setting, *words: str) -> Iterator[Refusal]:
@@ -84,7 +86,7 @@ def per_rev(filled: Filled, setting: Setting, *words: str) -> Iterator[Refusal]:
     most = 0.05 * 25.4 / setting.mm
     for word in words:
         if filled.n(word) > most:
-            text = f"A feed of {filled.n(word):g} a turn is more than {most:g}: F.003 is what was meant?"
+            text = f"A feed of {filled.n(word):g} per revolution is more than {most:g}: did you mean F.003?"
             yield Refusal(word, text)
 
 
@@ -92,5 +94,8 @@ def too_deep(filled: Filled, setting: Setting) -> Iterator[Refusal]:
     """DEEP beyond what the flutes of the tool reach by its sheet."""
     shape, deep = setting.tool(filled.n("T")), filled.n("DEEP")
     if shape is not None and shape.length and deep > shape.length / setting.mm + 1e-9:
-        words = f"{deep:g} is deeper than the flutes of T{filled.n('T'):.0f}, {shape.length / setting.mm:.4g}"
-        yield Refusal("DEEP", f"{words}: take a longer one.")
+        words = (
+            f"Depth {deep:g} is more than the flute length of T{filled.n('T'):.0f}, "
+            f"{shape.length / setting.mm:.4g}"
+        )
+        yield Refusal("DEEP", f"{words}: use a longer tool.")

@@ -16,54 +16,58 @@ _NOT_THERE = frozenset({errno.ENOENT, errno.ENOTDIR})
 class Cause(Enum):
     """What is in the way, and what to do about it."""
 
-    AWAY = "{place} does not answer ({why}); this desk works on and shares when it does again"
-    NO_RIGHT = "{place} may not be used so by this user ({why}); ask whoever looks after it for the right"
-    NOT_THERE = "{place} is not there ({why}); is it mounted, is its name right?"
-    NOT_BEGUN = (
-        "{place} holds no shared programs; is it mounted, is its name right? Where it is new: "
-        "turndesk share begin"
+    AWAY = (
+        "{place} does not respond ({why}); this control continues to work, and shares "
+        "programs when the connection returns"
     )
-    NEWER = "{place} was laid out by a newer TurnDesk (format {why}); update the one on this desk"
-    OTHER = "{place} is not laid out as shared programs are ({why}); name another place"
-    FULL = "the disk of {place} is full; make room there"
-    REFUSED = "{place} refuses it: {why}"
+    NO_RIGHT = "this user has no permission for this in {place} ({why}); ask the administrator for permission"
+    NOT_THERE = "{place} was not found ({why}); check that it is mounted and that its name is right"
+    NOT_BEGUN = (
+        "{place} contains no shared programs; check that it is mounted and that its name is "
+        "right. For a new place, run: turndesk share begin"
+    )
+    NEWER = "{place} was set up by a newer TurnDesk (format {why}); update TurnDesk on this control"
+    OTHER = "{place} is not set up for shared programs ({why}); name another place"
+    FULL = "the disk of {place} is full; free space on it"
+    REFUSED = "{place} rejected the request: {why}"
     DAMAGED = "{place}: {why}"
     UNKNOWN_HOST = (
-        "the computer of {place} is not known here ({why}); log in there once by ssh, as the user of this "
-        "desk, and compare its key"
+        "the host of {place} is unknown here ({why}); log in there once by ssh, as the user "
+        "of this control, and compare its key"
     )
     OTHER_HOST = (
-        "the computer of {place} shows another key than before ({why}); ask whoever looks after it, and "
-        "let ssh-keygen -R forget the old one only then"
+        "the host key of {place} has changed ({why}); ask the administrator of that host, "
+        "and only then remove the old key with ssh-keygen -R"
     )
-    NO_GIT = "the command git is not on this computer; install git"
-    NO_SSH = "{place} is reached by ssh, which is not on this computer; install openssh-client"
+    NO_GIT = "git is not installed on this computer; install git"
+    NO_SSH = "{place} needs ssh, which is not installed on this computer; install openssh-client"
     NO_GIT_THERE = (
-        "the computer of {place} answers, but not as git does ({why}); is git installed there, and may this "
-        "user start it by ssh?"
+        "the host of {place} responds, but not like git ({why}); check that git is installed "
+        "there and that this user may start it by ssh"
     )
     UNREADABLE = (
         "[sharing] postgresql cannot be read as a connection string; write a value with blanks in quotation "
         "marks, and / and @ of a password in an address as %2F and %40"
     )
-    WRONG_PASSWORD = "{place} refuses the user or the password ({why}); correct them in [sharing] postgresql"
+    WRONG_PASSWORD = "{place} rejects the user or the password ({why}); correct them in [sharing] postgresql"
     NOT_TRUSTED = (
-        "the certificate of {place} cannot be verified ({why}); name the certificate of whoever issued it "
-        "as sslrootcert=FILE in [sharing] postgresql"
+        "the certificate of {place} cannot be verified ({why}); set sslrootcert=FILE in "
+        "[sharing] postgresql to the certificate of its issuer"
     )
     GIT_NOT_TRUSTED = (
-        "the certificate of {place} cannot be verified ({why}); name the certificate of whoever issued it: "
-        "git config --global http.sslCAInfo FILE"
+        "the certificate of {place} cannot be verified ({why}); set the certificate of its "
+        "issuer: git config --global http.sslCAInfo FILE"
     )
     NO_TLS = (
-        "{place} offers no TLS ({why}); turn it on there, or, where everybody in the network is trusted, "
-        "write sslmode=disable in [sharing] postgresql"
+        "{place} does not support TLS ({why}); turn TLS on there, or, on a network where you "
+        "trust every user, write sslmode=disable in [sharing] postgresql"
     )
     TLS_ONLY = "{place} accepts TLS only ({why}); remove sslmode from [sharing] postgresql"
-    NO_PSYCOPG = "[sharing] postgresql wants psycopg, which is not installed; install turndesk[postgresql]"
+    NO_PSYCOPG = "[sharing] postgresql needs psycopg, which is not installed; install turndesk[postgresql]"
     NAME_TAKEN = (
-        "{place}: another desk is called {why} too; give this one its own name (desk in [sharing]), "
-        "or, where that computer is gone: turndesk share publish --claim"
+        "{place}: another control is also named {why}; give this control a different name "
+        "(desk in [sharing]) or, if that computer does not exist any more, run: turndesk "
+        "share publish --claim"
     )
 
     @property

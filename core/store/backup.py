@@ -51,10 +51,10 @@ def _found(connection: sqlite3.Connection) -> tuple[str, ...]:
     pages = [str(row[0]) for row in connection.execute("PRAGMA integrity_check")]
     found = [f"the file is damaged: {' '.join(text.split())}" for text in pages if text != "ok"]
     found += [
-        f"a row of {table} points to a row of {parent} that is not there"
+        f"a row of {table} refers to a row of {parent} that does not exist"
         for table, _, parent, _ in connection.execute("PRAGMA foreign_key_check")
     ]
-    found += [f"{which} is not what was saved" for which in program_records.spoilt(connection)]
+    found += [f"{which} differs from what was saved" for which in program_records.spoilt(connection)]
     found += damaged_rows.damaged(connection, row_sums.sealed_before(database.version_of(connection)))
     return tuple(found)
 
@@ -67,18 +67,18 @@ def backup(folder: Path, target: Path) -> None:
     """
     path = folder / FILE_NAME
     if not has_store(folder):
-        raise StoreError(f"there is no store in {folder} yet, so there is nothing to back up", "no-store")
+        raise StoreError(f"no data store exists in {folder} yet, so there is nothing to back up", "no-store")
     if _is_there(target):
         database.check_kind(target)
         if target.samefile(path):
             raise StoreError(
-                f"{target} is the store itself; name another file for the backup", "store-itself"
+                f"{target} is the data store itself; name another file for the backup", "store-itself"
             )
         database.check_header(target)
     found = problems(path)
     if found:
         raise StoreError(
-            f"{path}: {found[0]}; a backup of it would be no use. Restore an older backup", "damaged"
+            f"{path}: {found[0]}; a backup of it would be useless. Restore an older backup", "damaged"
         )
     _copy(path, target, people.forget_pins)
 
@@ -93,7 +93,7 @@ def restore(folder: Path, source: Path) -> Path | None:
     found = problems(source)
     if found:
         raise StoreError(
-            f"{source} cannot be restored: {found[0]}; nothing was changed. Take another backup",
+            f"{source} cannot be restored: {found[0]}; nothing was changed. Use another backup",
             "damaged-backup",
         )
     make_folder(folder)
@@ -103,7 +103,7 @@ def restore(folder: Path, source: Path) -> Path | None:
         if there:
             database.check_kind(path)
         if there and path.samefile(source):
-            raise StoreError(f"{source} is the store itself; name a backup", "store-itself")
+            raise StoreError(f"{source} is the data store itself; name a backup", "store-itself")
         here = _people_of(path) if there else None
         kept = _keep(path) if there else None
         for leftover in database.companions(path):
@@ -162,7 +162,7 @@ def _empty_log(path: Path) -> None:
         busy = connection.execute("PRAGMA wal_checkpoint(TRUNCATE)").fetchone()[0]
     if busy:
         raise StoreError(
-            f"{path} is being read by another program; close that one, then restore again", "in-use"
+            f"{path} is being read by another program; close that program, then restore again", "in-use"
         )
 
 
@@ -189,5 +189,6 @@ def _unwritable(target: Path, error: Exception) -> StoreError:
     if isinstance(error, OSError | sqlite3.Error) and cause_of(target, error) in {Cause.FULL, Cause.LOCKED}:
         return why(target, error)
     return StoreError(
-        f"{target} cannot be written ({said(error)}); check the folder, its space and rights", "cannot-write"
+        (f"{target} cannot be written ({said(error)}); check the folder, its free space and its permissions"),
+        "cannot-write",
     )

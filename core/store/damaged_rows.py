@@ -25,7 +25,7 @@ def repair(connection: sqlite3.Connection) -> tuple[str, ...]:
             marks = ", ".join("?" * len(row))
             connection.execute(f"DELETE FROM {table} WHERE {KEYS[table]} = ?", (key,))
             connection.execute(f"INSERT INTO {table} VALUES ({marks})", row_sums.readable(row))
-            told.append(f"{named(table, key)} was damaged in the store; it is again as it was entered")
+            told.append(f"{named(table, key)} was damaged in the data store; it was restored as entered")
         elif table in _PUT_AWAY:
             told.append(_put_away(connection, table, key))
     return tuple(told)
@@ -33,14 +33,17 @@ def repair(connection: sqlite3.Connection) -> tuple[str, ...]:
 
 def _begin_anew(connection: sqlite3.Connection, program: Key) -> str:
     connection.execute("DELETE FROM runs WHERE program = ?", (program,))
-    return f"{named('runs', program)} was damaged in the store, and begins anew"
+    return f"{named('runs', program)} was damaged in the data store and starts over"
 
 
 def _measure_no_more(connection: sqlite3.Connection, feature: Key) -> str:
     """A feature is retired, as it stands; one with a value that no feature has goes with its readings."""
     row = row_sums.row(connection, "part_features", feature)
     which = f"{_shown(row[1])} {_shown(row[2])}" if row else feature
-    told = f"{named('part_features', which)} was damaged in the store, and is measured no more; enter it anew"
+    told = (
+        f"{named('part_features', which)} was damaged in the data store and is not measured "
+        "any more; enter it again"
+    )
     every = ", ".join(
         f"{column} = {column}"  # SQLite looks only at the bounds of what is set
         for column in row_sums.columns(connection, "part_features")
@@ -58,7 +61,7 @@ def _measure_no_more(connection: sqlite3.Connection, feature: Key) -> str:
         return told
     gone = connection.execute("DELETE FROM part_readings WHERE feature = ?", (feature,)).rowcount
     connection.execute("DELETE FROM part_features WHERE id = ?", (feature,))
-    return f"{told}. Its readings ({gone}) went with it"
+    return f"{told}. Its readings ({gone}) were lost with it"
 
 
 _PUT_AWAY = {"runs": _begin_anew, "part_features": _measure_no_more}
@@ -86,7 +89,7 @@ def damaged(
     """
     looked = [table for table in KEYS if table in tables or (table == "settings" and settings)]
     return tuple(
-        f"{named(table, key)} is not as it was saved, and is not used; {_REMEDY.get(table, _ANEW)}"
+        (f"{named(table, key)} differs from what was saved and is not used; {_REMEDY.get(table, _ANEW)}")
         for table, key in _broken(connection, looked)
         if table in tables or key in settings
     )
@@ -96,20 +99,20 @@ def damaged_histories(connection: sqlite3.Connection) -> tuple[str, ...]:
     """The same of what grows for years, and of the tables as they were made: ``verify`` asks for it."""
     tables = () if row_sums.schema_is_whole(connection) else (TABLES_CHANGED,)
     return tables + tuple(
-        f"{named(table, key)} is not as it was saved" for table, key in _broken(connection, HISTORIES)
+        f"{named(table, key)} was damaged in the data store" for table, key in _broken(connection, HISTORIES)
     )
 
 
-TABLES_CHANGED = "the tables are not those that were made"
+TABLES_CHANGED = "the tables differ from those that were created"
 
 OF_PROGRAMS = ("tool_offsets", "secondary_offsets", "zero_offsets", "mill_tools", "datum_presets")
 """The tables of what programs are proved with."""
 
-_ANEW = "enter it anew, or restore a backup"
+_ANEW = "enter it again, or restore a backup"
 _REMEDY = {
     "part_counts": "count the parts and enter them, or restore a backup",
-    "jobs": "clear the queue of it ('turndesk jobs clear'), and enter it anew",
-    "people": "enter it anew, or reset the levels ('turndesk access reset')",
+    "jobs": "clear it from the queue ('turndesk jobs clear') and enter it again",
+    "people": "enter it again, or reset the levels ('turndesk access reset')",
 }
 
 

@@ -60,12 +60,12 @@ def check_header(path: Path) -> None:
         raise why(path, error) from error
     if len(header) < 100 or not header.startswith(_MAGIC):
         raise StoreError(
-            f"{path} is not a database; it is left as it is. Restore a backup: turndesk store restore FILE",
+            (f"{path} is not a database and was not changed. Restore a backup: turndesk store restore FILE"),
             "not-a-database",
         )
     if int.from_bytes(header[68:72], "big") != APPLICATION_ID:
         raise StoreError(
-            f"{path} is a database of another program; it is left as it is. Name another file",
+            f"{path} is a database of another program and was not changed. Name another file",
             "foreign-database",
         )
 
@@ -78,16 +78,19 @@ def check_kind(path: Path) -> None:
         if not (isinstance(error, FileNotFoundError) and path.is_symlink()):
             raise why(path, error) from error
         raise StoreError(
-            f"{path} is a link to {path.readlink()}, which is not there; mount its disk, then try again",
+            (f"{path} is a link to {path.readlink()}, which does not exist; mount its disk, then try again"),
             "link-without-target",
         ) from error
     except ValueError as error:  # a zero byte in the name
         raise StoreError(
-            f"{str(path)!r} is not a name that a file can have; name another", "not-a-file"
+            f"{str(path)!r} is not a valid file name; enter another name", "not-a-file"
         ) from error
     if not stat.S_ISREG(mode):
         raise StoreError(
-            f"{path} is a folder, a pipe or a device, not a file; it is left as it is. Move it away",
+            (
+                f"{path} is a folder, a pipe or a device, not a file, and was not changed. Move it to "
+                "another place"
+            ),
             "not-a-file",
         )
 
@@ -171,8 +174,10 @@ def _checked(path: Path, *, thorough: bool) -> tuple[int, list[str]]:
         raise why(path, error) from error
     if version > newest:
         raise StoreError(
-            f"{path} was written by a newer TurnDesk (store version {version}, this one knows {newest}); "
-            "it is left as it is. Use the newer TurnDesk",
+            (
+                f"{path} was written by a newer TurnDesk (store version {version}, this one supports "
+                f"{newest}) and was not changed. Use the newer TurnDesk"
+            ),
             "newer-version",
         )
     damage = [text for text in wrong if not _MENDABLE.search(text)]
@@ -187,7 +192,7 @@ def _found_wrong(connection: sqlite3.Connection) -> list[str]:
     return [str(text) for (text,) in found if text != "ok"]
 
 
-INDEX_REBUILT = "an index of the store was damaged; it is made anew from its table, of which nothing is lost"
+INDEX_REBUILT = "an index of the data store was damaged; it was rebuilt from its table, and no data was lost"
 _MOST_WORDS = 1000  # those of pages come first
 _INDEX = re.compile(r"\bindex \S+$")  # row 3 missing from index …, wrong # of entries in index …
 _VALUE = rf"(?:value in|constraint failed in) (?:{'|'.join(row_sums.KEYS)})\b"
@@ -220,8 +225,10 @@ def migrate(connection: sqlite3.Connection, scripts: Sequence[str]) -> None:
             if connection.in_transaction:
                 connection.rollback()
             raise StoreError(
-                f"the store cannot be brought to version {number}, and stays at the one before: "
-                f"{why(_path_of(connection), error)}",
+                (
+                    f"the data store cannot be upgraded to version {number} and stays at the previous "
+                    f"version: {why(_path_of(connection), error)}"
+                ),
                 "migration-failed",
             ) from error
     if len(scripts) >= row_sums.SINCE:
@@ -298,8 +305,10 @@ class WriterLock:
             os.close(self._file)
             who = f" (process {owner})" if owner else ""
             raise StoreError(
-                f"the store in {folder} is in use by another TurnDesk{who}; close that one, "
-                "or enter it there",
+                (
+                    f"the data store in {folder} is in use by another TurnDesk{who}; close that TurnDesk, "
+                    "or make the entry there"
+                ),
                 "in-use",
             ) from error
         mark_locked(self._file)
@@ -375,7 +384,7 @@ def open_to_read(folder: Path) -> Opened:
     version = check_file(path, thorough=False)
     if version < len(migrations()):
         raise StoreError(
-            f"{path} is from an older TurnDesk; bring it up to date: turndesk store upgrade", "older-version"
+            f"{path} is from an older TurnDesk; upgrade it: turndesk store upgrade", "older-version"
         )
     reader = connect(path, read_only=True)
     try:
@@ -417,8 +426,11 @@ def check_log(path: Path, reader: sqlite3.Connection) -> None:
     lost = _lost_changes(path, reader)
     if lost:
         raise StoreError(
-            f"{path}: its log is damaged, and {_changes(lost)} saved last cannot be read; start turndesk "
-            "once, which keeps the log beside and goes on with what was there before, or restore a backup",
+            (
+                f"{path}: its log is damaged, and {_changes(lost)} cannot be read; start turndesk "
+                "once, which saves a copy of the log and continues with the earlier data, or restore "
+                "a backup"
+            ),
             "damaged-log",
         )
 
@@ -439,8 +451,11 @@ def _put_damaged_log_aside(path: Path) -> tuple[str, ...]:
     with closing(connect(path, read_only=False)) as writer:
         writer.execute("PRAGMA wal_checkpoint(TRUNCATE)")
     return (
-        f"the store's log was damaged: {_changes(lost)} saved last, before the control ended, went with it. "
-        f"Look at offsets, counts and settings before a part is made; the log is kept as {kept.name}",
+        (
+            f"the log of the data store was damaged and lost {_changes(lost)} from before the "
+            "control ended. Check offsets, counts and settings before you make a part; the log "
+            f"is saved as {kept.name}"
+        ),
     )
 
 
@@ -460,7 +475,7 @@ def _lost_changes(path: Path, reader: sqlite3.Connection) -> int:
 
 
 def _changes(count: int) -> str:
-    return "the change" if count == 1 else f"the {count} changes"
+    return "the last saved change" if count == 1 else f"the last {count} saved changes"
 
 
 def make_folder(folder: Path) -> None:
@@ -474,7 +489,10 @@ def make_folder(folder: Path) -> None:
         if cause_of(folder, error) is Cause.FULL:
             raise why(folder, error) from error
         raise StoreError(
-            f"the folder {folder} cannot be made ({error.strerror}); set TURNDESK_HOME to a folder of yours",
+            (
+                f"the folder {folder} cannot be created ({error.strerror}); set TURNDESK_HOME to a "
+                "folder of yours"
+            ),
             "cannot-make-folder",
         ) from error
     for each in (folder, *(folder / name for name in _PRIVATE)):
@@ -486,7 +504,10 @@ def _refuse_lost_file(path: Path) -> None:
     if _has_log(path):
         log, _ = companions(path)
         raise StoreError(
-            f"{path} has gone but its log {log.name} is still there; put the file back, or move the log away",
+            (
+                f"{path} is missing, but its log {log.name} still exists; put the file back, or move "
+                "the log away"
+            ),
             "database-gone",
         )
 

@@ -88,7 +88,7 @@ def add(connection: sqlite3.Connection, program: str, wanted: int, note: str = "
     _check(wanted, note)
     count, last = connection.execute("SELECT count(*), coalesce(max(place), 0) FROM jobs").fetchone()
     if count >= MOST_JOBS:
-        raise StoreError(f"there are {MOST_JOBS} jobs already; take those away that are done", "queue-full")
+        raise StoreError(f"the queue is full ({MOST_JOBS} jobs); remove finished jobs", "queue-full")
     done = connection.execute(
         "INSERT INTO jobs (place, program, wanted, note, added) VALUES (?, ?, ?, ?, ?)",
         (last + 1, program, wanted, note, utc_now()),
@@ -136,7 +136,7 @@ def begin(connection: sqlite3.Connection, job: int) -> None:
     row = next((row for row in jobs(connection) if row.id == job), None)
     if row is None:
         raise StoreError(
-            "that job is not as it was saved; clear it from the queue and enter it anew", "damaged-job"
+            "that job differs from what was saved; clear it from the queue and enter it again", "damaged-job"
         )
     connection.execute("UPDATE jobs SET base = ? WHERE id = ?", (row.counted, job))
 
@@ -172,9 +172,11 @@ def load_text(connection: sqlite3.Connection, program: str, text: str) -> None:
 
 def _check(wanted: int, note: str) -> None:
     if not 1 <= wanted <= MOST_PARTS:
-        raise StoreError(f"a job has 1 to {MOST_PARTS} parts, not {wanted}", "part-count")
+        raise StoreError(f"a job must have 1 to {MOST_PARTS} parts, not {wanted}", "part-count")
     if len(note) > NOTE_LONGEST or not note.isprintable():
-        raise StoreError(f"the note of a job has {NOTE_LONGEST} letters at most, on one line", "invalid-note")
+        raise StoreError(
+            f"a job note can have at most {NOTE_LONGEST} characters, on one line", "invalid-note"
+        )
 
 
 def _demand(connection: sqlite3.Connection, job: int) -> None:

@@ -67,7 +67,7 @@ def save_feature(connection: sqlite3.Connection, row: FeatureRow) -> int:
     ).fetchone()
     if taken is not None:
         raise StoreError(
-            f"{row.program} has a feature {row.name!r} already; give this one another name", "name-in-use"
+            f"{row.program} already has a feature {row.name!r}; give this feature another name", "name-in-use"
         )
     values = row[1:]
     if not row.id:
@@ -81,7 +81,7 @@ def save_feature(connection: sqlite3.Connection, row: FeatureRow) -> int:
         f"UPDATE part_features SET {setting} WHERE id = ? AND retired = 0", (*values, row.id)
     )
     if not done.rowcount:
-        raise StoreError(f"{row.name} is not measured any more; enter it anew", "feature-gone")
+        raise StoreError(f"{row.name} is not measured any more; enter it again", "feature-gone")
     return row.id
 
 
@@ -93,13 +93,13 @@ def retire_feature(connection: sqlite3.Connection, feature: int) -> None:
 def add_reading(connection: sqlite3.Connection, row: ReadingRow) -> int:
     """One reading, at this moment; answers its id. Raises StoreError for a feature that is not there."""
     if not math.isfinite(row.value):
-        raise StoreError("a reading is a number; measure again", "not-a-number")
+        raise StoreError("a reading must be a number; measure again", "not-a-number")
     there = connection.execute(
         "SELECT 1 FROM part_features WHERE id = ? AND retired = 0", (row.feature,)
     ).fetchone()
     if there is None:
         raise StoreError(
-            "the feature of this reading is not measured any more; nothing was kept", "feature-gone"
+            "the feature of this reading is not measured any more; nothing was saved", "feature-gone"
         )
     done = connection.execute(
         "INSERT INTO part_readings (feature, part, value, unit, at, source, gauge)"
@@ -113,7 +113,7 @@ def void_reading(connection: sqlite3.Connection, reading: int) -> None:
     """Take a reading out; it stays in the file and counts no more. Raises StoreError where there is none."""
     done = connection.execute("UPDATE part_readings SET void = 1 WHERE id = ? AND void = 0", (reading,))
     if not done.rowcount:
-        raise StoreError("that reading is taken out already", "already-removed")
+        raise StoreError("that reading has already been deleted", "already-removed")
 
 
 def readings(connection: sqlite3.Connection, program: str, limit: int) -> tuple[ReadingRow, ...]:

@@ -69,7 +69,7 @@ class Field:
         if self.sort in _UNITS:
             return f"{self.low:g}…{self.high:g} {_UNITS[self.sort]}"
         if self.sort is Sort.TEXT:
-            return f"up to {self.high:g} characters in one line"
+            return f"up to {self.high:g} characters on one line"
         return f"{self.low:g}…{self.high:g}"
 
     def takes(self, value: object) -> bool:

@@ -78,25 +78,23 @@ def _columns(kind: Kind) -> tuple[str, ...]:
 
 
 # Columns of a secondary offset are the first of those of a tool: both share one history.
-_OFFSETS = _Log("offset_changes", "number", _columns(Kind.TOOL), "kind", "there is no offset change to undo")
-_ZEROS = _Log(
-    "zero_offset_changes", "code", _columns(Kind.ZERO), "'zero'", "there is no change of G54…G59 to undo"
-)
-_NO_SHAPE = "there is no change of a tool's shape to undo"
+_OFFSETS = _Log("offset_changes", "number", _columns(Kind.TOOL), "kind", "no offset change to undo")
+_ZEROS = _Log("zero_offset_changes", "code", _columns(Kind.ZERO), "'zero'", "no change of G54…G59 to undo")
+_NO_SHAPE = "no tool shape change to undo"
 _SHAPES = _Log("tool_shape_changes", "number", _columns(Kind.SHAPE), "'shape'", _NO_SHAPE)
 _MILL_TOOLS = _Log(
     "mill_tool_changes",
     "number",
     _columns(Kind.MILL_TOOL),
     "'mill tool'",
-    "there is no change of a tool to undo",
+    "no tool data change to undo",
 )
 _PRESETS = _Log(
     "datum_preset_changes",
     "number",
     _columns(Kind.PRESET),
     "'preset'",
-    "there is no change of a preset to undo",
+    "no preset change to undo",
 )
 _MOST_STEPS = 2**62  # SQLite counts as far as twice that
 _LOGS = (_OFFSETS, _ZEROS, _SHAPES, _MILL_TOOLS, _PRESETS)
@@ -166,11 +164,13 @@ def _check_edge(kind: Kind, number: int, rows: Mapping[int, Row], wanted: Mappin
         return
     if tool_of(number) not in rows:
         raise StoreError(
-            f"{edge_name(tool_of(number))} was never set; set its D1 before {edge_name(number)}", "never-set"
+            (f"{edge_name(tool_of(number))} has never been set; set its D1 before {edge_name(number)}"),
+            "never-set",
         )
     if wanted.get("master"):
         raise StoreError(
-            f"{edge_name(number)} is a further edge; a tool is the master by its D1", "not-first-edge"
+            (f"{edge_name(number)} is an additional cutting edge; a tool is made the master at its D1"),
+            "not-first-edge",
         )
 
 
@@ -180,7 +180,7 @@ def _other_masters(rows: Mapping[int, Row], number: int) -> list[tuple[int, Tool
 
 def never_set(number: int) -> str:
     """Why a tool cannot be the master."""
-    return f"{edge_name(number)} was never set, so nothing can be relative to it; touch it off first"
+    return f"{edge_name(number)} has never been set, so no tool can be relative to it; touch it off first"
 
 
 def check_number(kind: Kind, number: int) -> None:
@@ -192,7 +192,7 @@ def check_number(kind: Kind, number: int) -> None:
         raise StoreError(f"G{number} does not exist; settable offsets are G54…G59", "unknown-number")
     if kind in {Kind.MILL_TOOL, Kind.PRESET}:
         last = MILL_TOOLS[-1] if kind is Kind.MILL_TOOL else PRESETS[-1]
-        raise StoreError(f"{table.letter}{number} does not exist; they are 1…{last}", "unknown-number")
+        raise StoreError(f"{table.letter}{number} does not exist; use 1 to {last}", "unknown-number")
     raise StoreError(
         f"{table.letter}{number} does not exist; offsets are {table.letter}1…32", "unknown-number"
     )
@@ -244,7 +244,8 @@ def remove(connection: sqlite3.Connection, kind: Kind, number: int, reason: Reas
     edges = [edge_name(n) for n in rows if kind is Kind.TOOL and n != number and tool_of(n) == number]
     if edges:
         raise StoreError(
-            f"{edge_name(number)} has further edges; clear {', '.join(edges)} first", "has-further-edges"
+            f"{edge_name(number)} has other cutting edges; clear {', '.join(edges)} first",
+            "has-further-edges",
         )
     if old is not None:
         apply(connection, kind, {number: (old, None)}, reason)
@@ -403,7 +404,7 @@ def named(name: str, key: row_sums.Key) -> str:
     """A row of a table with a sum, as people call it."""
     table = next((each for each in _TABLES.values() if each.name == name), None)
     if any(log.name == name for log in _LOGS):
-        return f"entry {key} of the history of offsets"
+        return f"entry {key} of the offset history"
     if table is None:
         return f"{_OTHERS[name]} {' '.join(str(key).split())}"
     if table.letter != "T" or not isinstance(key, int):
@@ -418,10 +419,10 @@ _OTHERS = {
     "mill_tool_lives": "the life of tool",
     "jobs": "the job",
     "people": "the PIN of",
-    "runs": "the record of",
+    "runs": "the run record of",
     "part_features": "the measured feature",
     "part_readings": "the reading",
-    "insert_changes": "the change of an insert",
+    "insert_changes": "the insert change",
     "events": "the event",
     "programs": "the program entry",
     "program_versions": "the version entry",
@@ -464,8 +465,10 @@ def _select(
 
 def _damaged_entry(entry: object) -> StoreError:
     return StoreError(
-        f"entry {entry} of the history of offsets is damaged; the offsets themselves are looked at by their "
-        "own sums. Restore a backup for the history",
+        (
+            f"entry {entry} of the offset history is damaged; the offsets themselves are verified "
+            "by separate checksums. Restore a backup to recover the history"
+        ),
         "damaged-history",
     )
 

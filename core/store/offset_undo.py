@@ -23,7 +23,7 @@ def undo_step(
     changed_since = [str(row.number) for row in rows if now.get(row.number) != row.new]
     if not rows or rows[0].step != step or changed_since:
         raise StoreError(
-            f"offset {', '.join(changed_since) or number or ''} has changed since; undo that change first",
+            (f"offset {', '.join(changed_since) or number or ''} was changed later; undo that change first"),
             "changed-since",
         )
     after = {**now, **{row.number: row.old for row in rows}}
@@ -38,7 +38,9 @@ def _check(kind: Kind, rows: Mapping[int, Row]) -> None:
     masters = [edge_name(n) for n, row in rows.items() if isinstance(row, ToolRow) and row.master]
     if len(masters) > 1:
         raise StoreError(
-            f"{' and '.join(masters)} would both be the master; choose no master first", "two-masters"
+            f"{' and '.join(masters)} would both be the master; clear the master first", "two-masters"
         )
     if orphans := [edge_name(n) for n in rows if tool_of(n) not in rows]:
-        raise StoreError(f"{', '.join(orphans)} would have no tool; clear it first", "has-further-edges")
+        raise StoreError(
+            f"{', '.join(orphans)} would be left without a tool; clear it first", "has-further-edges"
+        )

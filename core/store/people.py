@@ -57,7 +57,7 @@ def check_person(name: str) -> str:
     """The name as it is kept, in capitals. Raises StoreError for what names nobody."""
     name = " ".join(name.split()).upper()
     if not name or len(name) > NAME_LONGEST or not name.isprintable():
-        raise StoreError(f"a name has 1 to {NAME_LONGEST} letters", "invalid-name")
+        raise StoreError(f"a name must have 1 to {NAME_LONGEST} characters", "invalid-name")
     return name
 
 
@@ -72,7 +72,7 @@ def keep_person(connection: sqlite3.Connection, row: PersonRow) -> None:
 def remove_person(connection: sqlite3.Connection, name: str) -> None:
     """He works here no more. Raises StoreError where nobody of the highest level would stay among others."""
     if not connection.execute("DELETE FROM people WHERE name = ?", (name,)).rowcount:
-        raise StoreError(f"{name} is not among the people", "unknown-person")
+        raise StoreError(f"{name} is not in the list of people", "unknown-person")
     _demand_service(connection)
 
 
@@ -101,5 +101,6 @@ def _demand_service(connection: sqlite3.Connection) -> None:
     levels = {level for (level,) in connection.execute("SELECT level FROM people")}
     if levels and max(levels) < 3:
         raise StoreError(
-            "one of SERVICE level has to stay, who enters the others; enter one first", "last-service-person"
+            "one person with SERVICE level must remain to enter the others; enter one first",
+            "last-service-person",
         )

@@ -19,7 +19,8 @@ def check_name(name: str) -> None:
     clean = name.strip() == name and name not in ("", ".", "..")
     if not clean or not name.isprintable() or _FORBIDDEN & set(name) or len(name.encode()) > _NAME_BYTES:
         raise StoreError(
-            f"{name!r} cannot name a program; take letters, digits, dot, dash and blank", "invalid-name"
+            (f"{name!r} is not a valid program name; use letters, digits, periods, dashes and spaces"),
+            "invalid-name",
         )
 
 
@@ -76,13 +77,14 @@ def load(connection: sqlite3.Connection, name: str, version: int | None) -> byte
     if row is None:
         which = "" if version is None else f" version {version}"
         raise StoreError(
-            f"the store has no program {name!r}{which}; see the list of programs and versions", "no-program"
+            f"the data store has no program {name!r}{which}; see the list of programs and versions",
+            "no-program",
         )
     number, text, digest = row
     if not _is_whole(text, digest):
         shown = _in_line(number)
         raise StoreError(
-            f"{name!r} version {shown} is not what was saved; load another version or a backup",
+            (f"{name!r} version {shown} differs from what was saved; load another version or a backup"),
             "damaged-version",
         )
     return bytes(text)

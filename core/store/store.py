@@ -130,7 +130,7 @@ class Store:
                     yield connection
             except sqlite3.ProgrammingError as error:
                 raise StoreError(
-                    f"{self.path} is closed; nothing can be read from it any more", "closed"
+                    f"{self.path} is closed; nothing more can be read from it", "closed"
                 ) from error
             except sqlite3.Error as error:
                 raise why(self.path, error) from error
@@ -251,7 +251,7 @@ class Store:
     def write(self, operation: Operation[T]) -> Future[T]:
         """Posts one transaction to the writer. Raises StoreError in a read-only store."""
         if self._writer is None:
-            raise StoreError(f"{self.path} is open for reading only; nothing can be stored", "read-only")
+            raise StoreError(f"{self.path} is open read-only; nothing can be stored", "read-only")
         return self._writer.post(operation)
 
     def keep(self, keeping: Keeping) -> Future[None]:
@@ -260,7 +260,7 @@ class Store:
         The future is answered when it is on the disk, and with StoreError when it is held for later.
         """
         if self._writer is None:
-            raise StoreError(f"{self.path} is open for reading only; nothing can be stored", "read-only")
+            raise StoreError(f"{self.path} is open read-only; nothing can be stored", "read-only")
         return self._writer.keep(keeping)
 
     def set_offset(

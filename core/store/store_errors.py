@@ -28,16 +28,19 @@ _FORBIDDEN = frozenset({errno.EACCES, errno.EPERM, errno.EROFS})
 class Cause(Enum):
     """What is wrong, and what to do about it."""
 
-    FULL = "the disk is full: {path} takes nothing more; make room on that disk"
-    LOCKED = "{path} is locked by another program; close that one, then try again"
-    FORBIDDEN = "{path} may not be used so by this user ({error}); check its rights and those of its folder"
-    GONE = "{path} is not there: look at the name, or put it back and start turndesk again"
-    FAILING = "{path}: the disk fails ({error}); check that it is there and sound"
-    HANGS = "the disk does not respond: changes wait to be written to {path}; check the disk and its cable"
-    DAMAGED = (
-        "{path} is damaged ({error}); it is left as it is. Restore a backup: turndesk store restore FILE"
+    FULL = "the disk is full, so nothing more can be written to {path}; free space on that disk"
+    LOCKED = "{path} is locked by another program; close that program, then try again"
+    FORBIDDEN = (
+        "this user has no permission for this use of {path} ({error}); check its permissions "
+        "and those of its folder"
     )
-    OTHER = "{path} cannot be used ({error}); it is left as it is"
+    GONE = "{path} was not found: check the name, or put the file back and start turndesk again"
+    FAILING = "{path}: the disk is failing ({error}); check that it is connected and in good condition"
+    HANGS = (
+        "the disk does not respond: changes are waiting to be written to {path}; check the disk and its cable"
+    )
+    DAMAGED = "{path} is damaged ({error}) and was not changed. Restore a backup: turndesk store restore FILE"
+    OTHER = "{path} cannot be used ({error}) and was not changed"
 
     @property
     def code(self) -> str:

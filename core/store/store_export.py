@@ -50,7 +50,10 @@ def export(store: Store, folder: Path) -> int:
         if cause_of(folder, error) is Cause.FULL:
             raise why(folder, error) from error
         raise StoreError(
-            f"{folder} cannot be written ({said(error)}); check the folder, its space and rights",
+            (
+                f"{folder} cannot be written ({said(error)}); check the folder, its free space and "
+                "its permissions"
+            ),
             "cannot-write",
         ) from error
     return count
@@ -78,12 +81,12 @@ def _file_name(name: object) -> str:
     if isinstance(name, str) and name and Path(name).name == name and "\0" not in name:
         return name
     raise StoreError(
-        f"the store has a program under the name {name!r}, which is none; restore a backup", "invalid-name"
+        f"the data store has a program with the invalid name {name!r}; restore a backup", "invalid-name"
     )
 
 
 def _offset_lines(store: Store) -> Iterator[str]:
-    yield "# Offsets in inches, X a radius."
+    yield "# Offsets in inches; X is a radius."
     for code, zero in store.zero_offsets().items():
         yield f"[zero.{code}]  # mm and degrees"
         yield from (f"{name} = {value!r}" for name, value in zero._asdict().items())
@@ -163,7 +166,8 @@ def _numbered(path: Path, line: int, row: dict[str, str], kind: Kind) -> tuple[i
         return int(row["number"]), values
     except (KeyError, ValueError, TypeError) as error:
         text = (
-            f"{path} line {line}: {error}; each row has a number and figures, as 'store export' writes them"
+            f"{path} line {line}: {error}; each row must have a number and its values, as written "
+            "by 'store export'"
         )
         raise StoreError(text, "unreadable-export") from error
 
@@ -178,6 +182,6 @@ def program_files(folder: Path) -> dict[str, bytes]:
         return {path.name: input_bytes(path, _LARGEST) for path in sorted((folder / PROGRAMS).iterdir())}
     except OSError as error:
         raise StoreError(
-            f"{folder} is no exported folder ({said(error)}); name one that 'store export' wrote",
+            (f"{folder} is not an exported folder ({said(error)}); name a folder that 'store export' wrote"),
             "not-an-export",
         ) from error

@@ -115,7 +115,7 @@ class ShapeRow(NamedTuple):
     pitch: Annotated[float, Field("pitch", 0.0, MM_PER_INCH)] = 0.0
     flutes: Annotated[int, Field("flutes", 0, 20, Sort.WHOLE)] = 0
     entry: Annotated[float, Field("entering angle", 0.0, 150.0, Sort.ANGLE)] = 0.0
-    rear: Annotated[bool, Field("behind the spindle", 0, 1, Sort.FLAG)] = False
+    rear: Annotated[bool, Field("rear tool", 0, 1, Sort.FLAG)] = False
     profile: Annotated[str, Field("profile", 0, OUTLINE_LONGEST, Sort.TEXT)] = ""
 
 

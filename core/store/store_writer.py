@@ -115,7 +115,9 @@ class Unwritten:
         """Everything, inside the caller's transaction. What the store would never take is told in its log."""
         refused = [why for why in (_done(each, connection) for each in self._operations()) if why]
         if self._dropped:
-            refused.append(f"{self._dropped} events had no room while nothing could be written")
+            refused.append(
+                f"{self._dropped} events were lost for lack of memory while nothing could be written"
+            )
         now = utc_now()
         event_log.log(connection, (*self._events, *(EventRow(now, "warning", why) for why in refused)))
 
@@ -140,7 +142,7 @@ def _done(operation: Deferred, connection: sqlite3.Connection) -> str:
     try:
         operation(connection)
     except (StoreError, sqlite3.IntegrityError) as error:
-        return f"not kept: {error}"
+        return f"not saved: {error}"
     return ""
 
 
@@ -250,7 +252,7 @@ class StoreWriter:
     def _put(self, task: Keeping) -> None:
         with self._closing:
             if self._closed:
-                raise StoreError("the store is closed; nothing can be written any more", "closed")
+                raise StoreError("the data store is closed; nothing more can be written", "closed")
             self._posted.append(self._clock())
             self._queue.put(task)
 
@@ -328,5 +330,5 @@ class StoreWriter:
             return StoreError(f"nothing was stored ({error})", "constraint")  # nothing is wrong with the disk
         self._trouble = str(why(self._path, error))
         cause = cause_of(self._path, error)
-        told = StoreError(f"nothing was stored: {self._trouble}, then enter it again", cause.code)
+        told = StoreError(f"nothing was stored: {self._trouble}, then make the entry again", cause.code)
         return StoreError(self._trouble, cause.code) if cause is Cause.DAMAGED else told

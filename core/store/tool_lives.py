@@ -99,5 +99,5 @@ def _demand_tool(number: int, kind: Kind) -> None:
     numbers = _NUMBERS[kind]
     if number not in numbers:
         raise StoreError(
-            f"there is no tool T{number}; tools are T{numbers[0]} to T{numbers[-1]}", "unknown-tool"
+            f"tool T{number} does not exist; tools are T{numbers[0]} to T{numbers[-1]}", "unknown-tool"
         )

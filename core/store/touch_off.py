@@ -40,7 +40,7 @@ def touch_off(
     rows = offset_tables.tools(connection)
     old = rows.get(number)
     if old is None and (touch.x is None or touch.z is None):
-        raise StoreError(f"{edge_name(number)} was never set; touch both X and Z", "needs-both-axes")
+        raise StoreError(f"{edge_name(number)} has never been set; touch off both X and Z", "needs-both-axes")
     geometry = {name: value for name, value in (("x", touch.x), ("z", touch.z)) if value is not None}
     new = _tool(number, old, {**geometry, **{f"wear_{name}": 0.0 for name in geometry}})
     changes: dict[int, tuple[Row | None, Row | None]] = {number: (old, new)}

@@ -123,7 +123,7 @@ class GrblMachine:
         self._rounds(_CONNECTING)
         if c.busy or c.identity is None or (c.fault and c.alarm == 0):
             c.close()
-            raise DriverError(f"{c.config.port}: {c.fault or 'the controller does not answer'}")
+            raise DriverError(f"{c.config.port}: {c.fault or 'no response from controller'}")
 
     def _rounds(self, limit: float) -> None:
         end = self._clock.now() + limit

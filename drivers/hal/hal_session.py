@@ -42,7 +42,7 @@ _PLAIN = {
 }
 
 
-_ENDED, _MUTE = "the bridge to HAL has ended", "it says nothing"
+_ENDED, _MUTE = "HAL bridge process has ended", "it says nothing"
 
 
 class Verdict(NamedTuple):

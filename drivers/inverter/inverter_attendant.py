@@ -227,7 +227,7 @@ class Attendant:
         """Nothing seen for too long is trouble, also when nothing was wanted of it."""
         never = self.seen is None and self._clock.now() >= self.grace
         if (never or self.silent_for >= LOST) and not self.trouble:
-            why = self.missed or "the inverter does not answer"
+            why = self.missed or "no response from inverter"
             self._latch(f"{why}: {PRESS}" if self._may_turn() else why, "inverter-silent")
 
     def _may_turn(self) -> bool:

@@ -178,7 +178,7 @@ class HalFarEnd:
         """Whatever it has told."""
         self.plant.advance()
         if self.killed:
-            raise DriverError("the bridge to HAL has ended", "hal-bridge")
+            raise DriverError("HAL bridge process has ended", "hal-bridge")
         while len(self._outbox) > self.late:
             data = self._outbox.popleft()
             yield unpack(data[3:] if self.garbled else data)

@@ -11,6 +11,7 @@ from core.store.store import Store
 from core.store.store_rows import Kind, MillRow, PresetRow
 from core.store.tool_lives import LifeRow
 from tests.cli.conftest import Turndesk
+from tests.texts import shows
 
 TOOL = ("offsets", "set", "TOOL7", "L=60", "R=12/2", "DL=-.02", "name=Mill 12", "time2=90", "stop=1")
 PRESET = ("offsets", "set", "preset3", "x=230", "y=210", "z=-350", "rot=2.5", "c=-30")
@@ -38,8 +39,8 @@ def test_tools_and_presets_are_set_by_the_words_of_their_columns(turndesk: Turnd
 @pytest.mark.parametrize(
     ("words", "code", "value"),
     [
-        (("TOOL0", "L=1"), "unknown-number", "1…999"),
-        (("PRESET100", "x=1"), "unknown-number", "1…99"),
+        (("TOOL0", "L=1"), "unknown-number", "1 to 999"),
+        (("PRESET100", "x=1"), "unknown-number", "1 to 99"),
         (("TOOL7", "L=1001"), "out-of-range", "-1000…1000 mm"),
         (("TOOL7", "radius=-1"), "out-of-range", "0…1000 mm"),
         (("TOOL7", "x=1"), "unknown-key", "x"),
@@ -96,10 +97,10 @@ def test_a_part_with_a_tool_whose_life_is_gone_is_refused(
     run = ("run", part, "--headless", "--realtime", "--machine", "ac-table-mill")
     first = turndesk(*run)
     assert first.status == 0, first.err
-    assert "T7: ITS LIFE IS GONE" in first.err
+    assert shows(first.err, "measure.life-is-gone", number=7)
     second = turndesk(*run)
     assert second.status == 1
-    assert "the life of T7 is gone" in second.err
+    assert shows(second.err, "measure.life-used-up", number=7)
     assert "set its CUR.TIME to 0 in the tool table" in second.err
     with Store.open(home) as store:
         with store.read() as connection:

@@ -11,6 +11,8 @@ import pytest
 
 from tests.cli.conftest import Turndesk
 from tests.drawings.hand import chain, dxf
+from tests.texts import shows
+from tests.texts import text as wording
 
 SHEET = """
 [tool.1]
@@ -77,9 +79,10 @@ def test_a_program_on_stdout_and_what_it_needs_beside_it(turndesk: Turndesk, par
     assert done.out.startswith("G90G94F7620G71G72(HEAD METRIC")
     assert "(FACE" in done.out
     assert "(GROOVE FRONT SIDE 8 TOP 6 BOTTOM 5 AT" in done.out
-    assert "secondary offset 1 has to hold X -.7976 (as a diameter), Z -.3988, R .3988 mm" in done.err
-    assert ".248 mm stays in the corner at Z -9.975, by the nose of the tool" in done.err
-    assert "elsewhere the proved part is the drawing's within" in done.err
+    nose = {"number": 1, "x": "-.7976", "z": "-.3988", "radius": ".3988", "unit": "mm"}
+    assert wording("shapes.secondary-must-have", **nose) in done.err
+    assert wording("shapes.stock-in-corner", size=".248", unit="mm", z="-9.975") in done.err
+    assert shows(done.err, "shapes.matches-drawing", what=wording("shapes.elsewhere-proved"), unit="mm")
 
 
 def test_it_is_written_to_a_file_and_told_as_json(
@@ -103,7 +106,7 @@ def test_tools_depth_and_compensation(turndesk: Turndesk, part: Path, sheet: Pat
     assert "G41" not in told(turndesk, part, "--tools", sheet, "--comp", 0)["program"]
     assert "G75" not in told(turndesk, part, "--tools", sheet, "--rough", 0)["program"]
     found = told(turndesk, part, "--tools", sheet, "--groove-tool", 1)
-    assert found["left"][0]["why"] == "a groove, and T1 has no width"
+    assert found["left"][0]["why"] == wording("shapes.no-groove-width", tool=1)
 
 
 def test_layer_contour_and_bore(turndesk: Turndesk, part: Path, sheet: Path) -> None:

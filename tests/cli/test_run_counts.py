@@ -11,6 +11,7 @@ from core.store import part_cycles, tool_lives
 from core.store.store import Store
 from core.store.tool_lives import LifeRow
 from tests.cli.conftest import Turndesk
+from tests.texts import shows
 
 pytestmark = pytest.mark.usefixtures("paced_by_steps")
 
@@ -57,11 +58,11 @@ def test_the_part_after_the_last_of_a_life_is_refused(
     limited(home, 1, stops=True)
     first = turndesk("run", part, "--headless", "--realtime", "--offsets", offsets)
     assert first.status == 0
-    assert "T1: ITS LIFE IS GONE" in first.err
+    assert shows(first.err, "measure.life-is-gone", number=1)
     second = turndesk("run", part, "--headless", "--realtime", "--offsets", offsets)
     assert second.status == 1
     assert "refused: " in second.err
-    assert "the life of T1 is gone, 1 of 1 parts" in second.err
+    assert shows(second.err, "measure.life-used-up", number=1, words="1 of 1 parts")
     assert life(home).parts == 1
 
 

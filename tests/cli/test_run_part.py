@@ -11,6 +11,7 @@ from core.store.store import Store
 from tests.cli.conftest import Told, Turndesk
 from tests.cli.test_prove import written
 from tests.cli.test_stock_option import PART, chuck
+from tests.texts import fragment, shows
 
 SLIP = PART.replace("G95F.004Z-.5", "G00Z-.5")  # the diameter of .8 is turned at a rapid
 TOOL = '[tool.1]\nkind = "turning"\ntip = 3\nnose_radius = 0.0156\ninsert = "DCMT11T304"\n'
@@ -32,7 +33,7 @@ def test_a_slip_refuses_the_run_where_stock_and_tool_are_said(
     told = turndesk("run", written(tmp_path, SLIP), *given)
     assert state(told) == (1, "refused")
     assert told.lines[-1]["events"] == ""  # nothing was connected
-    assert "9:1: error: A rapid goes into metal" in told.err
+    assert f"9:1: error: {fragment('desk.rapid-into-stock')}" in told.err
     assert state(turndesk("run", written(tmp_path, PART), *given)) == (0, "complete")
 
 
@@ -41,7 +42,7 @@ def test_what_rests_on_something_assumed_is_told_and_runs(
 ) -> None:
     told = turndesk("run", written(tmp_path, SLIP), "--headless", "--json", "--offsets", offsets)
     assert state(told) == (0, "complete")
-    (line,) = [each for each in told.err.splitlines() if "A rapid goes into metal" in each]
+    (line,) = [each for each in told.err.splitlines() if shows(each, "desk.rapid-into-stock")]
     assert ":9:1: warning:" in line
     assert "Assumed: stock." in line
 

@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from tests.cli.conftest import Turndesk
+from tests.texts import text as wording
 
 PART = "G90G94F300\nT1\nX.5Z.1\nM30\n"
 OFFSETS = "[tool.1]\nx = 0.0\nz = 0.0\n"
@@ -115,4 +116,4 @@ def test_a_stream_that_is_closed_is_no_fault(closed: int, part: Path) -> None:
 def test_a_closed_stdin_is_told(tmp_path: Path) -> None:
     told = _turndesk(tmp_path, "prove", "-", preexec_fn=lambda: os.close(0))
     assert told.returncode == 2
-    assert told.stderr == b"turndesk: stdin is closed, so no program comes in there; name a file\n"
+    assert told.stderr.decode() == f"turndesk: {wording('desk.stdin-closed', what='program')}\n"

@@ -14,6 +14,7 @@ from core.store import database
 from core.store.store import Store
 from core.store.store_rows import SecondaryRow, ToolRow
 from tests.coded import recorded_refusals
+from tests.texts import text as wording
 
 Captured = pytest.CaptureFixture[str]
 
@@ -129,7 +130,7 @@ def test_verify_says_whole_or_what_is_wrong(capsys: Captured, filled: Path) -> N
     assert main(["store", "verify"]) == 1
     told = capsys.readouterr()
     assert told.out == ""
-    assert "'PIN.nc' version 1 is not what was saved" in told.err
+    assert wording("log.differs-from-saved", what="'PIN.nc' version 1") in told.err
 
 
 def test_verify_of_no_store(capsys: Captured, home: Path) -> None:

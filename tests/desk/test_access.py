@@ -646,7 +646,7 @@ def test_a_level_falls_back_and_says_so_before(room: Room) -> None:
     assert (room.access.name, room.access.level) == ("", Level.OPERATOR)
     assert shows(room.desk.notice, "desk.was-away")
     assert room.log("access")[-1] == (
-        wording("log.signed-out", name="ANNA", why=", after 10 min without a key"),
+        wording("log.signed-out", name="ANNA", why=wording("log.without-input", minutes=10)),
         "ANNA",
     )
 

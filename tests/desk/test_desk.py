@@ -214,7 +214,7 @@ def test_a_refused_start_says_why_each_time(desk: Desk, machine: FakeMachine) ->
 
 
 def test_what_the_executor_refuses_is_said(desk: Desk, machine: FakeMachine) -> None:
-    desk.hear(Event(1.0, "refused", "wait until the slides are at rest"))
+    desk.hear(Event(1.0, "refused", text("desk.slides-at-rest")))
     desk.hear(Event(1.1, "state", "READY"))
     desk.look()
     assert desk.notice == text("screen.refused", why=text("desk.slides-at-rest"))

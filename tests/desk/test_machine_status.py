@@ -130,7 +130,7 @@ def test_constant_surface_speed_is_named() -> None:
         (900.0, 0.0, "SPINDLE", False, False),
         (900.0, 880.0, "SPINDLE FWD", True, False),
         (-900.0, -880.0, "SPINDLE REV", True, False),
-        (0.0, 400.0, "SPINDLE COASTS", True, True),
+        (0.0, 400.0, text("desk.spindle-coasts"), True, True),
     ],
 )
 def test_spindle_lamp_tells_what_turns(
@@ -144,8 +144,9 @@ def test_spindle_lamp_tells_what_turns(
 def test_a_spindle_that_is_held_at_an_angle_is_told_and_does_not_coast_on_its_way_there() -> None:
     turning = status_of(replace(AT, orienting=True, rpm_actual=90.0), Readout.POSITION, True)
     held = status_of(replace(AT, oriented=90.0), Readout.POSITION, True)
-    assert (turning.lamps[0].word, turning.lamps[0].warn) == ("SPINDLE ORIENTS", True)
-    assert (held.lamps[0].word, held.lamps[0].lit, held.lamps[0].warn) == ("SPINDLE HELD", True, False)
+    assert (turning.lamps[0].word, turning.lamps[0].warn) == (text("desk.spindle-orients"), True)
+    lamp = held.lamps[0]
+    assert (lamp.word, lamp.lit, lamp.warn) == (text("desk.spindle-oriented"), True, False)
     assert held.spindle.direction.startswith(text("desk.held-angle", angle=90))
     assert status_of(AT, Readout.POSITION, True).spindle.direction == "M05 OFF"
 

@@ -181,7 +181,7 @@ def test_a_stock_that_cannot_be_used_is_told_before_the_start(desk: Make, stock:
     loaded = desk(KeptPart(stock=stock)).load(SHAFT)
     (found,) = loaded.diagnostics
     assert (found.line, found.code, found.severity) == (0, NO_STOCK, Severity.WARNING)
-    assert part_of(loaded).warned == ("THE PART IS NOT PROVED AS IT WAS SAID",)
+    assert part_of(loaded).warned == (wording("desk.not-as-specified"),)
     assert loaded.phase is Phase.READY
 
 
@@ -249,17 +249,16 @@ def test_changed_offsets_are_taken_up_with_what_the_part_says(
 
 
 def test_what_was_warned_of_is_told_where_cycles_are_started() -> None:
-    shot = Snapshot(announced=("WARNING: LINE 11: RAPID-INTO-STOCK", "THE SPINDLE STARTS AT 900 RPM FORWARD"))
-    here = "WARNING: LINE 11: RAPID-INTO-STOCK · THE SPINDLE STARTS AT 900 RPM FORWARD · "
-    assert announced(shot) == here
-    assert (
-        announced(shot, starts_here=False)
-        == f"{wording('screen.spindle-starts', rpm=900, direction='FORWARD')} · "
-    )
+    starts = wording("screen.spindle-starts", rpm=900, direction="FORWARD")
+    shot = Snapshot(announced=("WARNING: LINE 11: RAPID-INTO-STOCK", starts))
+    assert announced(shot) == f"WARNING: LINE 11: RAPID-INTO-STOCK · {starts} · "
+    assert announced(shot, starts_here=False) == f"{starts} · "
 
 
 def test_beside_the_warning_stands_what_to_do(desk: Make) -> None:
     loaded = desk().load(SLIP)
-    words = remedy(loaded, "WARNING: LINE 11: RAPID-INTO-STOCK · TO START PRESS BOTH PALM BUTTONS")
+    words = remedy(loaded, "WARNING: LINE 11: RAPID-INTO-STOCK · TO START: PRESS BOTH PALM BUTTONS")
+    assert remedy(loaded, wording("search.start-restart", start="CYCLE START")) == words
+    assert remedy(loaded, "NO CUT YET, SPINDLE STOPPED. PRESS B TO START IT") == ""
     assert begins(words, "screen.line-what", line=11, what=pattern("desk.rapid-into-stock"))
     assert wording("desk.left-on") in words

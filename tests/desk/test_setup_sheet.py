@@ -88,7 +88,7 @@ def milled(preset: int = 0) -> SetupSheet:
 def test_a_mill_has_blank_preset_length_and_radius_and_no_bar_nor_chuck() -> None:
     sheet = milled()
     assert sheet.stock_words == wording("desk.stock", size="104.000 mm × 74.000 mm × 20.000 mm")
-    assert sheet.held_words == (("PRESET", "0   of the machine file"),)
+    assert sheet.held_words == (("PRESET", f"0   {wording('desk.of-machine-file')}"),)
     (tool,) = sheet.tools
     assert sheet.shape_words(tool) == "DRILL 8.5, POINT ANGLE 118°, 2 teeth"
     assert sheet.offset_words(tool) == "L 101.600 mm   R 4.250 mm"

@@ -11,6 +11,7 @@ from core.drawings.drawing import DrawingError
 from core.language.source import Dialect
 from core.part.tool_shape import ToolKind, ToolShape
 from tests.drawings.hand import RIGHT, chain, dxf, profile_of, program, text_of
+from tests.texts import text
 
 SHAFT = chain((0.0, 0.0), (0.0, 6.0), (-10.0, 6.0), (-14.0, 9.0), (-20.0, 9.0), (-20.0, 0.0))
 NO_TIP = replace(RIGHT, tip=0)
@@ -23,7 +24,7 @@ def test_a_nose_without_a_tip_is_refused(tool: ToolShape, dialect: Dialect, tmp_
     with pytest.raises(DrawingError) as told:
         program(chosen, {1: tool}, dialect=dialect)
     assert told.value.code == "no-tip-quadrant"
-    assert "T1 has a nose radius of 0.4 and no tip quadrant" in str(told.value)
+    assert text("shapes.no-tip-quadrant", tool=1, radius=0.4) in str(told.value)
 
 
 @pytest.mark.parametrize("tool", [RIGHT, replace(RIGHT, tip=9), ToolShape(ToolKind.TURNING)])

@@ -17,6 +17,7 @@ from core.shapes.contour import points
 from tests.drawings.hand import BLADE, SLIM, chain, dxf, profile_of, program, radii, text_of
 from tests.shapes.hand import machine
 from tests.sinumerik.lathe import LINEAR
+from tests.texts import text
 
 NEAR = 0.01  # mm of a radius: columns of .008 and what the profile of a part is fitted to
 QUARTER = math.tan(math.radians(90.0) / 4.0)
@@ -210,7 +211,7 @@ def test_a_shallow_fall_is_turned_and_a_steep_one_followed_by_the_edge(tmp_path:
             )
         )
     )
-    assert [each.why for each in made.left] == ["falls too steeply for the tool"]
+    assert [each.why for each in made.left] == [text("shapes.falls-too-steeply")]
     slope = math.tan(math.radians(30.0))
     at = [-9.0, -10.0, -12.0]
     assert radii(made, "bar:20.5mm:80mm", at) == pytest.approx([10 + (z + 8) * slope for z in at], abs=0.02)
@@ -240,6 +241,6 @@ def test_nothing_is_ever_cut_too_deep_where_the_contour_goes_back_under_itself(t
     """A dovetail: no tool from outside gets under its wall, which is cut upright."""
     path = dxf(tmp_path / "d.dxf", chain(*groove((-6, 7), (-16, 7), (-14, 10))))
     made = program(profile_of(path))
-    assert any("under itself" in each.why for each in made.left)
+    assert any(each.why == text("shapes.contour-undercut") for each in made.left)
     at = np.linspace(-29.0, -0.5, 200)
     assert (radii(made, "bar:20.5mm:80mm", at) > 6.99).all()

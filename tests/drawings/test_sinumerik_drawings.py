@@ -20,6 +20,7 @@ from core.tool_edges import TIP_DIRECTIONS
 from tests.coded import recorded_refusals
 from tests.drawings.hand import TOOLS, chain, dxf, profile_of, program, text_of
 from tests.sinumerik.lathe import LINEAR
+from tests.texts import text as wording
 
 OURS = Dialect.SINUMERIK
 SHAFT = (
@@ -75,9 +76,8 @@ def test_what_the_cutting_edge_has_to_hold_is_told(tmp_path: Path) -> None:
     chosen = profile_of(dxf(tmp_path / "shaft.dxf", chain(*SHAFT)))
     made = program(chosen, dialect=OURS)
     assert TIP_DIRECTIONS[3] == (-1, -1)
-    assert "T1 D1 has to hold the nose radius .4 mm and tip quadrant 3" in list(
-        in_words(made, None, chosen, metric=True)
-    )
+    words = wording("shapes.edge-must-have", edge="T1 D1", radius=".4", unit="mm", quadrant=3)
+    assert words in list(in_words(made, None, chosen, metric=True))
     told = in_json(made, None, chosen)
     assert (told["secondary_offset"], told["cutting_edge"]) == (
         None, {"tool": 1, "edge": 1, "r": 0.4, "quadrant": 3}

@@ -72,7 +72,7 @@ def test_what_was_typed_before_the_end_is_in_the_history(start: Start, memory: M
     settle(after)
     assert after.text == GOOD  # the file is what it was
     assert text("editor.in-history") in after.notice
-    assert memory.kept["part.nc"] == [(TYPED.encode(), "typed and not saved")]
+    assert memory.kept["part.nc"] == [(TYPED.encode(), "unsaved draft")]
     assert drafts(after) == []
 
 

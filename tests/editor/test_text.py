@@ -16,8 +16,8 @@ TEXT = "F100\nX1F1000\nf100(F100.)\nF100.5 F100X2\n"
 def test_whole_numbers_are_found_and_longer_ones_are_only_counted() -> None:
     places = Search("F100").places(TEXT)
     assert [TEXT[p : p + 5] for p in places] == ["F100\n", "f100(", "F100.", "F100X"]
-    assert Search("F100").words(TEXT) == "4 FOUND, 2 MORE INSIDE LONGER WORDS"
-    assert Search("F100", whole=False).words(TEXT) == "6 FOUND, PARTS OF WORDS TOO"
+    assert Search("F100").words(TEXT) == "4 FOUND, 2 MORE WITHIN LONGER WORDS"
+    assert Search("F100", whole=False).words(TEXT) == "6 FOUND, INCLUDING PARTS OF WORDS"
 
 
 @pytest.mark.parametrize(("needle", "text"), [(".5", "X1.5"), ("5", "X15"), ("M3", "CM3"), ("M", "MM")])

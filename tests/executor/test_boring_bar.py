@@ -62,7 +62,9 @@ def test_the_bar_moves_in_its_bore_only_while_the_spindle_stands(direction: int)
     assert text("executor.spindle-stop-wait") in waited
 
 
-@pytest.mark.parametrize(("direction", "message"), [(1, "EDGE TO X+"), (2, "EDGE TO Y+"), (3, "EDGE TO X-")])
+@pytest.mark.parametrize(
+    ("direction", "message"), [(1, "TURN EDGE TO X+"), (2, "TURN EDGE TO Y+"), (3, "TURN EDGE TO X-")]
+)
 def test_the_operator_is_told_where_the_edge_has_to_be(direction: int, message: str) -> None:
     rig = boring(direction)
     rig.until(State.PROGRAM_STOP)

@@ -67,7 +67,7 @@ def test_a_pendant_that_is_lost_holds_the_cycle_and_starts_nothing() -> None:
     assert rig.shot.start_refused == AWAY
     rig.pendant = {}
     rig.run(0.5)
-    assert rig.said("disturbed")[-1] == "THE PENDANT IS THERE AGAIN"
+    assert rig.said("disturbed")[-1] == "THE PENDANT IS CONNECTED AGAIN"
     assert rig.state is State.HOLD  # nothing goes on by itself
     rig.post(CycleStart())
     rig.until(State.IDLE)

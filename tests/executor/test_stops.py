@@ -48,7 +48,10 @@ def test_a_hold_by_the_station_says_so() -> None:
     rig.sim.machine.press_hold()
     rig.until(State.HOLD)
     rig.sim.machine.release_hold()
-    assert stop_of(rig) == ("feed-hold", text("executor.asked-by", source="the button at the station"))
+    assert stop_of(rig) == (
+        "feed-hold",
+        text("executor.asked-by", source="the button at the operator station"),
+    )
 
 
 def test_an_estop_has_its_entry() -> None:

@@ -215,7 +215,7 @@ def test_refused(program: tuple[str, ...], error: tuple[int, int, str]) -> None:
 def test_the_message_says_what_is_left_of_the_line() -> None:
     found = passed(body(HEAD, "X.5C.2", "Z-.3C.11", "X.9")).interpreter.diagnostics
     assert [each.message for each in found] == [
-        "C cannot make a corner: it takes 0.11000 in of the move on line 5, which has 0.10000 in left."
+        "Corner C is not possible: it needs 0.11000 in of the move on line 5, which has only 0.10000 in left."
     ]
 
 

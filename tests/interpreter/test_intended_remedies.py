@@ -36,7 +36,7 @@ def findings(text: str) -> list[Diagnostic]:
         ("X1/2Z1", 1, "other-control", "X.5."),
         ("Z-.1X3/8", 5, "other-control", "X.375."),
         ("G7", 1, "other-control", "G72."),
-        ("G28U0W0", 1, "g-unknown", "clear X and Z"),
+        ("G28U0W0", 1, "g-unknown", "Move to an X and Z position clear of the part."),
         ("X1G54", 3, "g-unknown", "G10XnZn"),
         ("XlZ1", 2, "letter-l", "X1."),
         ("X.lZ1", 3, "letter-l", "X.1."),

@@ -346,7 +346,7 @@ def test_a_bad_departure_is_known_before_the_contour_is_run() -> None:
 
 def test_the_message_says_the_radius() -> None:
     found = run(*FACING, "X.2", "G03X.21Z-.01R.01", "X.4", "Z1", "G40").interpreter.diagnostics
-    assert found[0].message.startswith("G41 with a nose radius of 0.02000 in cannot follow this move: ")
+    assert found[0].message.startswith("G41 with a nose radius of 0.02000 in cannot compensate this move: ")
 
 
 def test_a_long_contour_is_never_held_whole() -> None:

@@ -255,7 +255,7 @@ def test_refused(program: tuple[str, ...], error: tuple[int, int, str]) -> None:
 
 def test_a_feed_in_place_of_the_lead_asks() -> None:
     result = passed(body("X.3Z.1", "G33X.25Z-.5I.05F.05"))
-    assert any("Was K.05 meant?" in found.hint for found in result.interpreter.diagnostics)
+    assert any("Did you mean K.05?" in found.hint for found in result.interpreter.diagnostics)
 
 
 def test_no_block_of_a_refused_thread() -> None:

@@ -211,10 +211,16 @@ def test_parameters_of_a_contour_count_as_they_stand_at_the_call() -> None:
 @pytest.mark.parametrize(
     ("cycle", "contours", "q", "code", "names"),
     [
-        (22, (POCKET,), {"q1": 5}, "Input value incorrect", "upwards"),
+        (22, (POCKET,), {"q1": 5}, "Input value incorrect", "positive (upward)"),
         (22, (POCKET,), {"q2": 2.5}, "Input value incorrect", "Q2"),
-        (22, ("L X+0 Y+0 RR\nL Y+7\nL X+60\nL Y+0\nL X+0",), {}, "Input value incorrect", "wider"),
-        (22, (POCKET.replace("RR", ""),), {}, "Cycle incomplete", "which side"),
+        (
+            22,
+            ("L X+0 Y+0 RR\nL Y+7\nL X+60\nL Y+0\nL X+0",),
+            {},
+            "Input value incorrect",
+            "does not fit anywhere",
+        ),
+        (22, (POCKET.replace("RR", ""),), {}, "Cycle incomplete", "The side on which"),
         (22, (POCKET.replace("\nL Y+20", "\nL Y+19"),), {}, "Input value incorrect", "from its start"),
         (22, (POCKET.replace("RR", "RL"),), {}, "Input value incorrect", "pocket"),
         (22, (POCKET,), {"q12": 99999}, "Input value incorrect", "rapid"),
@@ -227,7 +233,13 @@ def test_parameters_of_a_contour_count_as_they_stand_at_the_call() -> None:
             "CYCL DEF 10",
         ),
         (21, (POCKET,), {"q13": 7}, "Input value incorrect", "Q13"),
-        (24, ("L X+0 Y+0 RR\nL Y+7\nL X+60\nL Y+0\nL X+0",), {}, "Input value incorrect", "wider"),
+        (
+            24,
+            ("L X+0 Y+0 RR\nL Y+7\nL X+60\nL Y+0\nL X+0",),
+            {},
+            "Input value incorrect",
+            "does not fit anywhere",
+        ),
         (25, ("L X+0 Y+0 RL\nL X+40\nL Y+3\nL X+0",), {}, "Input value incorrect", "contour"),
     ],
 )

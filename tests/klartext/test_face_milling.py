@@ -187,13 +187,13 @@ def test_thread_cutting_starts_and_stops_the_spindle_itself() -> None:
         (233, {"q347": 1}, "limit"),
         (233, {"q367": 8}, "Q367"),
         (254, {"q219": 70}, "slot"),
-        (254, {"q219": 5}, "wider"),
-        (254, {"q248": 350}, "own end"),
+        (254, {"q219": 5}, "does not fit anywhere"),
+        (254, {"q248": 350}, "ends of the slot overlap"),
         (254, {"q367": 5}, "Q367"),
         (254, {"q370": 3}, "Q370"),
         (254, {"q377": 0}, "Q377"),
-        (210, {"q219": 5}, "wider"),
-        (212, {"q201": 5}, "upwards"),
+        (210, {"q219": 5}, "wider than the pocket"),
+        (212, {"q201": 5}, "positive (upward)"),
         (213, {"q207": 99999}, "Q207"),
     ],
 )
@@ -222,7 +222,7 @@ def test_back_boring_is_refused_however_it_is_called_because_nothing_orients_the
     lines = "".join(f" ~\n  {name}={value:+g}" for name, value in BACK.items())
     ran = run(f"CYCL DEF 204 BACK BORING{lines}\n{call}", tool=TOOL)
     assert ran.codes == ["Input value incorrect"]
-    assert "not oriented" in ran.errors[0].message
+    assert "cannot be oriented" in ran.errors[0].message
     assert min(block.swivel.end[2] for block in ran.blocks if block.swivel) >= 0.0
 
 

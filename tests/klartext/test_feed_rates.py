@@ -80,7 +80,7 @@ def refused(text: str, **setup: Any) -> Ran:
 @pytest.mark.parametrize(
     ("text", "code", "names"),
     [
-        ("M5\nL X+10 FU0.1", "Wrong rpm", "stands"),
+        ("M5\nL X+10 FU0.1", "Wrong rpm", "the spindle is stopped"),
         ("L X+10 FU100", "Input value incorrect", "120000"),
         ("L X+10 FU0", "Input value incorrect", "above zero"),
         ("L X+10 FU", "Syntax error", "FU"),

@@ -103,4 +103,4 @@ def test_a_section_repeated_without_end_is_refused(monkeypatch: pytest.MonkeyPat
     monkeypatch.setattr("core.interpreter.klartext.klartext_interpreter.MOST_LINES", 1000)
     ran = run("LBL 1\nQ1 = +1\nCALL LBL 1 REP 65534\nCALL LBL 1 REP 65534")
     assert ran.codes == ["too-many-blocks"]
-    assert "repeats" in ran.errors[0].hint
+    assert "repeat counts" in ran.errors[0].hint

@@ -169,7 +169,7 @@ def test_a_block_past_a_software_limit_is_refused(turndesk: Turndesk, tmp_path: 
     told = turndesk("prove", path, *MILL, "--offsets", offsets, "--json")
     found = told.lines[0]["diagnostics"]
     assert [(d["code"], d["line"]) for d in found] == [("soft-limit", 3), ("soft-limit", 4)]
-    assert "A would go to 130.000 degrees" in found[1]["message"]
+    assert "A would move to 130.000 degrees" in found[1]["message"]
 
 
 @pytest.mark.parametrize(

@@ -154,14 +154,14 @@ def test_contour_def_takes_programs_and_declared_contours() -> None:
 @pytest.mark.parametrize(
     ("formula", "code", "names"),
     [
-        (DECLARED + "QC10 = QC1 | QC2 \\ QC1", "Syntax error", "side by side"),
+        (DECLARED + "QC10 = QC1 | QC2 \\ QC1", "Syntax error", "without parentheses"),
         (DECLARED + "QC10 = QC1 + QC2", "Syntax error", "joins QC"),
         (DECLARED + "QC10 = QC1 | QC7", "Cycle incomplete", "QC7"),
         ('DECLARE CONTOUR QC1 = "NONE"\nQC10 = QC1 | QC1', "Program not found", "NONE"),
-        ('DECLARE CONTOUR QC1 = "ONE" DEPTH5', "Not supported", "depth of its own"),
+        ('DECLARE CONTOUR QC1 = "ONE" DEPTH5', "Not supported", "its own depth"),
         ('SEL CONTOUR "NONE"', "Program not found", "NONE"),
         ('SEL CONTOUR "ONE"', "Cycle incomplete", "no contour formula"),
-        (DECLARED + "QC10 = ( QC1 & QC2 ) \\ QC1", "Input value incorrect", "nothing"),
+        (DECLARED + "QC10 = ( QC1 & QC2 ) \\ QC1", "Input value incorrect", "enclose no area"),
         ("CONTOUR DEF P1 = QC4", "Cycle incomplete", "QC4"),
     ],
 )

@@ -100,7 +100,10 @@ def test_cycle_13_is_the_angle_of_m19_until_another_is_told() -> None:
 
 @pytest.mark.parametrize(
     ("text", "part"),
-    [("M19\n", "not oriented"), ("CYCL DEF 13.0 ORIENTATION\nCYCL DEF 13.1 ANGLE 90\nM19\n", "not oriented")],
+    [
+        ("M19\n", "cannot be oriented"),
+        ("CYCL DEF 13.0 ORIENTATION\nCYCL DEF 13.1 ANGLE 90\nM19\n", "cannot be oriented"),
+    ],
 )
 def test_where_nothing_orients_m19_names_the_key_of_the_machine_file(text: str, part: str) -> None:
     (error,) = run(START + text).errors

@@ -148,10 +148,10 @@ def test_a_stud_is_left_standing_and_its_blank_cleared(number: int, a: float, b:
         (251, {"q219": 6}, "wider"),
         (253, {"q218": 10}, "wider than it is long"),
         (251, {"q367": 7}, "Q367"),
-        (252, {"q201": 5}, "upwards"),
+        (252, {"q201": 5}, "positive (upward)"),
         (252, {"q370": 0}, "Q370"),
         (252, {"q207": 0}, "Q207"),
-        (253, {"q218": 8, "q219": 8, "q366": 1}, "no room"),
+        (253, {"q218": 8, "q219": 8, "q366": 1}, "not enough room"),
         (256, {"q424": 30, "q425": 20}, "blank"),
     ],
 )

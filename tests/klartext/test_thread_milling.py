@@ -150,10 +150,10 @@ def test_a_helical_thread_goes_down_whatever_its_hand() -> None:
 @pytest.mark.parametrize(
     ("number", "q", "names"),
     [
-        (262, {"q335": 6}, "mills no thread"),
-        (262, {"q239": 0}, "pitch"),
+        (262, {"q335": 6}, "cannot mill a thread"),
+        (262, {"q239": 0}, "Pitch Q239"),
         (262, {"q207": 99999}, "rapid"),
-        (262, {"q201": 5}, "upwards"),
+        (262, {"q201": 5}, "positive (upward)"),
         (262, {"q355": -1}, "Q355"),
         (263, {"q358": 1}, "Q358"),
         (264, {"q356": 5}, "Q356"),

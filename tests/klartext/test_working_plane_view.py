@@ -93,9 +93,9 @@ def test_c_shows_less_than_a_turn(chamfers: tuple[Scene, list[Block]]) -> None:
 
 def test_lamps_tell_of_plane_and_table(chamfers: tuple[Scene, list[Block]]) -> None:
     tilted = {lamp.word: lamp.lit for lamp in lamps_of(snapshot_at(cut_of(chamfers[1], 1)))}
-    assert (tilted["TILTED PLANE"], tilted["TABLE TURNED"]) == (True, True)
+    assert (tilted["TILTED PLANE"], tilted["TABLE ROTATED"]) == (True, True)
     home = {lamp.word: lamp.lit for lamp in lamps_of(snapshot_at(chamfers[1][-1]))}
-    assert (home["TILTED PLANE"], home["TABLE TURNED"]) == (False, False)
+    assert (home["TILTED PLANE"], home["TABLE ROTATED"]) == (False, False)
     assert "COLLET OPEN" not in home
 
 
@@ -106,10 +106,10 @@ def test_where_no_table_turns_the_lamp_tells_of_the_head() -> None:
     assert kinematics is not None
     ran = run("L A+20 R0 FMAX\nL A+0 R0 FMAX", kinematics)
     turned, home = (block for block in ran.blocks if block.moves)
-    assert Lamp("HEAD TURNED", lit=True) in lamps_of(snapshot_at(turned), table=fork.table_turns)
+    assert Lamp("HEAD ROTATED", lit=True) in lamps_of(snapshot_at(turned), table=fork.table_turns)
     idle = snapshot_at(home, swivel=None)
-    assert Lamp("HEAD TURNED", lit=False) in lamps_of(idle, table=fork.table_turns)
-    assert Lamp("TABLE TURNED", lit=False) in lamps_of(idle, table=table.table_turns)
+    assert Lamp("HEAD ROTATED", lit=False) in lamps_of(idle, table=fork.table_turns)
+    assert Lamp("TABLE ROTATED", lit=False) in lamps_of(idle, table=table.table_turns)
 
 
 @pytest.mark.parametrize(("machine", "title"), [

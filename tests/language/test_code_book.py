@@ -87,12 +87,12 @@ def _words(dialect: Dialect, head: str) -> dict[str, str]:
     ("dialect", "head", "word", "means"),
     [
         (OMNITURN, "G33", "C", "the angle of infeed, degrees: 0 … 30"),
-        (OMNITURN, "G83", "R", "Z to which the drill comes out"),
-        (OMNITURN, "G94", "F", "the feed a minute"),
-        (SINUMERIK, "CYCLE83", "VARI", "0 breaks chips, 1 leaves the hole"),
+        (OMNITURN, "G83", "R", "Z to which the drill retracts"),
+        (OMNITURN, "G94", "F", "the feed per minute"),
+        (SINUMERIK, "CYCLE83", "VARI", "0 breaks chips, 1 retracts out of the hole"),
         (SINUMERIK, "CYCLE97", "PIT", "lead"),
-        (SINUMERIK, "CYCLE84", "PIT", "pitch; under 0 left-hand"),
-        (KLARTEXT, "CYCL DEF 200", "Q201", "depth, from the surface"),
+        (SINUMERIK, "CYCLE84", "PIT", "pitch; negative for left-hand"),
+        (KLARTEXT, "CYCL DEF 200", "Q201", "depth, measured from the surface"),
     ],
 )
 def test_the_words_of_a_code(dialect: Dialect, head: str, word: str, means: str) -> None:

@@ -60,21 +60,23 @@ HEAD = ("G90G94F300", "T1", "X.5Z.1")
 
 
 @pytest.mark.parametrize(("line", "code", "says"), [
-    ("G54", "g-unknown", "tool's offset"), ("G59", "g-unknown", "tool's offset"),
-    ("G20", "g-unknown", "Inch is G70"), ("G21", "g-unknown", "Metric is G71"),
-    ("G98", "g-unknown", "minute is G94"), ("G99", "g-unknown", "revolution is G95"),
+    ("G54", "g-unknown", "in the tool offset"), ("G59", "g-unknown", "in the tool offset"),
+    ("G20", "g-unknown", "G70 selects inches"), ("G21", "g-unknown", "G71 selects metric"),
+    ("G98", "g-unknown", "G94 selects feed per minute"),
+    ("G99", "g-unknown", "G95 selects feed per revolution"),
     ("G28", "g-unknown", "reference point"), ("G50S2000", "g-unknown", "G77Sn"),
-    ("G32X.2Z-.5F.05", "g-unknown", "G33"), ("G80", "g-unknown", "their own line"),
-    ("%", "transfer-line", "transfer"), ("O1234", "program-number", "the file has a name"),
-    (":1234", "program-number", "the file has a name"),
-    ("X.4U.1", "word-unused", "G91"), ("W.2", "unknown-letter", "G91"), ("X.4H1", "unknown-letter", "T here"),
-    ("N10X.4", "n-word", "no numbers"), ("X\u2212.5", "character", "no minus sign"),
-    ("X.5\u2013.2", "character", "no minus sign"), ("X\u201c.5\u201d", "character", "quotation mark"),
+    ("G32X.2Z-.5F.05", "g-unknown", "G33"), ("G80", "g-unknown", "its own line"),
+    ("%", "transfer-line", "transfer"), ("O1234", "program-number", "uses the file name"),
+    (":1234", "program-number", "uses the file name"),
+    ("X.4U.1", "word-unused", "G91"), ("W.2", "unknown-letter", "G91"),
+    ("X.4H1", "unknown-letter", "T selects the tool offset"),
+    ("N10X.4", "n-word", "does not use line numbers"), ("X\u2212.5", "character", "special minus sign"),
+    ("X.5\u2013.2", "character", "special minus sign"), ("X\u201c.5\u201d", "character", "quotation mark"),
     ("X.5;TURN", "character", "comment"), ("X#1", "character", "variable"),
-    ("X[1+2]", "character", "calculate"),
-    ("X.4F0", "out-of-range", "rapid is G00"), ("T0101", "tool-number", "T1 takes tool 1"),
+    ("X[1+2]", "character", "calculations"),
+    ("X.4F0", "out-of-range", "G00 is the rapid"), ("T0101", "tool-number", "T1 selects tool 1"),
     ("T0102", "tool-number", "D2"), ("M06", "m-unknown", "T alone"), ("M17", "m-unknown", "M99"),
-    ("M50", "m-disabled", "not switched on"), ("M10", "m-disabled", "not switched on"),
+    ("M50", "m-disabled", "not enabled"), ("M10", "m-disabled", "not enabled"),
     ("G33X.3Z-.5I.01K.05C-1", "thread-angle", "0 to 30"),
 ])  # fmt: skip
 def test_a_habit_of_other_controls_says_what_it_is_here(line: str, code: str, says: str) -> None:
@@ -146,7 +148,7 @@ def test_a_feed_per_revolution_is_judged_per_revolution() -> None:
     (found,) = errors(*HEAD, "M03S3000", "G95F.15X.4", "M30")
     assert (found.code, found.message) == (
         "feed-over-speed",
-        "Feed 0.15 in/rev is over 0.1 in/rev at 3000 rpm, which is 300 in/min.",
+        "Feed 0.15 in/rev is over the maximum of 0.1 in/rev at 3000 rpm, which equals 300 in/min.",
     )
     (found,) = errors(*HEAD, "M03S3000", "G95F6X.4", "M30")
     assert "0.00005 in/rev to 0.2 in/rev" in found.message

@@ -199,7 +199,7 @@ def test_points_that_lie_together_are_no_edge_and_another_cell_forgets_the_first
     page.here()
     at(room, 100.5, 50.5)
     page.here()
-    assert "NEARER THAN 1 MM" in room.desk.notice
+    assert "LESS THAN 1 MM APART" in room.desk.notice
     assert room.store.presets() == {}
     page.choose(0, page.columns.index("rotation"))
     page.here()
@@ -236,7 +236,7 @@ def test_return_turns_stop_on_and_off(room: Room) -> None:
         settle(room, page)
         assert kept(room).stops is wanted
     types(room, page, "2")
-    assert room.desk.notice.startswith("REFUSED")
+    assert room.desk.notice.startswith("REJECTED")
 
 
 # --- refusals -------------------------------------------------------------------------------------------
@@ -250,7 +250,7 @@ def test_what_is_no_tool_is_refused(room: Room, name: str, text: str) -> None:
     mill(room)
     page = MillTools(room.desk)
     types(room, page, text, name=name)
-    assert room.desk.notice.startswith("REFUSED")
+    assert room.desk.notice.startswith("REJECTED")
     assert room.store.mill_tools() == {}
 
 
@@ -269,7 +269,7 @@ def test_a_leaning_tool_touches_no_length_off(room: Room) -> None:
     page = MillTools(room.desk)
     page.choose(0, page.columns.index("length"))
     page.here()
-    assert "LEANS" in room.desk.notice
+    assert "TILTED" in room.desk.notice
     assert room.store.mill_tools() == {}
 
 
@@ -295,7 +295,7 @@ def test_a_preset_that_was_never_set_is_not_put_in_force(room: Room) -> None:
     mill(room)
     page = Presets(room.desk)
     page.activate()
-    assert "NEVER SET" in room.desk.notice
+    assert "PRESET 1 IS NOT SET" in room.desk.notice
     assert room.desk.book.preset == 0
 
 
@@ -328,7 +328,7 @@ def test_tools_of_an_offsets_file_stand_in_the_tool_table(tmp_path: Path) -> Non
     shown, counts = book.mill_tools[20], setup_with(named_machine("ac-table-mill"), offsets).tools[20]
     assert (shown.name, shown.length, shown.radius) == ("Mill", pytest.approx(75.946), pytest.approx(6.35))
     assert (counts.z, counts.nose_radius) == (shown.length, shown.radius)
-    assert "READ ONLY" in book.change(Kind.MILL_TOOL, 20, {"length": 1.0}, "typed")
+    assert "READ-ONLY" in book.change(Kind.MILL_TOOL, 20, {"length": 1.0}, "typed")
 
 
 def test_a_lathe_and_a_preset_that_has_gone_are_left_as_they_were() -> None:

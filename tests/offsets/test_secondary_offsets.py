@@ -84,8 +84,8 @@ def would_become(name: str, value: str, low: str, high: str) -> str:
         (("33",), "D33 does not exist; offsets are D1…32"),
         (("1.5",), "D1.5 does not exist; offsets are D1…32"),
         (("",), text("offsets.nothing-entered")),
-        (("1", ".5-"), ".5- stops short; expected a number at its end"),
-        (("1", "0,5"), ", in 0,5 is no number; the decimal sign is a point"),
+        (("1", ".5-"), ".5- is incomplete; expected a number at the end"),
+        (("1", "0,5"), ", in 0,5 is not a number; use a decimal point"),
         (("1", "1/0"), text("offsets.divides-by-zero", text="1/0")),
         (("1", "21"), would_become("D1 X", "10.50000", "-10", "10")),
         (("1", "", "-10.1"), would_become("D1 Z", "−10.10000", "-10", "10")),
@@ -114,7 +114,7 @@ def test_a_unit_that_changes_in_the_middle_gives_the_entry_up(room: Room) -> Non
     room.at(metric=True)
     page.look(room.now[0])
     assert page.step is Step.NUMBER
-    assert "NOTHING WAS CHANGED" in room.desk.notice
+    assert "NOTHING SAVED" in room.desk.notice
     assert room.store.secondary() == {}
 
 
@@ -148,7 +148,7 @@ def test_clear_asks_once_more(room: Room) -> None:
     room.desk.answer()
     room.settle(page)
     assert room.store.secondary() == {}
-    assert page.old_to_new == "2 offsets changed: F5 shows them"
+    assert page.old_to_new == "2 offsets changed. F5: show them"
     page.undo()
     room.confirm()
     room.settle(page)
@@ -175,7 +175,7 @@ def test_undo_takes_back_secondary_offsets_only(room: Room) -> None:
     room.settle(page)
     assert room.store.secondary() == {}
     assert room.store.tools()[1].x == 5.0
-    assert room.desk.notice == "D1 TAKEN BACK"
+    assert room.desk.notice == "D1 UNDONE"
     page.undo()
     assert not room.desk.asked
     assert room.desk.notice == text("offsets.no-change-to-undo", row=text("offsets.this-table"))
@@ -222,7 +222,7 @@ def test_a_correction_while_parts_run_counts_from_the_next_one(
     page.undo()
     room.confirm()
     room.settle(page)
-    assert room.desk.notice == f"D1 TAKEN BACK{text(f'offsets.{when}')}"
+    assert room.desk.notice == f"D1 UNDONE{text(f'offsets.{when}')}"
 
 
 @pytest.mark.parametrize("state", UNDER_WAY)

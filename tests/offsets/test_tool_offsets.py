@@ -174,12 +174,12 @@ def test_no_geometry_changes_while_a_cycle_is_under_way(room: Room, state: State
     room.at(state)
     grid = at(room, 1, name)
     room.enter(grid, "1" if name != "master" else "")
-    assert "UNDER WAY" in room.desk.notice
-    assert "UNDER WAY" in grid.prompt(room.now[0])
+    assert "PROGRAM RUNNING" in room.desk.notice
+    assert "PROGRAM RUNNING" in grid.prompt(room.now[0])
     grid.escape()
     grid.undo()
     assert not room.desk.asked
-    assert "UNDER WAY" in room.desk.notice
+    assert "PROGRAM RUNNING" in room.desk.notice
     room.settle(grid)
     assert room.store.tools() == before
 
@@ -205,7 +205,7 @@ def test_a_start_in_the_middle_of_an_entry_refuses_its_end(room: Room) -> None:
     write(grid, "1")
     room.at(State.RUN)
     room.enter(grid, "")
-    assert "UNDER WAY" in room.desk.notice
+    assert "PROGRAM RUNNING" in room.desk.notice
     assert room.store.tools()[1].x == -12.7
 
 
@@ -216,7 +216,7 @@ def test_another_unit_in_the_middle_gives_the_entry_up(room: Room) -> None:
     room.at(metric=True)
     grid.look(room.now[0])
     assert grid.text == ""
-    assert "NOTHING WAS CHANGED" in room.desk.notice
+    assert "NOTHING SAVED" in room.desk.notice
 
 
 def test_a_part_that_switches_to_diameters_leaves_an_entry_of_wear_alone(room: Room) -> None:
@@ -240,7 +240,7 @@ def would_become(field: str, value: str, low: str, high: str) -> str:
     ("name", "typed", "why"),
     [
         ("x", "51", would_become("X", "+51.00000", "-50", "50")),
-        ("x", "0,5", "REFUSED: , in 0,5 is no number"),
+        ("x", "0,5", "REJECTED: , in 0,5 is not a number"),
         ("nose_radius", "-.1", would_become("nose radius", "−0.10000", "0", "2")),
         ("wear_x", ".21", would_become("wear X", "+0.21000", "-0.2", "0.2")),
         (
@@ -277,7 +277,7 @@ def test_undo_and_history(room: Room) -> None:
     room.confirm()
     room.settle(grid)
     assert room.store.tools()[1].wear_x == 0.0
-    assert room.desk.notice == "T1 TAKEN BACK"
+    assert room.desk.notice == "T1 UNDONE"
     grid.history.toggle()
     assert grid.history.listed is not None
     at_, which, change, why = grid.history.in_words(grid.history.listed[1])
@@ -297,7 +297,7 @@ def test_undo_of_half_a_tool_takes_that_back_and_no_older_change(room: Room) -> 
     assert not room.desk.asked
     room.settle(grid)
     assert (grid.fields.new.number, room.store.tools()) == (0, before)
-    assert "TAKEN BACK" not in room.desk.notice
+    assert "UNDONE" not in room.desk.notice
 
 
 def test_c_and_letters_are_not_taken(room: Room) -> None:
@@ -352,4 +352,4 @@ def test_no_edge_of_a_tool_that_was_never_set(with_edges: Room) -> None:
     grid = at(room, 5, "x")
     assert grid.typed("D")
     assert grid.number == 5
-    assert "T5 WAS NEVER SET" in room.desk.notice
+    assert "T5 IS NOT SET" in room.desk.notice

@@ -165,7 +165,7 @@ def test_f3_takes_the_shape_away_after_asking_and_undo_brings_it_back(room: Room
     room.confirm()
     save(room, page)
     assert room.store.shapes()[3].diameter == 6.35
-    assert room.desk.notice == "T3 TAKEN BACK"
+    assert room.desk.notice == "T3 UNDONE"
 
 
 # --- refusals ---------------------------------------------------------------------------------------------
@@ -174,15 +174,25 @@ def test_f3_takes_the_shape_away_after_asking_and_undo_brings_it_back(room: Room
 @pytest.mark.parametrize(
     ("number", "name", "keys", "says"),
     [
-        (1, "insert", ("Enter", "Delete", "CNXG432", "Enter"), "CNXG432: character 3, X, means nothing"),
-        (1, "nose_radius", (".26", "Enter"), "the nose radius is larger than the insert CNMG432"),
-        (1, "entry", ("101", "Enter"), "an entering angle of 101° leaves a point of 80° no clearance"),
+        (
+            1,
+            "insert",
+            ("Enter", "Delete", "CNXG432", "Enter"),
+            "CNXG432: character 3, X, is not a valid tolerance class",
+        ),
+        (1, "nose_radius", (".26", "Enter"), "the nose radius is too large for insert CNMG432"),
+        (
+            1,
+            "entry",
+            ("101", "Enter"),
+            "an entering angle of 101° leaves no clearance for a point angle of 80°",
+        ),
         (1, "entry", ("200", "Enter"), text("offsets.takes", field="entering angle", range="0…150 degrees")),
         (1, "rear", ("Right", "Enter"), ""),
-        (3, "diameter", ("-.25", "Enter"), "it may be 0…20"),
-        (3, "diameter", ("1/", "Enter"), "REFUSED: "),
+        (3, "diameter", ("-.25", "Enter"), "allowed range is 0…20"),
+        (3, "diameter", ("1/", "Enter"), "REJECTED: "),
         (3, "flutes", ("2.5", "Enter"), text("offsets.takes", field="flutes", range="0…20")),
-        (3, "quadrant", ("7", "Enter"), "T3 WAS NEVER SET"),
+        (3, "quadrant", ("7", "Enter"), "T3 IS NOT SET"),
         (1, "quadrant", ("10", "Enter"), text("offsets.takes", field="tip quadrant", range="0…9")),
     ],
 )
@@ -194,7 +204,7 @@ def test_value_that_means_nothing_is_refused_and_stays_to_be_mended(
     write(page, *keys)
     if not says:  # a contradiction with another field is kept, and shown there
         save(room, page)
-        assert "behind the spindle the tip lies at X+" in page.prompt(room.now[0])
+        assert "on a rear tool the tip is at X+" in page.prompt(room.now[0])
         assert page.outline is None
         return
     assert says in room.desk.notice
@@ -235,7 +245,7 @@ def test_nothing_changes_while_a_program_is_under_way(room: Room) -> None:
     page = shape_of(room, 3, "diameter")
     room.at(State.RUN)
     write(page, ".3", "Enter")
-    assert "A PROGRAM IS UNDER WAY" in room.desk.notice
+    assert "PROGRAM RUNNING" in room.desk.notice
     page.drop()
     page.go(0)
     write(page, "Right")

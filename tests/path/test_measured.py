@@ -50,7 +50,7 @@ def test_on_the_face_y_is_up() -> None:
 
 def test_on_the_side_degrees_are_told_with_the_way_round() -> None:
     rows = dict(between_on_side(Point(0, 0), Point(-3, -4), metric=True, scale=0.1))
-    assert (rows["ΔZ"], rows["ΔC"], rows["ROUND"]) == ("−3.0000", "40.00°", "4.0000")
+    assert (rows["ΔZ"], rows["ΔC"], rows["ARC LENGTH"]) == ("−3.0000", "40.00°", "4.0000")
     assert dict(place_on_side(Point(-3, -4), metric=True, scale=0.1)) == {"Z": "−3.0000", "C": "40.00°"}
 
 

@@ -196,8 +196,8 @@ def test_what_could_not_be_checked_is_said() -> None:
     turned = "T1\nX[.6]Z[.05]\nX[.4]\nG95F[.004]Z[-.3]\nX[.6]\nG94F[300]Z[1]\n"
     plain = turned + "T3\nX[0]Z[.1]\nG95F[.004]Z[-.3]\nG94F[300]Z[1]"
     said = part_of(text(plain), shapes={3: ToolShape(ToolKind.DRILL, diameter=6.0)}).unchecked
-    assert said[0].endswith("of T1, which nobody has described")
-    assert said[1] == "how deep T3 can go, without a flute length"
+    assert said[0] == "T1: holder, edge length and hand not defined"
+    assert said[1] == "T3: maximum depth (no flute length defined)"
     assert len(said) == 4  # chuck, and its speed
     held = Clamping(100.0, 40.0, 10.0, 60.0, 5000.0)
     assert part_of(text(plain), clamping=held).unchecked == ()

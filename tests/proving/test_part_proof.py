@@ -140,7 +140,7 @@ def test_the_three_slips_are_warnings_without_a_word_about_stock_and_tools(slip:
     _, part = proved(text(SOUND), None, {})
     assert checks(part) == []
     assert part.stock is not None
-    assert part.assumed == ("T1 is taken for a turning tool (by its moves)",)
+    assert part.assumed == ("T1 is treated as a turning tool (based on its moves)",)
     _, part = proved(text(SOUND.replace(*slip)), None, {})
     (first, *_) = part.findings
     assert (first.line, first.severity, "stock" in first.assumed) == (9, "warning", True)
@@ -174,13 +174,13 @@ def test_a_bar_that_is_fed_begins_anew_at_its_stop() -> None:
     assert checks(part) == []
     assert part.stock is not None
     assert part.stock.front == pytest.approx(0.02 * INCH)
-    assert "T5 is taken for a bar stop" in part.assumed
+    assert "T5 is treated as a bar stop" in part.assumed
 
 
 def test_a_comment_says_more_than_the_moves() -> None:
     drilled = "T7(1/4 DRILL)\nX[0]Z[.1]\nG95F[.004]Z[-.5]\nG94F[300]Z[1]"
     _, part = proved(text(drilled), bar(20.0, 0.0, -40.0), {})
-    assert part.assumed == ("T7 is taken for a drill, 0.250 in (by its comment)",)
+    assert part.assumed == ("T7 is treated as a drill, 0.250 in (based on its comment)",)
     assert part.last is not None
     assert part.last.bore is not None
     assert part.last.bore[0][1] == pytest.approx(3.175, abs=0.001)
@@ -342,7 +342,7 @@ def test_of_a_very_long_program_the_part_is_made_where_its_stock_is_said(
     monkeypatch.setattr(part_proof, "MOST_MOVES", 5)
     _, part = proved(text(SOUND))
     assert (part.stock, part.removed, part.findings) == (None, 0.0, ())
-    assert "is made where its stock is said" in part.assumed[0]
+    assert "too many to compute the part without specified stock" in part.assumed[0]
     _, part = proved(text(SOUND), BAR)
     assert part.removed > 0.0
 
@@ -407,7 +407,7 @@ def test_a_spindle_that_stands_again_turns_nothing() -> None:
     stock = bar(INCH, 0.0, -2 * INCH)
     (_, alone), (report, part) = proved(text(turned), stock), proved(still, stock)
     assert part.removed == pytest.approx(alone.removed)
-    assert "what T1 cuts from line 11 on while the spindle stands" in part.unchecked
+    assert "cuts of T1 with the spindle stopped, from line 11 on" in part.unchecked
     assert [each for each in report.errors if each.check] == []
     _, running = proved(still.replace("M05\n", ""), stock)
     assert running.removed > 1.5 * alone.removed

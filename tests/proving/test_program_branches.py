@@ -60,7 +60,7 @@ def test_a_branch_that_leaves_the_travel_refuses_the_start_whatever_the_input_is
 
 def test_the_branch_and_its_input_are_named() -> None:
     (found,) = proved("M97I10C1P1", *SUB).errors
-    assert found.message.startswith("With input 10 on at line 4: Z would go to -9.0000 in")
+    assert found.message.startswith("With input 10 on at line 4: Z would move to -9.0000 in")
     (found,) = proved("M97I10C0P1", *SUB, i10=True).errors
     assert found.message.startswith("With input 10 off at line 4: ")
     (found,) = proved("M95", *SUB).errors
@@ -69,7 +69,7 @@ def test_the_branch_and_its_input_are_named() -> None:
 
 def test_the_branch_that_the_inputs_give_is_told_plainly() -> None:
     (found,) = proved("M97I10C1P1", *SUB, i10=True).errors
-    assert found.message.startswith("Z would go to")
+    assert found.message.startswith("Z would move to")
 
 
 def test_what_a_branch_leaves_behind_is_proved_in_the_lines_that_follow() -> None:
@@ -258,7 +258,7 @@ def test_the_bar_feeders_sample_proves_and_its_end_of_bar_too() -> None:
     worse = replace(source, text=source.text.replace("M31\n", "M31\nZ9.5\n"))
     (found,) = prove(worse, setup, MACHINE).errors
     assert (found.line, found.code) == (35, "soft-limit")
-    assert found.message.startswith("With input 7 on at line 31: Z would go to 6.3000 in")
+    assert found.message.startswith("With input 7 on at line 31: Z would move to 6.3000 in")
 
 
 # every set of answers, one after the other, against what the proof finds

@@ -138,8 +138,8 @@ def test_a_cable_that_is_pulled_is_told_and_f5_listens_again(bench: Bench) -> No
     os.close(bench.near)
     bench.far = bench.near = -1
     (why,) = bench.hears(bool)
-    assert str(why).startswith("THE GAUGE: ")
-    assert "F5 LISTENS AGAIN" in str(why)
+    assert str(why).startswith("GAUGE: ")
+    assert "F5: LISTEN AGAIN" in str(why)
     for _ in range(60_000):  # told first, then closed, by its own thread
         if not bench.wire.open:
             break
@@ -156,11 +156,11 @@ def test_a_port_that_is_not_there(bench: Bench) -> None:
 
 
 def test_silence_is_told(bench: Bench) -> None:
-    assert "F5 begins" in bench.wire.words
+    assert "Press F5 to start" in bench.wire.words
     listening(bench)
     assert re.fullmatch(pattern("quality.listening"), bench.wire.words)
     bench.now[0] += SILENT + 60.0
-    assert "silent for 6 min" in bench.wire.words
+    assert "No reading from the gauge for 6 min" in bench.wire.words
     bench.send(b"2 mm\r")
     bench.hears(bool)
     assert re.fullmatch(pattern("quality.listening"), bench.wire.words)

@@ -130,12 +130,12 @@ def test_offsets_are_told_with_who_and_when(store: Store) -> None:
     assert [(c.number, c.why, c.who) for c in found.offsets] == [(1, "wear", "proposed")]
     page = shift_html(found, "GT-75", "now", metric=True)
     assert "proposed" in page
-    assert "The shift is still on" in page
+    assert "The shift is still running" in page
 
 
 def test_an_empty_shift_says_so(store: Store) -> None:
     found = figures(store, Shift(EIGHT.start - 30 * 86_400, EIGHT.end - 30 * 86_400))
-    assert (found.parts, found.programs, found.notes) == (0, (), ("No part was begun in this time.",))
+    assert (found.parts, found.programs, found.notes) == (0, (), ("No part was started in this period.",))
     assert found.untold == 28_800.0
     assert "none" in shift_html(found, "", "now", metric=False)
 
@@ -210,7 +210,7 @@ class TestCommand:
         assert main(["shift", *self.TIMES]) == 0
         said = capsys.readouterr().out
         assert "Parts: 3\n" in said
-        assert "27.1 %: cycles ran 2:10:00 of 8:00:00" in said
+        assert "27.1 %: in cycle 2:10:00 of 8:00:00" in said
         assert main(["shift", *self.TIMES, "--json"]) == 0
         told = json.loads(capsys.readouterr().out)
         assert (told["parts"], told["producing"], told["stopped"]) == (3, 7800.0, 2700.0)

@@ -107,10 +107,12 @@ def test_what_is_not_there_is_told() -> None:
     assert "no arc" in analysed(Kind.BALL_BAR, record, 0, {}).why
     still = record_of(seconds(0.0, 3.0), spindle_turns=np.full(3001, 7.0))
     assert "does not turn" in analysed(Kind.THREAD, still, 0, {}).why
-    assert "two slides" in analysed(Kind.PATH, record_of(seconds(0.0, 3.0), {"line"}), 0, {}).why
+    assert (
+        "fewer than two linear axes" in analysed(Kind.PATH, record_of(seconds(0.0, 3.0), {"line"}), 0, {}).why
+    )
     nothing = np.full(3001, np.nan)
     deaf = record_of(seconds(0.0, 3.0), spindle_turns=nothing)
-    assert "no encoder" in analysed(Kind.THREAD, deaf, 0, {}).why
+    assert "no spindle encoder count" in analysed(Kind.THREAD, deaf, 0, {}).why
 
 
 def test_of_live_samples_the_last_run_is_taken() -> None:

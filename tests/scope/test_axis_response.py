@@ -58,8 +58,8 @@ def test_at_twice_the_speed_it_is_twice_as_far_behind() -> None:
 def test_what_would_trip_is_said() -> None:
     """A lag of a tenth of a second: far outside a quarter of any window."""
     words = figures_of(moved(tau=0.1, way=8.0))
-    assert words["WITH 25 % OF THE WINDOW"].startswith("trips at")
-    assert figures_of(moved(tau=1e-5))["WITH 25 % OF THE WINDOW"] == "holds"
+    assert words["WITH 25 % OF THE LIMIT"].startswith("trips at")
+    assert figures_of(moved(tau=1e-5))["WITH 25 % OF THE LIMIT"] == "no trip"
 
 
 def test_without_a_move_there_is_nothing() -> None:

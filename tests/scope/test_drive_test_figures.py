@@ -94,8 +94,8 @@ def test_a_ramp_lags_by_its_speed_times_the_time_constant() -> None:
     found = drive_test_figures(played(RAMP), RAMP, DRIVES)
     assert [each.error for each in found.ramps] == pytest.approx([-20.0 * TAU, 20.0 * TAU], rel=1e-3)
     cells = [row.cells for row in figures_sheet("", found, True).rows]
-    assert ("LAG OF THE EVEN PART", "0.0800 mm", "0.0800 mm") in cells
-    assert ("SPEED OVER LAG", "250 /s", "250 /s") in cells  # Kv = 1/τ
+    assert ("LAG AT CONSTANT SPEED", "0.0800 mm", "0.0800 mm") in cells
+    assert ("SPEED / LAG (GAIN)", "250 /s", "250 /s") in cells  # Kv = 1/τ
 
 
 def test_sines_have_gain_and_lag_of_the_formula_and_so_the_bandwidth() -> None:
@@ -109,7 +109,7 @@ def test_sines_have_gain_and_lag_of_the_formula_and_so_the_bandwidth() -> None:
     assert seen.down == pytest.approx(1.0 / (2.0 * math.pi * TAU), rel=0.02)
     assert seen.quarter is None
     words = {row.cells[0]: row.cells[2] for row in figures_sheet("", found, True).rows}
-    assert words["90° LATE"] == "not up to 80 Hz"
+    assert words["90° PHASE LAG"] == "not reached up to 80 Hz"
 
 
 def test_the_analyses_page_knows_a_record_of_a_test() -> None:

@@ -15,6 +15,7 @@ from app.screen.theme import DARK
 from core.alarms import CATALOGUE, Code, Reaction
 from core.executor.raised_alarm import make_alarm
 from core.executor.snapshot import Snapshot, State
+from tests.texts import text as wording
 
 UNIT = 600 / 90  # pixels at 1024×600
 ACROSS = 1024 - 3 * UNIT
@@ -48,7 +49,7 @@ def test_head_cause_and_remedy_are_whole(look: Look, code: Code) -> None:
     assert fits(look, view.state, 2.5, 42 * look.u, bold=True), view.state
     assert fits(look, stop_words(view), 2.5, ACROSS - 24 * UNIT - 6 * UNIT, bold=True)
     assert fits(look, reason(view), 1.9, ACROSS), reason(view)
-    assert fits(look, alarm_of(shot, "RELEASE THE BUTTON (U)"), 2.1, ACROSS, bold=True)
+    assert fits(look, alarm_of(shot, wording("stories.release-by-u")), 2.1, ACROSS, bold=True)
 
 
 @CODES

@@ -43,7 +43,7 @@ LABELS = {
     "SAVE": {"file", "store"},
     "SAV+MENU": {"file", "store"},
     "SAV+LOAD": {"file", "store", "load"},
-    **{label: {"store"} for label in ("HERE", "UNDO", "IN FORCE", "TOUCH", "TOUCH L")},
+    **{label: {"store"} for label in ("SET HERE", "UNDO", "ACTIVATE", "TOUCH", "TOUCH L")},
 }
 """What a function key may change, by its label; any other changes what is seen, and nothing else."""
 ALL = len(MACHINES)
@@ -152,7 +152,8 @@ def _of_label(day: Day, number: int) -> set[str]:
 
 def _of_entry(day: Day, stroke: Stroke) -> set[str]:
     """Return, where the prompt names it; Ctrl+S of the editor."""
-    if stroke.name == "Return" and "RETURN" in f"{day.frame.page.prompt()} {day.frame.prompt.state}":
+    prompts = f"{day.frame.page.prompt()} {day.frame.prompt.state}"
+    if stroke.name == "Return" and re.search(r"\bENTER(:| TO )", prompts):
         return {"load", "store"}
     return {"file", "store"} if day.frame.page.NAME == page_table.EDITOR and stroke.name == "s" else set()
 
@@ -233,7 +234,7 @@ AFTER_TYPING = {"Return", "F2"}  # of a prompt that says TYPE
 
 def named_keys(prompt: str) -> set[str]:
     """The keys that a prompt offers now; not those of a later step, or of what is typed first."""
-    clauses = (NO_KEYS.sub("", clause) for clause in re.split(r"[;·]", prompt))
+    clauses = (NO_KEYS.sub("", clause) for clause in re.split(r"[;·]|\. |   ", prompt))
     found = {word or letter for clause in clauses for word, letter in NAMED.findall(clause)}
     keys = {KEYS.get(each, each if each[0] == "F" and len(each) > 1 else each.lower()) for each in found}
     return keys - AFTER_TYPING if "TYPE" in prompt else keys

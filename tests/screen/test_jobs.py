@@ -151,7 +151,7 @@ def test_what_is_missing_on_the_plate_is_named(day: Day) -> None:
     day.sees(lambda: lacking() == [wording("screen.life-left", left=12, parts=50)])
     day.key(Key.Key_F4)
     day.enter("12")
-    day.sees(lambda: lacking() == ["in order"])
+    day.sees(lambda: lacking() == ["ready"])
     day.sees(lambda: wording("screen.tool-complete") in model(day).sheet(day.shot).rows[0].cells)
 
 
@@ -164,7 +164,7 @@ def test_another_tip_than_when_it_ran_last_is_told(day: Day) -> None:
     added(day, "peg.nc", "3")
     day.sees(lambda: len(model(day).setup().rows) > 1)
     told = next(r.cells[2] for r in model(day).setup().rows if r.cells[0] == "T1").replace("\n", " ")
-    tips = {"radius": "0.0315 in", "tip": "tip 2", "was": "0.0157 in", "was_tip": "tip 3"}
+    tips = {"radius": "0.0315 in", "tip": "tip quadrant 2", "was": "0.0157 in", "was_tip": "tip quadrant 3"}
     assert re.fullmatch(pattern("screen.another-tip", **tips), told)
 
 
@@ -262,7 +262,7 @@ def test_a_job_whose_program_is_not_on_the_desk_is_proved_and_loaded_like_any_ot
     added(day, "peg.nc", "3")
     loaded(day, "peg.nc")
     opened(day)
-    assert model(day).sheet(day.shot).rows[0].cells[4] == "UNDER WAY"
+    assert model(day).sheet(day.shot).rows[0].cells[4] == "IN PROGRESS"
     day.key(Key.Key_F1, Key.Key_F2)
     assert day.desk.choose("cap")
     day.sees(lambda: not day.desk.session.now.busy)

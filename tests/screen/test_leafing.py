@@ -255,7 +255,7 @@ def test_a_question_lies_over_no_row(above: QWidget, high: int, rows: int, notes
     """145 pixels are what drawn letters leave to a table of the special functions at 1024x600."""
     panel = SheetPanel(Look(DARK, SMALL), lambda _row: None, above)
     panel.resize(640, high)
-    panel.show_sheet(replace(sheet_of(MANY), question="WHOSE NAME?", notes=("one", "two")))
+    panel.show_sheet(replace(sheet_of(MANY), question=wording("screen.whose-name"), notes=("one", "two")))
     drawn: dict[str, QRectF] = {}
     write = Painter.write
 
@@ -269,7 +269,9 @@ def test_a_question_lies_over_no_row(above: QWidget, high: int, rows: int, notes
     assert sum(text.startswith("row ") for text in drawn) == rows == panel.rows
     assert sum(text in {"one", "two"} for text in drawn) == notes
     for text, box in drawn.items():
-        assert text == wording("screen.whose-name") or not box.intersects(drawn["WHOSE NAME?"]), text
+        assert text == wording("screen.whose-name") or not box.intersects(
+            drawn[wording("screen.whose-name")]
+        ), text
 
 
 def test_a_finger_comes_to_every_tool_of_a_mill(above: QWidget) -> None:

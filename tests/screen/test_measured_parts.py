@@ -93,7 +93,7 @@ def feature(day: Day, *fields: str, name: str = "spigot") -> None:
     day.key(Key.Key_Down)
     day.enter(every, sample)
     day.key(Key.Key_F6)
-    day.sees(lambda: bool(re.search(r"KEPT|REFUSED", day.prompt)))
+    day.sees(lambda: bool(re.search(r"SAVED|REJECTED", day.prompt)))
 
 
 def spigot(day: Day, every: str = "0", sample: str = "1") -> None:
@@ -136,7 +136,7 @@ def measured(day: Day, *sizes: str) -> None:
 
 def test_a_feature_is_entered_once(day: Day) -> None:
     spigot(day, every="10")
-    assert cells(day) == [("SPIGOT", "Ø 0.50000", "+0.00100  −0.00100", "T1 X", "every 10", "1")]
+    assert cells(day) == [("SPIGOT", "Ø 0.50000", "+0.00100  −0.00100", "T1 X", "every 10 parts", "1")]
 
 
 @pytest.mark.parametrize(

@@ -50,7 +50,7 @@ def test_an_interrupted_job_and_a_full_disk_stand_on_every_page(hands: Hands, pa
     ]
     assert rows.rows[1].figures.endswith("20 parts")
     assert not rows.geometry().intersects(hands.frame.page.geometry())
-    assert "NOT KEPT" in [lamp.word for lamp in hands.frame.strip.lamps]
+    assert "NOT SAVED" in [lamp.word for lamp in hands.frame.strip.lamps]
     hands.machine.now = replace(hands.machine.now, interrupted=None)
     hands.desk.not_kept = str
     hands.window.refresh()
@@ -70,7 +70,7 @@ def test_no_target_slips_away_under_a_finger_that_jogs(hands: Hands) -> None:
     time[0] += 1.0
     hands.window.refresh()
     assert hands.frame.page.geometry() == stands
-    assert "NOT KEPT" in [lamp.word for lamp in hands.frame.strip.lamps]  # the lamp says it at once
+    assert "NOT SAVED" in [lamp.word for lamp in hands.frame.strip.lamps]  # the lamp says it at once
     time[0] += 3.0
     hands.window.refresh()
     assert hands.frame.page.geometry() != stands
@@ -122,7 +122,7 @@ def test_a_machine_that_is_not_heard_says_so_on_every_page(hands: Hands, page: s
 
 
 def test_a_row_with_a_key_stays_a_fingertip_high(hands: Hands, monkeypatch: pytest.MonkeyPatch) -> None:
-    told = (NoticeRow("INTERRUPTED", "T1", (("F6", "SEARCHTO"),)), NoticeRow("NOT KEPT", "20 parts"))
+    told = (NoticeRow("INTERRUPTED", "T1", (("F6", "SEARCHTO"),)), NoticeRow("NOT SAVED", "20 parts"))
     monkeypatch.setattr(hands.frame, "_notices_of", lambda *_what, **_more: told)
     hands.window.refresh()
     rows = hands.frame.notices
@@ -154,7 +154,7 @@ def test_what_is_not_certain_behind_a_power_cut_is_whole_beside_its_keys(
         return real(painter, *what)  # type: ignore[call-overload]
 
     place = "X R−0.12500 Z −3.12130"
-    stood = tr("STOOD AT {stood}, STANDS AT {now} FROM HOME").format(stood=place, now=place)
+    stood = tr("WAS AT {stood}, NOW AT {now} FROM HOME").format(stood=place, now=place)
     unsure = _uncertain(broken_off(why=CONTROL_LOST))
     rows = NoticeRows(Look(DARK, unit), lambda _key: None)
     keys = (("F6", "SEARCHTO"), ("Y", tr("FROM LINE 1")))

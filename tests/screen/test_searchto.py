@@ -97,9 +97,9 @@ def test_every_difference_is_marked_by_its_sign(operator: Operator) -> None:
     operator.type("7")
     page = found(operator)
     rows = {row.label: row for row in page.state.shown.rows}
-    assert (rows["X WORDS"].wanted, rows["X WORDS"].now) == ("G72 Ø", "G73 R")
+    assert (rows["X VALUES"].wanted, rows["X VALUES"].now) == ("G72 Ø", "G73 R")
     assert (rows["SPINDLE"].wanted, rows["SPINDLE"].now) == ("M03", "M05")
-    assert (rows["F THAT IS A RAPID"].wanted, rows["FEED"].wanted) == ("300.00", "0.00600 in/rev")
+    assert (rows["F USED AS RAPID"].wanted, rows["FEED"].wanted) == ("300.00", "0.00600 in/rev")
     assert rows["COOLANT"].differs
     assert not rows["UNITS"].differs
     assert page.state.grab().width() > 0

@@ -68,7 +68,7 @@ def test_tools_offsets_stock_and_stops_stand_on_it(hands: Hands) -> None:
     assert "(assumed)" in said["T2"]
     assert said["STOCK"].startswith("Ø 1.")
     assert "GAUGE THE OUTSIDE AND CORRECT D1" in said["M01"]
-    assert {"TIME A PART", "STICK-OUT", "T1", "T3", "D1"} <= set(said)
+    assert {"TIME PER PART", "STICK-OUT", "T1", "T3", "D1"} <= set(said)
     drawn = {row.cells[0] for row in page.table.sheet.rows if row.outline is not None}
     assert drawn == {"T1", "T2", "T3"}
 

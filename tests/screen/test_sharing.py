@@ -81,7 +81,7 @@ def test_what_is_newer_is_compared_and_taken_when_asked(day: Day, sharing: Shari
     peg = tmp_path / "home" / "programs" / "peg.nc"
     opened(day)
     day.sees(lambda: bool(model(day).elsewhere.changes))
-    assert model(day).sheet().rows[0].cells[:3] == ("peg.nc", "NEWER ELSEWHERE", "LATHE 2")
+    assert model(day).sheet().rows[0].cells[:3] == ("peg.nc", "NEWER ON ANOTHER CONTROL", "LATHE 2")
     signs = [(row.sign, row.text) for row in model(day).elsewhere.changes if row.sign in "+-"]
     assert signs == [("-", "G01G94F60Z-.3"), ("+", "G01G94F40Z-.3")]
     day.key(Key.Key_F2)
@@ -93,7 +93,7 @@ def test_what_is_newer_is_compared_and_taken_when_asked(day: Day, sharing: Shari
     day.key(Key.Key_Y)
     day.sees(lambda: day.prompt == wording("screen.taken-shared", name="peg.nc", desk="LATHE 2"))
     assert peg.read_text() == BETTER
-    day.sees(lambda: model(day).sheet().rows[0].cells[1] == "THE NEWEST")
+    day.sees(lambda: model(day).sheet().rows[0].cells[1] == "UP TO DATE")
     with sharing._store().read() as connection:
         kept = [bytes(text) for (text,) in connection.execute("SELECT text FROM program_versions")]
     assert PEG.encode() in kept
@@ -141,7 +141,7 @@ def test_a_place_that_is_away_is_told_on_the_page_and_once_in_the_log(
     for _ in range(3):
         heard.hear(sharing.look())
     day.saved()
-    told = [each.text for each in day.journal.events("is not there", (), 10)]
+    told = [each.text for each in day.journal.events("was not found", (), 10)]
     assert len(told) == 1
     opened(day)
     assert shows(" ".join(model(day).sheet().notes), "screen.share-not-there")

@@ -231,7 +231,7 @@ def test_a_backup_is_made_and_restored(hands: Hands, journal: Journal) -> None:
     page = open_function(hands, 6)
     hands.sees(lambda: len(page.table.sheet.rows) >= 1)
     hands.key(Key.Key_Return)
-    hands.sees(lambda: shows(hands.prompt(), "screen.file-is-whole"))
+    hands.sees(lambda: shows(hands.prompt(), "screen.backup-is-whole"))
     hands.sees(
         lambda: len(page.table.sheet.rows) >= 2 and cells(page, 1)[1] == wording("screen.restore-is-whole")
     )
@@ -262,7 +262,7 @@ def test_the_list_tells_what_a_backup_is_worth(hands: Hands, journal: Journal) -
     (folder / "2026-11-22-bad.turndesk.db").write_bytes(b"no store any more")
     store.set_tool(3, "x", x=2.0).result(60)
     hands.key(Key.Key_F4)
-    said = ["RESTORE: IT IS WHOLE", "NOTHING: IT IS DAMAGED"]
+    said = ["RESTORE: BACKUP IS INTACT", "NOTHING: BACKUP DAMAGED"]
     hands.sees(lambda: [row.cells[1] for row in page.table.sheet.rows[1:3]] == said)
     hands.key(Key.Key_Down)
     hands.sees(lambda: page.table.sheet.notes[0] == wording("screen.other-than-now", what="tool offsets 1"))

@@ -144,14 +144,14 @@ def test_a_program_comes_in_under_a_new_name_and_starts_nothing(
     hands: Hands, lines: FakeLines, tmp_path: Path
 ) -> None:
     hands.key(Key.Key_F5)
-    hands.sees(lambda: cells(hands).get("WAITS") == text("screen.xoff"))
+    hands.sees(lambda: cells(hands).get("STATUS") == text("screen.xoff"))
     assert cells(hands)["DONE"] == "50%"
     assert lines.job is not None
     posted = len(hands.machine.posted)
     lines.job.go.set()
     hands.sees(lambda: page(hands).table.sheet.question == text("screen.name-of-new-program"))
     assert page(hands).table.sheet.text == "O77.nc"
-    assert cells(hands)["PROVED"] == "NO ERROR"
+    assert cells(hands)["PROVED"] == "NO ERRORS"
     hands.key(Key.Key_Delete)
     hands.type("new")
     hands.key(Key.Key_Return)
@@ -195,7 +195,7 @@ def test_it_is_thrown_away_after_asking(hands: Hands, lines: FakeLines, tmp_path
 
 def test_giving_up_keeps_nothing(hands: Hands, lines: FakeLines, tmp_path: Path) -> None:
     hands.key(Key.Key_F5)
-    hands.sees(lambda: "WAITS" in cells(hands))
+    hands.sees(lambda: "STATUS" in cells(hands))
     hands.key(Key.Key_F6)
     hands.sees(lambda: text("screen.nothing-kept", why="cancelled") in hands.desk.notice)
     assert "PORT" in cells(hands)
@@ -245,7 +245,7 @@ def test_the_program_on_the_desk_goes_out(hands: Hands, lines: FakeLines) -> Non
 
 def test_it_goes_on_behind_other_pages(hands: Hands, lines: FakeLines) -> None:
     hands.key(Key.Key_F5)
-    hands.sees(lambda: "WAITS" in cells(hands))
+    hands.sees(lambda: "STATUS" in cells(hands))
     hands.key(Key.Key_Escape)
     hands.key(Key.Key_Escape)
     assert lines.job is not None

@@ -98,7 +98,7 @@ def test_a_feature_is_corrected_by_what_this_machine_has(
         names = [each.name for each in pages.functions]
         found[name] = (
             "CORRECTED BY" in features.fields,
-            "ITS NUMBER" in features.fields,
+            "TOOL OR OFFSET NUMBER" in features.fields,
             "F8" in dict(readings.keys()),
             "TOOL LIFE" in names,
             "WEAR" in trends.kinds,

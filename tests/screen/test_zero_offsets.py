@@ -164,7 +164,7 @@ def test_where_the_machine_stands_reads_what_is_typed(hands: Hands, store: Store
     hands.key(Key.Key_Tab)
     hands.key(Key.Key_F2)
     hands.sees(lambda: store.zero_offsets() == {54: ZeroRow(z=-85.0, c=15.0)})
-    assert store.history(Kind.ZERO)[1].why == "Z reads 1.5"
+    assert store.history(Kind.ZERO)[1].why == "Z position set to 1.5"
     assert page.model.text == ""
 
 

@@ -38,18 +38,20 @@ def test_a_taper_is_written_and_told() -> None:
     assert not said(one, INCH)
     assert one.lines(INCH) == ["X.5Z0", "X1Z-1"]
     assert TRIANGLE.says(one, INCH) == (
-        "slope 1.0308",
+        "slant length 1.0308",
         "included angle 28.0725°",
         "taper on the diameter 1 : 2",
     )
 
 
 def test_a_triangle_that_is_none() -> None:
-    assert "type it" in said(filled(TRIANGLE, {"SMALL": 0.5, "LARGE": 1.0}, INCH), INCH)[0]
+    assert "enter it" in said(filled(TRIANGLE, {"SMALL": 0.5, "LARGE": 1.0}, INCH), INCH)[0]
     four = filled(TRIANGLE, {**TAPER, "ANGLE": 20.0}, INCH)
-    assert said(four, INCH) == ["These four are no taper: the angle would be 14.04. Delete one of them."]
+    assert said(four, INCH) == [
+        "These four values do not make a taper: the angle would be 14.04. Clear one of them."
+    ]
     through = filled(TRIANGLE, {"LARGE": 0.5, "LONG": 1.0, "ANGLE": 30.0}, INCH)
-    assert "through the axis" in said(through, INCH)[0]
+    assert "crosses the axis" in said(through, INCH)[0]
 
 
 @pytest.mark.parametrize(
@@ -73,7 +75,7 @@ def test_speed_says_the_depth_of_a_rough_pass(work: str, depth: str) -> None:
     """An assumed CCMT 0602 takes 3.224 mm: a quarter is .0317 in, half of it .0159 in for a boring bar."""
     typed: dict[str, Value] = {"MATERIAL": "STEEL", "WORK": work, "DIA": 0.5}
     words = [each for each in SPEED.says(filled(SPEED, typed, INCH), INCH) if "rough" in each]
-    assert words == ([f"rough passes {depth.removeprefix('0')} deep a side"] if depth else [])
+    assert words == ([f"roughing passes {depth.removeprefix('0')} deep per side"] if depth else [])
 
 
 def test_feed_both_ways() -> None:
@@ -84,7 +86,7 @@ def test_feed_both_ways() -> None:
     assert one.n("SURF") == pytest.approx(1000 * math.pi / 12, abs=0.05)
     assert filled(SPEED, {"DIA": 1.0, "RPM": 1000.0, "RATE": 6.0}, INCH).n("FEED") == 0.006
     torn = filled(SPEED, {"DIA": 1.0, "RPM": 1000.0, "FEED": 0.005, "RATE": 9.0}, INCH)
-    assert said(torn, INCH) == ["1000 rpm at 0.005 a turn are 5 a minute: delete one."]
+    assert said(torn, INCH) == ["1000 rpm at 0.005 per revolution is 5 per minute: clear one of the values."]
     fast = filled(SPEED, {"DIA": 1.0, "RPM": 5000.0}, INCH)
     assert "more than the 3500 rpm" in said(fast, INCH)[0]
 
@@ -97,13 +99,13 @@ def test_passes_of_a_thread() -> None:
     assert one.n("FIRST") == pytest.approx(0.01)
     assert one.lines(INCH) == ["G33X.44Z-1I.02K.05C"]
     told = THREADS.says(one, INCH)
-    assert told[:2] == ("depth .03 a side, the first pass .01", "the tool starts at X .48")
+    assert told[:2] == ("depth .03 per side, first pass .01", "the tool starts at X .48")
     assert told[2].split()[4:] == [
         f"{0.5 - 0.02 * math.sqrt(k):.4f}".rstrip("0").lstrip("0") for k in range(1, 10)
     ]
     assert filled(THREADS, {**own, "FIRST": 0.01}, INCH).n("PASSES") == pytest.approx(9.0)
     torn = filled(THREADS, {**own, "FIRST": 0.01, "PASSES": 4.0}, INCH)
-    assert "4 passes begin with .015" in said(torn, INCH)[0]
+    assert "4 passes need a first pass depth of .015" in said(torn, INCH)[0]
 
 
 # --- templates, in the editor
@@ -171,10 +173,10 @@ def test_a_tap_goes_in_and_out_at_its_pitch() -> None:
 def test_the_hole_before_a_tap() -> None:
     """M10: minor diameter of 6H from 8.376 to 8.676 (ISO 965-1); G 1/2: from 18.631 to 19.172 (ISO 228-1)."""
     one = filled(TAP, {"SERIES": "M", "SIZE": "M10", "DEEP": 12.0}, MM)
-    assert TAP.says(one, MM) == ("the hole before it: 8.53, from 8.38 to 8.68", "a drill for it: 8.5 mm")
+    assert TAP.says(one, MM) == ("hole before tapping: 8.53, from 8.38 to 8.68", "tap drill: 8.5 mm")
     assert one.n("PITCH") == 1.5
     pipe = filled(TAP, {"SERIES": "BSP", "SIZE": "1/2", "DEEP": 15.0}, MM)
-    assert TAP.says(pipe, MM)[0] == "the hole before it: 18.9, from 18.63 to 19.17"
+    assert TAP.says(pipe, MM)[0] == "hole before tapping: 18.9, from 18.63 to 19.17"
 
 
 DRILLS = {
@@ -212,13 +214,13 @@ DRILLS = {
 def test_the_drill_before_a_tap_is_that_of_the_charts(series: str, size: str) -> None:
     setting = MM if series.startswith("M") else INCH
     told = TAP.says(filled(TAP, {"SERIES": series, "SIZE": size, "DEEP": 1.0}, setting), setting)[1]
-    assert told.removeprefix("a drill for it: ").split(" mm")[0].split(",")[0] == DRILLS[series][size]
+    assert told.removeprefix("tap drill: ").split(" mm")[0].split(",")[0] == DRILLS[series][size]
 
 
 def test_a_drill_in_the_other_unit_is_told_with_its_size() -> None:
     inch = TAP.says(filled(TAP, {"SERIES": "M", "SIZE": "M6", "DEEP": 0.5}, INCH), INCH)
     metric = TAP.says(filled(TAP, {"SERIES": "UNC", "SIZE": "1/4", "DEEP": 12.0}, MM), MM)
-    assert (inch[1], metric[1]) == ("a drill for it: 5 mm, .1969", "a drill for it: #7, 5.105")
+    assert (inch[1], metric[1]) == ("tap drill: 5 mm, .1969", "tap drill: #7, 5.105")
 
 
 def test_no_drill_is_told_where_none_is_sold() -> None:
@@ -229,11 +231,14 @@ def test_no_drill_is_told_where_none_is_sold() -> None:
 @pytest.mark.parametrize(
     ("typed", "says"),
     [
-        ({"SERIES": "NPT", "SIZE": "1/4"}, "NPT is not tapped here"),
-        ({"SIZE": "9/7"}, "UNC has no 9/7"),
-        ({"SIZE": "1/4-20", "SHORT": 0.5}, "stops 0.5 short of 0.5"),
-        ({"SIZE": "1/4-20", "T": 5.0}, "T5 has a pitch of 0.03937 by its sheet, this is 0.05"),
-        ({"SIZE": "1/4-20", "DEEP": 1.0, "T": 4.0}, "1 is deeper than the flutes of T4, 0.7874"),
+        ({"SERIES": "NPT", "SIZE": "1/4"}, "NPT cannot be tapped here"),
+        ({"SIZE": "9/7"}, "UNC has no size 9/7"),
+        ({"SIZE": "1/4-20", "SHORT": 0.5}, "stops 0.5 short of depth 0.5"),
+        (
+            {"SIZE": "1/4-20", "T": 5.0},
+            "T5 has a pitch of 0.03937 in its tool data, but this thread has 0.05",
+        ),
+        ({"SIZE": "1/4-20", "DEEP": 1.0, "T": 4.0}, "Depth 1 is more than the flute length of T4, 0.7874"),
     ],
 )
 def test_what_no_tap_does(typed: dict[str, Value], says: str) -> None:

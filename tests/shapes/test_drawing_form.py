@@ -82,8 +82,8 @@ def test_a_drawing_becomes_pieces_that_are_opened_again(desk: Desk, tmp_path: Pa
     dxf(tmp_path / "step.dxf", chain(*STEP))
     form = desk.open()
     assert not form.troubles
-    assert form.words[0] == "secondary offset 1 has to hold X -.8 (as a diameter), Z -.4, R .4 mm"
-    assert any("stays in the corner at Z -9.975" in each for each in form.words)
+    assert form.words[0] == "secondary offset 1 must have X -.8 (diameter), Z -.4, R .4 mm"
+    assert any("remains in the corner at Z -9.975" in each for each in form.words)
     desk.shapes.write()
     assert [each.filled.shape.name for each in desk.shapes.pieces] == ["HEAD", "FACE", "TURN"]
     assert all(each.foreign < 0 for each in desk.shapes.pieces)

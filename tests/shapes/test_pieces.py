@@ -348,7 +348,7 @@ def test_a_comment_that_is_spoilt_is_told_with_its_line(spoilt: str, line: int) 
     hand = Programmer(text=text)
     hand.open(text.replace(DRILLED, spoilt), line)
     assert hand.shapes.form is None
-    told = "LINE 3: THE COMMENT OF THIS DRILL WAS CHANGED AND CANNOT BE READ ANY MORE; UNDO IT"
+    told = "LINE 3: THE COMMENT OF THIS DRILL WAS EDITED AND IS NOT READABLE. UNDO THE EDIT"
     assert hand.shapes.prompt() == told
 
 

@@ -174,12 +174,14 @@ def thread(typed: dict[str, float | str], *, metric: bool = False) -> Filled:
 def test_a_size_that_the_series_has_not_is_refused() -> None:
     one = thread({"SIZE": "7/13", "LONG": 0.5, "PITCH": 0.05, "CREST": 0.5, "ROOT": 0.4, "RPM": 300.0})
     said = {each.word: each.text for each in one.refusals(Setting())}
-    assert said == {"SIZE": "UNC has no 7/13: choose one with the arrows."}
+    assert said == {"SIZE": "UNC has no size 7/13: choose one with the arrows."}
 
 
 def test_a_class_of_the_other_side_is_refused() -> None:
     one = thread({"SIZE": "1/2", "LONG": 0.5, "CLASS": "2B"})
-    assert [each.text for each in one.refusals(Setting())] == ["CLASS 2B is none of 2A, 1A, 3A: choose one."]
+    assert [each.text for each in one.refusals(Setting())] == [
+        "CLASS 2B is not one of 2A, 1A, 3A: choose one of these."
+    ]
     assert classes(Series.UNC, inside=False) == ("2A", "1A", "3A")
 
 
@@ -241,7 +243,7 @@ def test_an_infeed_flatter_than_the_flank_is_refused(series: str, most: int) -> 
     one = thread({"SERIES": series, "SIZE": "1/2", "LONG": 0.5, "INFEED": 29.0})
     (said,) = one.refusals(Setting())
     assert said.word == "INFEED"
-    assert said.text.endswith(f"the first passes cut into it. Type {most} or less.")
+    assert said.text.endswith(f"so the first passes would cut into the flank. Enter {most} or less.")
 
 
 def test_a_thread_of_its_own_figures_has_the_angle_of_its_tool() -> None:
@@ -254,7 +256,7 @@ def test_a_thread_of_its_own_figures_has_the_angle_of_its_tool() -> None:
     assert not one.refusals(setting)
     named = filled(SHAPES["R"], {"SERIES": "M", "SIZE": "M20", "LONG": 30.0}, setting)
     assert [each.text[:44] for each in named.refusals(setting)] == [
-        "T1 cuts 30°, this thread has 60°: take anoth"
+        "T1 cuts 30°, but this thread has 60°: use an"
     ]
 
 
@@ -274,8 +276,8 @@ def test_what_a_thread_is_measured_by() -> None:
 def test_the_cone_before_a_pipe_thread() -> None:
     """1/2-14 NPT: E0 .7584 and .8 / 14 to the crest; 1 in 16 over the .5337 of L2 (B1.20.1)."""
     assert SHAPES["R"].says(thread({"SERIES": "NPT", "SIZE": "1/2"}), Setting()) == (
-        "pitch diameter .7584 where it begins",
-        "the cone before it: .8156 there, .849 where it ends",
+        "pitch diameter .7584 at the start",
+        "taper before threading: .8156 at the start, .849 at the end",
     )
 
 

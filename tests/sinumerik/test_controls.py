@@ -39,7 +39,7 @@ def of(control: str) -> Setup:
 def test_what_a_small_control_lacks(text: str, named: str, control: str) -> None:
     error = run(text, of(control)).errors[0]
     assert error.code == "not-in-control"
-    assert f"{named} is no function of a SINUMERIK {control.upper()}" in error.message
+    assert f"{named} is not a function of the SINUMERIK {control.upper()}" in error.message
     assert "control under [machine]" in error.hint
 
 

@@ -150,7 +150,7 @@ def test_arrays_of_var_that_do_not_fit(call: str, code: str) -> None:
 
 def test_an_array_without_var_is_told() -> None:
     bare = spf("BARE", "PROC BARE(REAL LIST[2])\nM17\n")
-    assert "with VAR" in refused(source("DEF REAL ONE[2]\nBARE(ONE)", bare)).message
+    assert "needs VAR" in refused(source("DEF REAL ONE[2]\nBARE(ONE)", bare)).message
 
 
 def test_mcall_acts_behind_each_move_until_mcall_alone() -> None:

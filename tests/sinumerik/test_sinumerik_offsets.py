@@ -109,7 +109,7 @@ def test_trans_in_inches() -> None:
 def test_trans_has_a_block_of_its_own(text: str) -> None:
     error = refused(text)
     assert error.code == "own-block"
-    assert "block of its own" in error.message
+    assert "separate block" in error.message
 
 
 def test_an_offset_is_no_target() -> None:

@@ -208,7 +208,7 @@ def test_m_functions_of_another_builder_are_told_once_each_and_the_rest_goes_on(
     assert told == [(2, "m-unanswered", Severity.WARNING)] * len(named.split())
     for each, code in zip(passed.found, named.split(), strict=True):
         number = code.removeprefix("M")
-        assert f"{code} is the machine builder's" in each.message
+        assert f"{code} is a machine-builder code" in each.message
         assert f'{number} = {{ output = "NAME", on = true }} under [m_codes]' in each.hint
         assert f"{number} = {{ ignored = true }}" in each.hint
 

@@ -297,7 +297,7 @@ def test_a_groove_needs_both_corners_of_its_tool() -> None:
         ("CYCLE93(40,-10,8,5,,,,1,,,,,,2,0,5)", "not-in-subset", "RCO1"),
         ("CYCLE93(40,-10,8,50,,,,,,,,,,2,0,5)", "61603", "DIAG"),
         ("CYCLE93(40,-10,8,5,,,,,,,,,,2,0,6)", "not-in-subset", "VARI"),
-        ("CYCLE84(4,0,2,-12,,,5,,1,0,100)", "spindle-position", "C is a drive of its own"),
+        ("CYCLE84(4,0,2,-12,,,5,,1,0,100)", "spindle-position", "C has a separate drive"),
         ('CYCLE952("A")', "not-in-subset", "CYCLE952"),
     ],
 )  # fmt: skip

@@ -106,7 +106,7 @@ def test_boring_that_stops_for_the_operator(call: str) -> None:
         ("CYCLE87(5,0,2,-12,,1)", "61102", "SDIR"),
         ("G331 Z-5 K1", "spindle-position", "SPOS=0"),
         ("SPOS=0\nG331 Z-5", "thread-lead-missing", "K"),
-        ("SPOS=0\nG331 X3 Z-5 K1", "word-unused", "Z alone"),
+        ("SPOS=0\nG331 X3 Z-5 K1", "word-unused", "only along Z"),
     ],
 )
 def test_refusals(text: str, code: str, part: str) -> None:

@@ -71,7 +71,7 @@ def test_a_tool_that_nobody_has_measured_is_told_and_will_not_start(word: str) -
     list(program.blocks())
     (found,) = program.diagnostics
     assert (found.severity, found.code, found.line) == (Severity.WARNING, "tool-offset-missing", 2)
-    assert "will refuse to start" in found.message
+    assert "the machine will not start" in found.message
     assert "F8" in found.hint
     assert len(program.missing_tools) == 1
 

@@ -157,7 +157,9 @@ def test_fp_says_which_fixed_point() -> None:
     around = replace(around, limits=replace(around.limits, fixed_points=points))
     last = good("G0 X20 Z5\nG75 X0 Z0 FP=2", around)[-1]
     assert (last.mx, last.mz) == (40.0, 70.0)
-    assert refused("N30 G75 X0 FP=3", around).message.endswith("names 2 of X, and number 3 is asked for.")
+    assert refused("N30 G75 X0 FP=3", around).message.endswith(
+        "defines 2 fixed points for X, but number 3 is programmed."
+    )
 
 
 def test_without_the_key_g75_is_refused_by_name() -> None:

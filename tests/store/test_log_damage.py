@@ -13,6 +13,7 @@ from core.store.store import Store
 from core.store.store_errors import StoreError
 from core.store.store_file import FILE_NAME
 from tests.coded import raises_code
+from tests.texts import text
 
 LOG = f"{FILE_NAME}-wal"
 FRAME = 24 + 4096
@@ -74,7 +75,7 @@ def test_a_bit_of_the_log_takes_nothing_back_unsaid(killed: Path, at: int) -> No
     """SQLite alone goes back to the offset of before, and calls the store whole."""
     flip(killed, at)
     content = (killed / LOG).read_bytes()
-    with raises_code(StoreError, "damaged-log", "4 changes"):
+    with raises_code(StoreError, "damaged-log", text("log.lost-changes", count=4)):
         backup.problems(killed / FILE_NAME)
     with raises_code(StoreError, "damaged-log"):
         Store.open(killed, read_only=True)
@@ -82,7 +83,7 @@ def test_a_bit_of_the_log_takes_nothing_back_unsaid(killed: Path, at: int) -> No
         [told] = store.repaired
         assert store.tools()[3].wear_x == 0.0
         assert store.events()[0].text == told
-    assert "4 changes" in told
+    assert text("log.lost-changes", count=4) in told
     [kept] = left_beside(killed)
     assert kept in told
     assert (killed / kept).read_bytes() == content
@@ -176,7 +177,7 @@ def test_a_byte_of_an_acknowledged_change_is_missed(killed: Path, frame: int, in
 def test_sectors_of_an_earlier_change_are_damage(killed: Path) -> None:
     """A change is acknowledged before the next one is written."""
     torn(killed, commits(killed)[1] + 600, 2, b"o")
-    with raises_code(StoreError, "damaged-log", "3 changes"):
+    with raises_code(StoreError, "damaged-log", text("log.lost-changes", count=3)):
         backup.problems(killed / FILE_NAME)
 
 

@@ -8,7 +8,7 @@ A story in ten lines::
         operator.starts()                       # both palms, as soon as the prompt offers it
         operator.key("h", "shift")              # a key goes down and comes up; modifiers are keys too
         operator.reaches("FEED HOLD")           # waits for a state of the machine
-        operator.sees("TO GO ON")               # waits for a text anywhere on the screen
+        operator.sees("TO CONTINUE")             # waits for a text anywhere on the screen
         assert 0 < operator.rests()[0] < .5 * 25.4  # mm, of the simulated slides themselves
         operator.until(lambda: operator.status["execution"] == "FEED_HOLD", "status.json")
 

@@ -16,6 +16,7 @@ from core.store.store import Store
 from tests.stories.fork_server import ForkServer
 from tests.stories.patience import LOOK, PATIENCE, throughout, until
 from tests.stories.x11 import MODIFIERS, Server
+from tests.texts import shows
 
 INCH = 25.4  # mm
 READS = 1.2  # s of looking at the prompt before the palms
@@ -308,7 +309,7 @@ class Operator:
         self.down(key)
 
         def there() -> bool:
-            if "THE JOG HAS ENDED" in self.prompt and not true():
+            if "JOG STOPPED" in self.prompt and not true():
                 self.up(key)
                 self.during(0.1)
                 self.down(key)
@@ -453,7 +454,7 @@ class Operator:
         """D, and the machine is ready; once more where a busy computer has forgotten the key."""
         self.reaches("DRIVES OFF")
         self.key("d")
-        self.until(lambda: self.state == "READY" or "WAS FORGOTTEN" in self.prompt, "READY")
+        self.until(lambda: self.state == "READY" or shows(self.prompt, "screen.screen-stood-still"), "READY")
         if self.state == "DRIVES OFF":
             self.during(1.0)
             self.key("d")
@@ -486,7 +487,7 @@ class Operator:
             if self.soon(runs):
                 return True
             refused = str(self.machine["refused"])
-            assert not refused or refused.startswith("look first"), refused
+            assert not refused or refused.startswith("read this first"), refused
             return False
 
         self.until(started, "a start")

@@ -181,7 +181,7 @@ def test_a_computer_that_was_away_is_told_in_an_operators_words(story: Story) ->
     assert operator.machine["alarms"] == []
     screen = operator.screen
     texts = " ".join([screen["prompt"], screen["state"], *(each[0] for each in screen["texts"])])
-    assert "this computer busy" in texts
+    assert "slowing this computer down" in texts
     assert not [word for word in OURS if word in texts]
     operator.during(0.5)
     operator.cycle_start()

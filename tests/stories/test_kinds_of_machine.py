@@ -147,7 +147,7 @@ def test_on_a_mill(story: Story) -> None:
         kept(operator, partial(preset_is, axis, wanted))
         operator.key("Right")
     operator.key("F3")
-    operator.sees("in force: 1")
+    operator.sees("active preset: 1")
     loads(operator, "again")
     makes(operator, 1)
     breaks_and_goes_on(operator, 5, 5, new_tool_on_mill)

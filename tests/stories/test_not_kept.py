@@ -34,7 +34,7 @@ def test_parts_that_are_made_while_the_disk_is_full_are_in_the_store_when_it_has
         operator.sees(fragment("stories.lost-by-closing"))
         operator.key("Escape")
         disk.make_room()
-        operator.until(lambda: not operator.shows("NOT KEPT"), "all is kept")
+        operator.until(lambda: not operator.shows("NOT SAVED"), "all is kept")
         with operator.store() as store:
             assert store.parts("part.nc") == made
         assert len(operator.events("part")) == made

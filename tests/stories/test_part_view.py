@@ -12,7 +12,7 @@ TOOLS = {1: (-0.5, -2.0)}
 
 def test_a_g00_left_on_is_seen_before_anything_moves(story: Story) -> None:
     operator = story.begins(SLIP, tools=TOOLS)
-    operator.find("to come", on="PathView")
+    operator.find("remaining", on="PathView")
     operator.key("v")
     operator.find(text("screen.line-what", line=11, what=opening("desk.rapid-into-stock")), on="PathView")
     operator.keys("j", "j", "j", "j", "j", "j", "j", "j", "j")  # back before its first move
@@ -27,7 +27,7 @@ def test_a_g00_left_on_is_seen_before_anything_moves(story: Story) -> None:
 def test_the_part_follows_the_run_and_stays_when_it_is_over(story: Story) -> None:
     operator = story.begins(SHAFT, tools=TOOLS)
     operator.drives_on()
-    operator.find("to come", on="PathView")
+    operator.find("remaining", on="PathView")
     operator.key("v")
     operator.find("PART  ·  T1", on="PathView")
     operator.starts()
@@ -38,4 +38,4 @@ def test_the_part_follows_the_run_and_stays_when_it_is_over(story: Story) -> Non
     operator.reaches("READY")
     operator.find("LINE 9", on="PathView")
     operator.keys("v", "v", "v")
-    operator.find("to come", on="PathView")
+    operator.find("remaining", on="PathView")

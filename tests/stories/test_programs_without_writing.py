@@ -10,7 +10,7 @@ from tests.stories.ways_of_input import PANEL, WAYS, Hand
 from tests.texts import fragment
 from tests.texts import text as wording
 
-LIST = "SHAPES  ·  THOSE OF THIS PROGRAM BY LINE"
+LIST = "SHAPES  ·  IN THIS PROGRAM, BY LINE"
 NECK, PIN = "M60 0 V10 H40 V15 H20 V0", "M120 0 V12 H100 V0"  # 30 mm across; 24 across
 DRAWING = (
     '<svg xmlns="http://www.w3.org/2000/svg" width="140mm" height="40mm" viewBox="0 0 140 40">'
@@ -38,7 +38,7 @@ def test_a_program_is_made_of_shapes(story: Story, way: str) -> None:
     hand.function("F2", "FILE")
     operator.opens("PROGRAMS")
     if way != "keys":
-        hand.press("FIND OR NEW NAME", "SheetPanel")
+        hand.press("NAME TO FIND OR CREATE", "SheetPanel")
     hand.types("zq", "LetterPad")
     operator.sees(fragment("programs.none-of-that-name"))
     hand.function("F3", "EDIT")
@@ -46,19 +46,19 @@ def test_a_program_is_made_of_shapes(story: Story, way: str) -> None:
     operator.sees(fragment("editor.saves-and-loads"))
     hand.shapes()
     operator.sees(LIST)
-    hand.row("N   HEAD", "how the program begins", "n")
+    hand.row("N   HEAD", "the start of the program", "n")
     hand.function("F2", "WRITE")
     operator.sees(LIST)
-    hand.row("F   FACE", "square across the end", "f")
+    hand.row("F   FACE", "the end of the part faced square", "f")
     if way != "keys":
-        hand.function("F9", "PAD")
-    hand.fill("FROM DIAMETER", ".55")
+        hand.function("F9", "KEYPAD")
+    hand.fill("START DIAMETER", ".55")
     hand.function("F2", "WRITE")
     operator.sees(LIST)
     hand.function("F10", "BACK")
     operator.sees(fragment("editor.saves-and-loads"))
     hand.shapes()
-    operator.until(lambda: operator.shows("FROM DIAMETER") and operator.shows(".55"), "the form again")
+    operator.until(lambda: operator.shows("START DIAMETER") and operator.shows(".55"), "the form again")
     hand.function("F10", "BACK")
     hand.function("F3", "SAV+LOAD")
     operator.opens("AUTOMATIC")

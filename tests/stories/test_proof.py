@@ -55,7 +55,7 @@ def test_without_what_block_delete_leaves_out_it_would_run_against_the_limit(sto
             "T0\nX.5Z.4\nF5Z.3\n",
             7,
             text("findings.cuts-after", what="the T0 on line 5"),
-            "Write T with the tool's number",
+            "Write T and the tool number",
         ),
         (
             "M05\nX-.5Z.1\nF20\nM19S60\nG04F3\n(~PLXC)\n(X.25Y0)\n(END)\n",

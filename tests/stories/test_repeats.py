@@ -112,7 +112,7 @@ def test_a_held_jog_goes_on_as_long_as_it_is_held(story: Story) -> None:
 def jogs_through(operator: Operator) -> bool:
     """Whether the jog has gone on all the while; a computer that stands still ends it, and rightly."""
     operator.down("Right")
-    operator.until(lambda: operator.state == "JOG" or "HAS ENDED" in operator.prompt, "the jog")
+    operator.until(lambda: operator.state == "JOG" or "JOG STOPPED" in operator.prompt, "the jog")
     since = len(operator.seen) - 1
     operator.during(HELD)
     went_on = all(each["state"] == "JOG" for each in operator.seen[since:])

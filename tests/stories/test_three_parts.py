@@ -97,7 +97,7 @@ def test_by_mouse(story: Story) -> None:
     for keys in (("0",), ("−", "1")):
         for key in keys:
             operator.clicks(key, on="KeyPad")
-        operator.clicks("RETURN", on="KeyPad")
+        operator.clicks("ENTER", on="KeyPad")
         operator.during(0.2)
     operator.until(lambda: tool_set(operator), "T1 kept")
     operator.clicks("MENU", on="FunctionKeys")
@@ -124,7 +124,7 @@ def test_by_touch(story: Story) -> None:
     for keys in (("0",), ("−", "1")):
         for key in keys:
             operator.touches(key, on="KeyPad")
-        operator.touches("RETURN", on="KeyPad")
+        operator.touches("ENTER", on="KeyPad")
         operator.during(0.2)
     operator.until(lambda: tool_set(operator), "T1 kept")
     operator.touches("MENU", on="FunctionKeys")

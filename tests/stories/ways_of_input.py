@@ -63,7 +63,7 @@ class Hand:
             return
         self.press(label, "RowsPanel")
         self.types(figure, "KeyPad")
-        self.press("RETURN", "KeyPad")
+        self.press("ENTER", "KeyPad")
 
     def row(self, text: str, marked: str, letter: str) -> None:
         """A row of the list is opened: by its letter, or by a touch that marks it and one more.

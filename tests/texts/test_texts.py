@@ -45,7 +45,7 @@ def test_a_part_of_what_is_shown_is_found_by_its_id() -> None:
     assert not shows(shown, "screen.no-start")
     assert fragment("search.no-such-pass", count=5) in shown
     assert fragment("search.no-such-pass", count=55) not in shown
-    assert opening("search.no-such-pass", line=8) == "Line 8 is run"
+    assert opening("search.no-such-pass", line=8) == "Line 8 runs"
 
 
 def test_a_translation_takes_the_values_by_their_names() -> None:

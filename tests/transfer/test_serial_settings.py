@@ -8,6 +8,7 @@ import pytest
 
 from app.transfer.serial_settings import ROWS, settings_of, stored_form
 from core.machine.serial_table import DncModel
+from tests.texts import text
 
 DEFAULT = DncModel("/dev/ttyUSB0", 9600, 7, "E", 1, "xonxoff", "%", "\r\n")
 PORTS = ("/dev/ttyS0", "/dev/ttyUSB0")
@@ -31,11 +32,11 @@ def around(name: str, model: DncModel) -> list[str]:
         ("SPEED", 11),
         ("BITS, PARITY, STOP BITS", 7),
         ("FLOW CONTROL", 3),
-        ("FRAME", 2),
+        (text("programs.serial-wrap"), 2),
         ("LINE END", 3),
         ("DC CODES", 2),
-        ("WAIT FOR DC1 TO SEND", 2),
-        ("LEADER OF NULS", 4),
+        (text("programs.serial-after-dc1"), 2),
+        (text("programs.serial-leader"), 4),
     ],
 )
 def test_every_setting_goes_round(row: str, count: int) -> None:

@@ -49,9 +49,12 @@ class EndlessJumps:
             state.selected_program,
         )
         if self._loops.comes_round((stands, held), lambda: (stands, deepcopy(held))):
-            text = "This jump never ends: it comes round with nothing changed that a jump goes by."
+            text = "This jump repeats forever: nothing that affects a jump changes in the loop."
             raise state.refuse(
-                node.column, ENDLESS, text, "Change a Q parameter of its condition in the loop."
+                node.column,
+                ENDLESS,
+                text,
+                ("In the loop, change a Q parameter that the jump condition uses."),
             )
 
 
@@ -70,8 +73,10 @@ def _label(state: State, flow: Flow, name: int | str | nodes.TextName, *, subpro
     found = text_of(state, name)
     at = flow.program.labels.get(found)
     if at is None or (subprogram and flow.program.subprogram_end(at) is None):
-        text = f'LBL "{found}" is nowhere in the program, or has no LBL 0.'
-        raise state.refuse(name.column, LABEL, text, "Correct the text, or write the label.")
+        text = f'LBL "{found}" is not in the program or has no LBL 0.'
+        raise state.refuse(
+            name.column, LABEL, text, ("Correct the label name in the QS parameter, or add the label.")
+        )
     return found
 
 

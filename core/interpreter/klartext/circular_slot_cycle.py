@@ -28,7 +28,7 @@ def circular_slot(tool: CycleTool) -> Iterator[Block]:
     centre, begin, sweep = _placed(tool)
     count, step = int(tool.plain(377, 1.0)), tool.plain(378, 0.0)
     if not 1 <= count <= _MOST_SLOTS:
-        raise tool.refuse(f"Q377 {count} is no number of slots.", "Write how many there are.")
+        raise tool.refuse(f"Q377={count} is not a valid number of slots.", "Enter a valid number.")
     scope = int(tool.plain(215, 0.0))
     side, floor = tool.length(368, 0.0), tool.length(369, 0.0)
     for at in range(count):
@@ -47,10 +47,13 @@ def slot_of(tool: CycleTool, centre: Point, begin: float, sweep: float) -> Loop:
     """The outline of one slot, counter-clockwise. Raises ProgramError for one that is none."""
     radius, half = tool.length(375) / 2.0, tool.length(219) / 2.0
     if not SMALLEST < half < radius or not 0.0 < abs(sweep) <= 360.0:
-        text = f"A slot of {2 * half:g} mm over {sweep:g} degrees on a circle of {2 * radius:g} mm is none."
+        text = (
+            f"A slot {2 * half:g} mm wide over {sweep:g} degrees on a circle {2 * radius:g} mm in "
+            "diameter is not possible."
+        )
         raise tool.refuse(text, "Correct Q219, Q248 and Q375.")
     if radius * math.radians(360.0 - abs(sweep)) < 2.0 * half:
-        raise tool.refuse("The slot runs into its own end.", "Make Q248 smaller.")
+        raise tool.refuse("The ends of the slot overlap.", "Reduce Q248.")
     first, last = sorted((begin, begin + sweep))
 
     def at(angle: float, away: float) -> Point:
@@ -73,7 +76,7 @@ def _placed(tool: CycleTool) -> tuple[Point, float, float]:
     share = {_LEFT_END: 0.0, _MIDDLE: 0.5, _RIGHT_END: 1.0}.get(place)
     if share is None:
         if place != _CENTRE:
-            raise tool.refuse("Q367 is not between 0 and 3.", "Correct the position.")
+            raise tool.refuse("Q367 must be 0, 1, 2 or 3.", "Correct Q367.")
         return (tool.length(216), tool.length(217)), begin, sweep
     turned = math.radians(begin)  # Q376 is the angle of the place where the tool stands
     x, y = tool.here

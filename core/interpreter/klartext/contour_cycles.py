@@ -39,14 +39,16 @@ class Clearing:
         self.tool, self.area = tool, area
         depth = tool.length(1)
         if depth > 0.0:
-            raise tool.refuse(f"The depth Q1 {depth:+.10g} mm leads upwards.", "Write it with a minus.")
+            raise tool.refuse(
+                f"Depth Q1={depth:+.10g} mm is positive (upward).", ("Enter the depth with a minus sign.")
+            )
         self.surface = tool.length(5, 0.0)
         self.bottom = self.surface + depth
         self.clear = self.surface + (tool.length(6) if above is None else above)
         self.safe = max(tool.length(7), self.clear)
         self.side, self.floor = tool.length(3, 0.0), tool.length(4, 0.0)
         if tool.radius <= SMALLEST:
-            raise tool.refuse("The tool has no radius.", "Write R into the tool table.")
+            raise tool.refuse("The tool has no radius.", "Enter R in the tool table.")
 
     @property
     def against(self) -> bool:
@@ -58,8 +60,8 @@ class Clearing:
         """From ring to ring: Q2 tool radii, and no more than one, which leaves nothing standing."""
         overlap = self.tool.plain(2, 1.0)
         if not 0.0 < overlap < _MOST_OVERLAP:
-            text = f"The path overlap {self.tool.named(2)} {overlap:g} clears nothing."
-            raise self.tool.refuse(text, "Write it between 0.0001 and 1.9999.")
+            text = f"With path overlap {self.tool.named(2)}={overlap:g}, the cycle cannot clear the area."
+            raise self.tool.refuse(text, "Enter a value between 0.0001 and 1.9999.")
         return min(overlap, 1.0) * self.tool.radius
 
     def levels(self, bottom: float) -> list[float]:
@@ -80,8 +82,11 @@ class Clearing:
 
     def unfit(self, problem: AreaError | GougeError) -> ProgramError:
         """What is told where a contour cannot be followed at the tool's radius."""
-        text = f"The contour cannot be milled with R {self.tool.radius:.10g} mm and its allowance: {problem}."
-        return self.tool.refuse(text, "Take a smaller tool, or correct the contour.")
+        text = (
+            f"The contour cannot be milled with tool radius {self.tool.radius:.10g} mm plus the "
+            f"allowance: {problem}."
+        )
+        return self.tool.refuse(text, "Use a smaller tool, or correct the contour.")
 
     def above(self) -> Iterator[Block]:
         """To the clearance height."""
@@ -100,9 +105,12 @@ class Clearing:
 def contour_data(tool: CycleTool) -> None:
     """20: the data are kept in Q1 to Q9; looked at where they are told. Raises ProgramError."""
     if tool.length(1) > 0.0:
-        raise tool.refuse("The depth Q1 leads upwards.", "Write it with a minus.")
+        raise tool.refuse("Depth Q1 is positive (upward).", "Enter the depth with a minus sign.")
     if not 0.0 < tool.plain(2, 1.0) < _MOST_OVERLAP:
-        raise tool.refuse("The path overlap Q2 clears nothing.", "Write Q2 between 0.0001 and 1.9999.")
+        raise tool.refuse(
+            "With the programmed path overlap Q2, the cycle cannot clear the area.",
+            ("Set Q2 to a value between 0.0001 and 1.9999."),
+        )
 
 
 # --- clearing -------------------------------------------------------------------------------------------
@@ -113,8 +121,8 @@ def pilot_drilling(tool: CycleTool, area: Sequence[Loop]) -> Iterator[Block]:
     told = Clearing(tool, area)
     radius = tool.radius_of(int(tool.plain(13)))
     if radius is None or radius <= SMALLEST:
-        text = f"The rough-out tool Q13 {tool.plain(13):g} has no radius in the tool table."
-        raise tool.refuse(text, "Write the number of a measured tool into Q13.")
+        text = f"Rough-out tool {tool.plain(13):g} (Q13) has no radius in the tool table."
+        raise tool.refuse(text, "Set Q13 to the number of a measured tool.")
     feed, bottom = told.tool.cut(11), told.bottom + told.floor
     yield from told.above()
     for cut in told.plan(radius):
@@ -132,7 +140,10 @@ def rough_out(tool: CycleTool, area: Sequence[Loop]) -> Iterator[Block]:
     """22: level by level to the allowances of cycle 20; Q401 slows the ways through full material."""
     told = Clearing(tool, area)
     if tool.plain(18, 0.0):
-        tool.tell("Q18: all of the pocket is gone over, what the coarse tool has cleared too.")
+        tool.tell(
+            "Q18: the whole pocket is milled again, including the area that the coarse roughing "
+            "tool has cleared."
+        )
     feed = told.tool.cut(12)
     slow = feed * min(max(tool.plain(401, 100.0), 1.0), 100.0) / 100.0
     plan = told.plan(tool.radius)
@@ -167,8 +178,8 @@ def _ramp(told: Clearing, cut: Cut, top: float, z: float, slow: float) -> Iterat
     else:
         feed, length, ring = told.tool.cut(19), (top - z) / _RAMP, sum(element.length for element in cut.ramp)
         if length > _MOST_RAMP * ring:
-            text = "There is no room to go down by a ramp."
-            raise tool.refuse(text, "Go straight down, with a tool that cuts in its middle.")
+            text = "There is not enough room to plunge along a ramp."
+            raise tool.refuse(text, "Use a center-cutting tool and plunge vertically.")
         way, rest = walked(cut.ramp, length)
         done = 0.0
         for element in way:
@@ -222,7 +233,7 @@ def side_finishing(tool: CycleTool, area: Sequence[Loop]) -> Iterator[Block]:
     except AreaError as problem:
         raise told.unfit(problem) from None
     if not loops:
-        raise told.unfit(AreaError("the tool is wider than every place of it"))
+        raise told.unfit(AreaError("the tool does not fit anywhere inside it"))
     room = Within(area)
     yield from told.above()
     for loop in loops:
@@ -269,7 +280,7 @@ def contour_train(tool: CycleTool, figures: Figures) -> Iterator[Block]:
     """25: along a contour at its side, level by level; Q15 0 there and back, -1 up-cut milling."""
     told = Clearing(tool, above=_ABOVE)
     if len(figures) > 1:
-        tool.tell("Cycle 25 mills the first contour of cycle 14 alone.")
+        tool.tell("Cycle 25 mills only the first contour of cycle 14.")
     figure = figures[0]
     way = _beside(told, figure)
     kind = tool.plain(15, 1.0)
@@ -294,7 +305,9 @@ def _beside(told: Clearing, figure: ContourFigure) -> list[Element]:
     """The way of the tool's centre, its radius and Q3 off the contour; on it without RL or RR."""
     elements = list(figure.elements)
     if not elements:
-        raise told.tool.refuse(f"The contour {figure.label} has no elements.", "Write its path functions.")
+        raise told.tool.refuse(
+            f"The contour {figure.label} has no elements.", ("Add path functions to the contour.")
+        )
     if not figure.side:
         return elements
     apart = told.tool.radius + told.side

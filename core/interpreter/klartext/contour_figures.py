@@ -57,13 +57,13 @@ class FigureRunner(PathRunner):
     def draw(self, node: Move) -> None:
         """The element of a path function. Raises ProgramError for what no contour has."""
         if node.form.startswith(("APPR", "DEP")):
-            raise unsupported(self._state.line, node.column, f"{node.form} within a contour of SL cycles")
+            raise unsupported(self._state.line, node.column, (f"{node.form} inside an SL cycle contour"))
         if not node.axes and not node.words and node.form == "L":
             return
         self.side = self.side or node.compensation.strip("0+-")
         made = list(self._elements(node))
         if any(each.upright for each in made):
-            raise unsupported(self._state.line, node.column, "An upright arc within a contour of SL cycles")
+            raise unsupported(self._state.line, node.column, ("A vertical arc inside an SL cycle contour"))
         if self._corner is not None:
             made[0] = self._rounded(made[0])
         if self._begun < 0 and (node.words or any(word.axis in "XY" for word in node.axes)):
@@ -106,8 +106,8 @@ def area_of(
         loop = _closed(state, figure, column)
         (pockets if _is_pocket(state, figure, loop, column) else islands).append(loop)
     if not pockets:
-        text = "No contour of cycle 14 is a pocket: there is nothing to clear between islands."
-        raise state.refuse(column, INPUT_VALUE, text, "Write the outer contour clockwise with RR.")
+        text = "Cycle 14 lists only islands and no pocket, so there is nothing to clear."
+        raise state.refuse(column, INPUT_VALUE, text, "Program the outer contour clockwise with RR.")
     return _bounded(state, [*pockets, *islands], _inside(pockets, islands), column)
 
 
@@ -151,9 +151,11 @@ def _bounded(state: State, loops: Sequence[Loop], inside: Callable[[Point], bool
     try:
         found = boundary(loops, inside)
     except AreaError as problem:
-        raise state.refuse(column, INPUT_VALUE, f"Of the contours {problem}.", "Correct them.") from None
+        raise state.refuse(
+            column, INPUT_VALUE, f"The contours cannot be combined: {problem}.", ("Correct these entries.")
+        ) from None
     if not found:
-        text = "The contours enclose nothing: the islands cover the pockets."
+        text = "The contours enclose no area because the islands cover the pockets."
         raise state.refuse(column, INPUT_VALUE, text, "Correct the contours.")
     return found
 
@@ -162,11 +164,11 @@ def _closed(state: State, figure: ContourFigure, column: int) -> Loop:
     """The contour as a loop. Raises ProgramError for an open one."""
     if not figure.elements:
         text = f"The contour {figure.label} has no elements."
-        raise state.refuse(column, CYCLE_MISSING, text, "Write its path functions.")
+        raise state.refuse(column, CYCLE_MISSING, text, "Add path functions to the contour.")
     gap = math.dist(figure.elements[-1].end, figure.elements[0].start)
     if gap > OPEN:
         text = f"The contour {figure.label} ends {gap:.10g} mm from its start."
-        raise state.refuse(column, INPUT_VALUE, text, "Close it: end it where it begins.")
+        raise state.refuse(column, INPUT_VALUE, text, "End the contour at its start point.")
     return follows(figure.elements)
 
 
@@ -174,8 +176,8 @@ def _is_pocket(state: State, figure: ContourFigure, loop: Loop, column: int) -> 
     if figure.pocket is not None:
         return figure.pocket
     if not figure.side:
-        text = f"Nothing says on which side of the contour {figure.label} is milled."
-        raise state.refuse(column, CYCLE_MISSING, text, "Write RL or RR in its first block.")
+        text = f"The side on which contour {figure.label} is milled is not programmed."
+        raise state.refuse(column, CYCLE_MISSING, text, ("Write RL or RR in the first block of the contour."))
     return goes_round(loop) == (figure.side == "L")
 
 

@@ -44,12 +44,12 @@ def _of_the_table(state: State, row: Value, column: int) -> tuple[AxisWord, ...]
     """The axes of a row of the datum table. Raises ProgramError where there is none, or no such row."""
     if state.datum_table is None:
         text = "No datum table is selected."
-        raise state.refuse(column, NO_TABLE, text, "Write SEL TABLE with the file before.")
+        raise state.refuse(column, NO_TABLE, text, ("Select the file with SEL TABLE before this block."))
     number = int(word_values.number(state, row, "#", MOST_ROW, 0.0))
     found = state.datum_table.get(number)
     if found is None:
         text = f"The datum table has no row {number}."
-        raise state.refuse(column, NO_TABLE, text, "Correct the number, or write the row.")
+        raise state.refuse(column, NO_TABLE, text, "Correct the row number, or add the row.")
     told = ((axis, found[axis]) for axis in (*SLIDES, *ROTARY) if axis in found)
     return tuple(
         AxisWord(axis, Value(value / (state.scale if axis in SLIDES else 1.0)), column=column)
@@ -59,8 +59,8 @@ def _of_the_table(state: State, row: Value, column: int) -> tuple[AxisWord, ...]
 
 def _demand_no_turn(state: State, axis: str, value: float, column: int) -> None:
     if value:
-        text = f"A datum shift of the rotary axis {axis} is not built."
-        raise state.refuse(column, WRONG_AXIS, text, "Turn the axis with L, or tell the plane.")
+        text = f"A datum shift of rotary axis {axis} is not supported."
+        raise state.refuse(column, WRONG_AXIS, text, ("Turn the axis with an L block, or program the plane."))
 
 
 def transform(state: State, node: Transform) -> None:
@@ -80,6 +80,6 @@ def transform(state: State, node: Transform) -> None:
         return
     factor = word_values.number(state, node.value, "SCL", MOST_FACTOR, 0.0)
     if factor <= 0.0:
-        text = "A factor of 0 leaves nothing."
-        raise state.refuse(node.column, INPUT_VALUE, text, "Write SCL with a factor such as 0.99.")
+        text = "A scaling factor of 0 is not allowed."
+        raise state.refuse(node.column, INPUT_VALUE, text, "Program SCL with a factor such as 0.99.")
     state.figure = replace(figure, factor=factor)

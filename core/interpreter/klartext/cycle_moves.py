@@ -18,9 +18,9 @@ from core.language.klartext.klartext_faults import CYCLE_MISSING, INPUT_VALUE, W
 from core.language.klartext.q_parameters import MAX_FEED, TOOL_FEED
 
 _TURN = 360.0
-UNORIENTED = "this machine's spindle is not oriented"
+UNORIENTED = "the spindle of this machine cannot be oriented"
 HOW_ORIENTED = (
-    "write oriented = true under [spindle] of the machine file where its drive can stop it at an angle"
+    "set oriented = true under [spindle] in the machine file if the drive can stop the spindle at an angle"
 )
 
 Parameters = Mapping[int, int | float | None]
@@ -79,7 +79,7 @@ class CycleTool:
             found = default
         if found is None:
             text = f"Cycle {self._number} needs {self.named(q)}."
-            raise self._state.refuse(self._column, CYCLE_MISSING, text, "Write it behind CYCL DEF.")
+            raise self._state.refuse(self._column, CYCLE_MISSING, text, ("Add the parameter to CYCL DEF."))
         return found
 
     def length(self, q: int, default: float | None = None) -> float:
@@ -92,15 +92,15 @@ class CycleTool:
         if found == TOOL_FEED and self._state.tool_feed is not None:
             return per_minute(self._state, self._state.tool_feed, self._state.tool_feed_per, self._column)
         if found <= 0.0:
-            text = f"{self.named(q)} of cycle {self._number} is no feed."
-            raise self._state.refuse(self._column, INPUT_VALUE, text, "Write a feed above zero.")
+            text = f"{self.named(q)} of cycle {self._number} is not a valid feed rate."
+            raise self._state.refuse(self._column, INPUT_VALUE, text, "Enter a feed rate above 0.")
         return None if found >= MAX_FEED else found
 
     def cut(self, q: int) -> float:
         """A feed that cuts, as programmed. Raises ProgramError for a rapid."""
         found = self.feed(q)
         if found is None:
-            raise self.refuse(f"{self.named(q)} is a rapid, and cuts.", "Write a feed.")
+            raise self.refuse(f"{self.named(q)} is set to rapid, but this move cuts.", "Enter a feed rate.")
         return found
 
     def refuse(self, text: str, hint: str) -> ProgramError:
@@ -127,8 +127,8 @@ class CycleTool:
         """Of the tool's point, degrees. Raises ProgramError where the tool table does not tell it."""
         row = self._state.setup.mill_tools.get(self._state.modal.tool)
         if row is None or not 0.0 < row.point < 180.0:
-            text = f"Cycle {self._number} by diameter needs the angle of the tool's point."
-            raise self.refuse(text, "Write it into the tool table, or Q343=+0 and Q201.")
+            text = f"Cycle {self._number} needs the point angle of the tool for a programmed diameter."
+            raise self.refuse(text, ("Enter the point angle in the tool table, or program Q343=+0 and Q201."))
         return row.point
 
     @property
@@ -152,8 +152,10 @@ class CycleTool:
         """Speed of the spindle, signed. Raises ProgramError where it stands."""
         found = self.turns
         if not found:
-            text = f"Cycle {self._number} needs the spindle to turn."
-            raise self._state.refuse(self._column, WRONG_RPM, text, "Start it with M3 before.")
+            text = f"Cycle {self._number} needs a running spindle."
+            raise self._state.refuse(
+                self._column, WRONG_RPM, text, ("Start the spindle with M3 before the cycle.")
+            )
         return found
 
     @property
@@ -164,22 +166,23 @@ class CycleTool:
     def thread_speed(self, pitch: float) -> float:
         """S in the direction of a thread, signed: a pitch under 0 is a left-hand one. Raises ProgramError."""
         if not self.speed:
-            text = f"Cycle {self._number} needs a speed."
-            raise self._state.refuse(self._column, WRONG_RPM, text, "Write S behind TOOL CALL.")
+            text = f"Cycle {self._number} needs a spindle speed."
+            raise self._state.refuse(self._column, WRONG_RPM, text, "Program S in TOOL CALL.")
         return math.copysign(self.speed, pitch)
 
     def warn_uncoupled(self) -> None:
         """Z follows the spindle by its speed, not by its angle: it stands while the spindle turns round."""
         text = (
-            f"Cycle {self._number}: Z stands while the spindle turns round, as nothing ties it to its angle."
+            f"Cycle {self._number}: Z stops while the spindle reverses because Z is not "
+            "synchronized with the spindle angle."
         )
-        hint = "Use a floating holder."
+        hint = "Use a floating tap holder."
         self._state.tell_once(self._column, Severity.WARNING, "tapping-uncoupled", text, hint)
 
     def warn_unoriented(self) -> None:
         """Nothing stops the spindle of this mill at an angle: the edge may point anywhere."""
-        text = f"Cycle {self._number} frees the edge aside, and {UNORIENTED}."
-        hint = "Write Q214=0, or turn the edge by hand where the program stops for it."
+        text = f"Cycle {self._number} moves the cutting edge off the wall, but {UNORIENTED}."
+        hint = "Program Q214=0, or turn the edge by hand when the program stops for it."
         self._state.tell_once(self._column, Severity.WARNING, "spindle-not-oriented", text, hint)
 
     # --- what it does -------------------------------------------------------------------------------------
@@ -197,7 +200,8 @@ class CycleTool:
         fastest = state.kinematics.slides[2].vmax
         if (rate := lead * rpm / 60.0) > fastest:
             text = (
-                f"A lead of {lead:.10g} mm at S{rpm:g} is faster than Z goes ({fastest * 60.0:.10g} mm/min)."
+                f"A lead of {lead:.10g} mm at S{rpm:g} requires a Z feed rate above the maximum of "
+                f"{fastest * 60.0:.10g} mm/min."
             )
             raise self.refuse(text, "Lower S.")
         goal = state.machine((*self.here, z))
@@ -249,8 +253,8 @@ class CycleTool:
         if number == 0:
             return []
         if number not in {8, 9}:
-            text = f"Q{q} is M{number}, which is no coolant of this machine."
-            raise self.refuse(text, "Write 8 for on and 9 for off.")
+            text = f"Q{q} selects M{number}, which is not a coolant function of this machine."
+            raise self.refuse(text, "Enter 8 for coolant on or 9 for coolant off.")
         state.modal = state.modal._replace(coolant=number == 8)
         return [state.action(Coolant(number == 8))]
 
@@ -269,7 +273,9 @@ class CycleTool:
         """The spindle held at the angle of a parameter. Raises ProgramError."""
         angle = self.plain(q, 0.0)
         if not -_TURN <= angle <= _TURN:
-            raise self.refuse(f"{self.named(q)} is no angle of a spindle.", "Write -360 to 360.")
+            raise self.refuse(
+                f"{self.named(q)} is not a valid spindle angle.", ("Enter an angle from -360 to 360 degrees.")
+            )
         return oriented(self._state, angle)
 
     def halt(self, message: str) -> Block:

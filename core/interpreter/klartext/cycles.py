@@ -116,8 +116,8 @@ class Cycles:
         state = self._state
         known = node.number in _MACHINING.keys() | CONTOURS | _AT_ONCE
         if 300 <= node.number <= 399:
-            text = f"Cycle {node.number} is a machine builder's, and this machine has none of its own."
-            raise state.refuse(node.column, CYCLE_UNKNOWN, text, "Take it out.")
+            text = f"Cycle {node.number} is a machine-builder cycle, and this machine has no such cycles."
+            raise state.refuse(node.column, CYCLE_UNKNOWN, text, "Remove it from the program.")
         if not known:
             kind = _ON_CYLINDER.get(node.number)
             name = f"CYCL DEF {node.number}" + (f" (cylinder surface, {kind})" if kind else "")
@@ -146,19 +146,23 @@ class Cycles:
         found = state.setup.presets.get(int(number)) if number == int(number) else None
         if found is None and set(state.setup.presets) - {0}:
             text = f"Preset {number:g} is not in the preset table."
-            raise state.refuse(column, INPUT_VALUE, text, "Set it on the page PRESETS, or correct Q339.")
+            raise state.refuse(
+                column, INPUT_VALUE, text, ("Set the preset on the PRESETS page, or correct Q339.")
+            )
         if (
             found is not None
             and state.plane is not None
             and state.kinematics.with_preset(found).basic != state.kinematics.basic
         ):
-            text = f"Preset {number:g} turns the workpiece while a tilted plane is in force."
-            raise state.refuse(column, CONTRADICTION, text, "Write PLANE RESET STAY before.")
+            text = f"Preset {number:g} rotates the workpiece while a tilted plane is active."
+            raise state.refuse(column, CONTRADICTION, text, ("Write PLANE RESET STAY before this block."))
         if found is not None:
             state.kinematics = state.kinematics.with_preset(found)
         elif number:
-            text = f"No preset table is kept on this machine, so preset {number:g} is its zero."
-            hint = "Set the preset on the page PRESETS."
+            text = (
+                f"This machine has no preset table, so preset {number:g} uses the zero from the machine file."
+            )
+            hint = "Set the preset on the PRESETS page."
             state.tell_once(column, Severity.WARNING, "preset", text, hint)
         state.preset()
 
@@ -191,8 +195,8 @@ class Cycles:
             return part
         found = self._declared.get(part.declared)
         if found is None:
-            text = f"No DECLARE CONTOUR has named QC{part.declared}."
-            raise self._state.refuse(1, CYCLE_MISSING, text, "Write it before.")
+            text = f"QC{part.declared} is not declared with DECLARE CONTOUR."
+            raise self._state.refuse(1, CYCLE_MISSING, text, ("Write DECLARE CONTOUR before this block."))
         return found._replace(pocket=part.pocket, declared=part.declared)
 
     def declare(self, node: ContourDeclare) -> None:
@@ -218,8 +222,8 @@ class Cycles:
         ``figures`` are the contours of ``contours``, as their subprograms say them.
         """
         if not self._number:
-            text = "No machining cycle has been told."
-            raise self._state.refuse(column, CYCLE_MISSING, text, "Write CYCL DEF before.")
+            text = "No machining cycle is defined."
+            raise self._state.refuse(column, CYCLE_MISSING, text, "Write CYCL DEF before this block.")
         self._demand_plain_feeds(column)
         if self._number in OLDER:
             self._demand_lines(column)
@@ -244,7 +248,9 @@ class Cycles:
         """Raises ProgramError where no contour has been named."""
         if not figures:
             text = f"Cycle {self._number} has no contour."
-            raise self._state.refuse(column, CYCLE_MISSING, text, "Name its labels in cycle 14 before.")
+            raise self._state.refuse(
+                column, CYCLE_MISSING, text, ("List the contour labels in cycle 14 before this block.")
+            )
 
     def _demand_lines(self, column: int) -> None:
         """Raises ProgramError where a line of an older cycle has not been told."""
@@ -259,7 +265,7 @@ class Cycles:
         )
         if missing is not None:
             text = f"Line {number}.{missing} of the cycle is missing."
-            raise self._state.refuse(column, CYCLE_MISSING, text, "Write it in CYCL DEF.")
+            raise self._state.refuse(column, CYCLE_MISSING, text, "Complete the CYCL DEF.")
 
     def _tool(self, number: int, column: int) -> CycleTool:
         return CycleTool(self._state, number, self._state.q.get, column)
@@ -288,12 +294,16 @@ class Cycles:
     def _angle(self, node: CycleLine) -> float:
         """The angle of cycle 13, to which M19 brings the spindle. Raises ProgramError."""
         if not node.words:
-            text = "Cycle 13 names no angle."
-            raise self._state.refuse(node.column, CYCLE_MISSING, text, "Write ANGLE and degrees.")
+            text = "Cycle 13 has no angle."
+            raise self._state.refuse(
+                node.column, CYCLE_MISSING, text, ("Write ANGLE with a value in degrees.")
+            )
         angle = value(self._state, node.words[-1].value.formula)
         if not -360.0 <= angle <= 360.0:
-            text = f"{angle:g} is no angle of a spindle."
-            raise self._state.refuse(node.words[-1].column, INPUT_VALUE, text, "Write -360 to 360.")
+            text = f"{angle:g} is not a valid spindle angle."
+            raise self._state.refuse(
+                node.words[-1].column, INPUT_VALUE, text, ("Enter an angle from -360 to 360 degrees.")
+            )
         return angle
 
     def _name_contours(self, node: CycleLine) -> None:
@@ -303,26 +313,31 @@ class Cycles:
             return
         labels = contour_labels(node.text)
         if not labels:
-            text = "Cycle 14 names no label."
-            raise self._state.refuse(node.column, CYCLE_MISSING, text, "Write CONTOUR LABEL1 /2.")
+            text = "Cycle 14 does not list any label."
+            raise self._state.refuse(
+                node.column, CYCLE_MISSING, text, ("Write the labels, for example CONTOUR LABEL1 /2.")
+            )
         self._contours += tuple(ContourPart(label, None) for label in labels)
         if len(self._contours) > _MOST_CONTOURS:
-            text = f"Cycle 14 names {len(self._contours)} contours; {_MOST_CONTOURS} are the most."
-            raise self._state.refuse(node.column, INPUT_VALUE, text, "Join some of them.")
+            text = f"Cycle 14 lists {len(self._contours)} contours; the maximum is {_MOST_CONTOURS}."
+            raise self._state.refuse(node.column, INPUT_VALUE, text, "Combine some of the contours.")
 
     def _seconds(self, word: AxisWord) -> float:
         """The time of cycle 9. Raises ProgramError for one under 0."""
         seconds = value(self._state, word.value.formula)
         if seconds < 0.0:
-            text = f"A dwell of {seconds:g} s lies before now."
-            raise self._state.refuse(word.column, INPUT_VALUE, text, "Write a time over 0.")
+            text = f"The dwell time of {seconds:g} s is negative."
+            raise self._state.refuse(word.column, INPUT_VALUE, text, "Enter a time above 0.")
         return seconds
 
     def _tilted(self, node: CycleLine) -> Plane:
         """Cycle 19 as a PLANE: spatial angles, without which it ends; nothing moves. Raises ProgramError."""
         if node.text and node.text.upper() not in _SET_UP:
             raise syntax(
-                self._state.line, node.column, f"{node.text} is no axis.", "Cycle 19 takes A, B and C."
+                self._state.line,
+                node.column,
+                f"{node.text} is not an axis.",
+                ("Use only A, B and C in cycle 19."),
             )
         if not node.words:
             return Plane("RESET", (), Positioning("STAY"), node.column)
@@ -339,20 +354,25 @@ class Cycles:
     def _demand_plain_feeds(self, column: int) -> None:
         """The feeds of a cycle are its own: a minute, and with M103 as they are written."""
         if self._state.per_revolution:
-            raise unsupported(self._state.line, column, "A cycle while M136 is on (write M137 before)")
+            raise unsupported(self._state.line, column, "A cycle with M136 active (write M137 first)")
         if self._state.plunging is not None:
-            text = "M103 leaves the feeds of a cycle as they are."
+            text = "M103 does not change the feed rates of a cycle."
             self._state.tell_once(column, Severity.WARNING, "cycle-feeds", text)
 
     def call_pattern(self, node: CycleCall) -> Iterator[Block]:
         """CYCL CALL PAT: the cycle at every point, between them at the safe height. Raises ProgramError."""
         state = self._state
         if not self._points:
-            text = "No PATTERN DEF and no SEL PATTERN has told points."
-            raise state.refuse(node.column, CYCLE_MISSING, text, "Write PATTERN DEF before.")
+            text = "Neither PATTERN DEF nor SEL PATTERN has defined any points."
+            raise state.refuse(node.column, CYCLE_MISSING, text, ("Write PATTERN DEF before this block."))
         if self._number not in _MACHINING:
-            text = "CYCL CALL PAT needs a cycle from 200 on before it."
-            raise state.refuse(node.column, CYCLE_MISSING, text, "Write its CYCL DEF before.")
+            text = "CYCL CALL PAT needs a preceding cycle with a number of 200 or higher."
+            raise state.refuse(
+                node.column,
+                CYCLE_MISSING,
+                text,
+                ("Write the CYCL DEF of a machining cycle before this block."),
+            )
         speed = None if node.feed is None else word_values.feed_word(state, node.feed, node.column)
         surface = state.q.get(_SURFACE, 0.0)
         for x, y, above in self._points:
@@ -371,13 +391,13 @@ class Cycles:
             yield from self.call(node.column)
         tool = self._tool(self._number, node.column)
         if self._number not in _MACHINING:
-            raise unsupported(self._state.line, node.column, f"CYCL CALL POS of cycle {self._number}")
+            raise unsupported(self._state.line, node.column, (f"CYCL CALL POS with cycle {self._number}"))
         x, y = tool.here
         for word in node.axes:
             at = word_values.coordinate(self._state, word)
             if word.axis == "Z" and (at or word.incremental):
-                text = "CYCL CALL POS with a Z other than +0 is not built."
-                hint = "Write Z+0, and the surface into Q203."
+                text = "CYCL CALL POS with a Z other than +0 is not supported."
+                hint = "Write Z+0, and enter the surface in Q203."
                 raise self._state.refuse(word.column, INPUT_VALUE, text, hint)
             x = (x + at if word.incremental else at) if word.axis == "X" else x
             y = (y + at if word.incremental else at) if word.axis == "Y" else y
@@ -395,7 +415,12 @@ class Cycles:
         tool = self._tool(node.number, node.column)
         if self._number not in _MACHINING:
             text = f"Cycle {node.number} needs a machining cycle before it."
-            raise self._state.refuse(node.column, CYCLE_MISSING, text, "Write its CYCL DEF before.")
+            raise self._state.refuse(
+                node.column,
+                CYCLE_MISSING,
+                text,
+                ("Write the CYCL DEF of a machining cycle before this block."),
+            )
         surface = tool.length(203, 0.0)
         above = surface + tool.length(204, 0.0) if tool.plain(301, 1.0) else surface + tool.length(200)
         places = _on_circle(tool) if node.number == _CIRCLE else _in_rows(tool)
@@ -439,5 +464,5 @@ def _in_rows(tool: CycleTool) -> list[Point]:
 def _count(tool: CycleTool, q: int) -> int:
     count = int(tool.plain(q))
     if not 1 <= count <= _MOST_PLACES:
-        raise tool.refuse(f"Q{q} {count} is no number of places.", "Write how many there are.")
+        raise tool.refuse(f"Q{q}={count} is not a valid number of positions.", "Enter a valid number.")
     return count

@@ -69,7 +69,9 @@ def _start(tool: CycleTool) -> tuple[float, float, float]:
 def _rows(tool: CycleTool) -> int:
     count = int(tool.plain(240))
     if not 2 <= count <= _MOST_ROWS:
-        raise tool.refuse(f"Q240 {count} is no number of cuts.", f"Write 2 to {_MOST_ROWS}.")
+        raise tool.refuse(
+            f"Q240={count} is not a valid number of cuts.", (f"Enter a number from 2 to {_MOST_ROWS}.")
+        )
     return count
 
 
@@ -108,7 +110,8 @@ def face_milling_by_place(tool: CycleTool) -> Iterator[Block]:
     """233: as 232 from where the tool stands (Q367), along Q350; limits at its sides are not built."""
     if any(tool.plain(q, 0.0) for q in (347, 348, 349)):
         raise tool.refuse(
-            "Cycle 233 with a limit (Q347, Q348, Q349) is not built.", "Write 0, or mill a pocket."
+            "Cycle 233 with a limit (Q347, Q348, Q349) is not supported.",
+            ("Set Q347, Q348 and Q349 to 0, or mill a pocket."),
         )
     a, b = tool.length(218), tool.length(219)
     place = int(tool.plain(367, -1.0))
@@ -116,7 +119,7 @@ def face_milling_by_place(tool: CycleTool) -> Iterator[Block]:
         place
     )
     if back is None:
-        raise tool.refuse("Q367 is not between -1 and 4.", "Correct the position.")
+        raise tool.refuse("Q367 must be a whole number from -1 to 4.", "Correct Q367.")
     corner = tool.here[0] - back[0], tool.here[1] - back[1]
     turned = int(tool.plain(350, 1.0)) == 2
     face = _Face(corner, b, a, True) if turned else _Face(corner, a, b)
@@ -127,7 +130,7 @@ def face_milling_by_place(tool: CycleTool) -> Iterator[Block]:
 def _faced(tool: CycleTool, face: _Face, *, both: bool, finish: bool = False) -> Iterator[Block]:
     top, bottom = tool.length(227), tool.length(386)
     if bottom > top + SMALLEST:
-        raise tool.refuse("The end Q386 lies above the start Q227.", "Correct the heights.")
+        raise tool.refuse("End point Q386 is above start point Q227.", "Correct Q227 or Q386.")
     left, clear = tool.length(369, 0.0), top + tool.length(200)
     safe = max(clear, top + tool.length(204, 0.0))
     feed, last = tool.cut(207), tool.cut(385) if tool.plain(385, 0.0) else tool.cut(207)
@@ -155,9 +158,9 @@ def _level(tool: CycleTool, face: _Face, z: float, clear: float, feed: float) ->
     """
     kind, radius = int(tool.plain(389, 0.0)), tool.radius
     if not _OUTSIDE <= kind <= _SPIRAL:
-        raise tool.refuse(f"Q389 {kind} is no strategy.", "Write 0 to 4.")
+        raise tool.refuse(f"Q389={kind} is not a valid strategy.", "Enter a number from 0 to 4.")
     if kind == _SPIRAL:
-        tool.tell("the face is milled to and fro, and not in a spiral.")
+        tool.tell("the face is milled in back-and-forth rows, not in a spiral.")
     length, width = abs(face.length), abs(face.width)
     place = tool.cut(253)
     out = radius + tool.length(357, 0.0)
@@ -185,11 +188,16 @@ def _step(tool: CycleTool, width: float) -> float:
     """The width of a row: even, and no more than Q370 tool radii."""
     overlap = tool.plain(370, 1.0)
     if not 0.0 < overlap < 2.0 or tool.radius <= SMALLEST or width <= SMALLEST:
-        text = f"The overlap Q370 {overlap:g} of a tool of R {tool.radius:g} mm clears nothing."
-        raise tool.refuse(text, "Write Q370 between 0.1 and 1.9999, the tool's radius, and the sides.")
+        text = (
+            f"With path overlap Q370={overlap:g} and tool radius {tool.radius:g} mm, the cycle "
+            "cannot clear the area."
+        )
+        raise tool.refuse(
+            text, ("Set Q370 between 0.1 and 1.9999, and enter the tool radius and the side lengths.")
+        )
     count = max(1, math.ceil(width / (overlap * tool.radius) - SMALLEST))
     if count > _MOST_ROWS:
-        raise tool.refuse(f"The face takes {count} rows.", "Take a larger tool.")
+        raise tool.refuse(f"Facing would need {count} rows, which is too many.", "Use a larger tool.")
     return width / count
 
 

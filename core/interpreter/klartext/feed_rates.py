@@ -47,7 +47,7 @@ def _factor(state: State, code: MCode) -> float:
     if value.q is not None:
         raise unsupported(state.line, value.column, "M103 with a Q parameter")
     if not 0.0 < value.number <= 100.0:
-        text = f"M103 F{value.number:g} is not above 0 and up to 100 percent."
+        text = f"M103 F{value.number:g} must be above 0 and at most 100 percent."
         raise state.refuse(value.column, INPUT_VALUE, text, "Write M103 F20 for a fifth of the feed.")
     return value.number / 100.0
 
@@ -62,14 +62,14 @@ def per_minute(state: State, feed: float, per: str, column: int) -> float:
     word = "F under M136" if state.per_revolution and per == REVOLUTION else f"F{per}"
     rpm = state.modal.rpm if state.modal.spindle else 0.0
     if rpm <= 0.0:
-        text = f"{word} counts by the spindle, and it stands."
-        raise state.refuse(column, WRONG_RPM, text, "Start it with M3 or M4 before.")
+        text = f"{word} depends on the spindle speed, but the spindle is stopped."
+        raise state.refuse(column, WRONG_RPM, text, ("Start the spindle with M3 or M4 before this block."))
     made = feed * rpm * (_teeth(state, column) if per == TOOTH else 1)
     made *= 1.0 if state.scale == 1.0 else _TENTHS
     if made > MOST_FEED:
-        text = f"{word} {feed:g} at S{rpm:g} comes to a feed of {made:g}."
-        raise state.refuse(column, INPUT_VALUE, text, "Correct the feed.")
-    note = f"{word} counts with S as programmed: the spindle override leaves the feed as it is."
+        text = f"{word} {feed:g} at S{rpm:g} gives a feed rate of {made:g}, which is above the maximum."
+        raise state.refuse(column, INPUT_VALUE, text, "Correct the feed rate.")
+    note = f"{word} uses the programmed S: the spindle override does not change the feed rate."
     state.tell_once(column, Severity.NOTE, "feed-by-programmed-speed", note)
     return made
 
@@ -78,8 +78,8 @@ def _teeth(state: State, column: int) -> int:
     tool = state.modal.tool
     row = state.setup.mill_tools.get(tool)
     if row is None or row.teeth < 1:
-        text = f"FZ counts teeth, and the tool table has none (CUT) for tool {tool}."
-        raise state.refuse(column, INPUT_VALUE, text, "Write CUT into the tool table, or program F.")
+        text = f"FZ is feed per tooth, but the tool table has no number of teeth (CUT) for tool {tool}."
+        raise state.refuse(column, INPUT_VALUE, text, "Enter CUT in the tool table, or program F.")
     return row.teeth
 
 

@@ -12,10 +12,10 @@ from core.interpreter.klartext.cycle_moves import HOW_ORIENTED, UNORIENTED, Cycl
 SMALLEST = 1e-6  # mm; less is no depth
 _ASIDE = 0.2  # mm that a boring bar goes aside before it is drawn out
 _EDGE = {
-    (-1.0, 0.0): "EDGE TO X+",
-    (0.0, -1.0): "EDGE TO Y+",
-    (1.0, 0.0): "EDGE TO X-",
-    (0.0, 1.0): "EDGE TO Y-",
+    (-1.0, 0.0): "TURN EDGE TO X+",
+    (0.0, -1.0): "TURN EDGE TO Y+",
+    (1.0, 0.0): "TURN EDGE TO X-",
+    (0.0, 1.0): "TURN EDGE TO Y-",
 }
 _MOST_PECKS = 10_000
 
@@ -82,8 +82,8 @@ def aside(tool: CycleTool, directions: tuple[int, ...]) -> tuple[float, float]:
     """Q214: which way the tool leaves the wall, along X or Y. Raises ProgramError for another number."""
     number = tool.plain(214, 0.0)
     if number not in directions:
-        text = f"Q214 is not between {directions[0]} and {directions[-1]}."
-        raise tool.refuse(text, "Correct the direction.")
+        text = f"Q214 must be a whole number from {directions[0]} to {directions[-1]}."
+        raise tool.refuse(text, "Correct Q214.")
     return {0: (0.0, 0.0), 1: (-1.0, 0.0), 2: (0.0, -1.0), 3: (1.0, 0.0), 4: (0.0, 1.0)}[int(number)]
 
 
@@ -95,13 +95,13 @@ def back_boring(tool: CycleTool) -> Iterator[Block]:
     beside the centre.
     """
     if not tool.orients:
-        text = f"Cycle 204 goes through the hole with the spindle at an angle, and {UNORIENTED}."
+        text = f"Cycle 204 passes through the hole with the spindle stopped at an angle, but {UNORIENTED}."
         raise tool.refuse(text, f"Bore from the other side, or {HOW_ORIENTED}.")
     rpm, (along_x, along_y) = tool.rpm, aside(tool, (1, 2, 3, 4))
     surface, depth = tool.length(203, 0.0), tool.length(249)
     if depth < 0.0:
         raise tool.refuse(
-            f"Q249 {depth:+.10g} mm bores away from the part.", "Write the depth without a minus."
+            f"Q249={depth:+.10g} mm would bore away from the part.", ("Enter the depth without a minus sign.")
         )
     clear, through, slow = surface + tool.length(200), tool.length(250) + tool.length(252), tool.feed(253)
     lowest, end = surface - through - tool.length(200), surface - through + depth
@@ -212,7 +212,7 @@ def _thread(tool: CycleTool) -> tuple[float, float]:
     tool.warn_uncoupled()
     pitch = tool.length(239)
     if pitch == 0.0:
-        raise tool.refuse("Q239 is no pitch.", "Write the pitch of the thread.")
+        raise tool.refuse("Pitch Q239 must not be 0.", "Enter the thread pitch.")
     return abs(pitch), tool.thread_speed(pitch)
 
 
@@ -241,7 +241,7 @@ def bore_milling(tool: CycleTool) -> Iterator[Block]:
     pitch = tool.length(334)
     if way < 0.0 or pitch <= 0.0 or feed <= 0.0:
         raise tool.refuse(
-            "The tool, the infeed or the feed of cycle 208 does not fit the hole.", "Correct them."
+            "The tool, infeed or feed rate of cycle 208 does not suit the hole.", ("Correct these entries.")
         )
     yield tool.to(clear)
     if way < SMALLEST:
@@ -279,7 +279,7 @@ def single_lip_drilling(tool: CycleTool) -> Iterator[Block]:
     surface, clear, bottom = heights(tool)
     rpm, sense = tool.rpm, {3: 1.0, 4: -1.0, 5: 0.0}.get(int(tool.plain(426, 3.0)))
     if sense is None:
-        raise tool.refuse("Q426 is neither 3, 4 nor 5.", "Write the M function of the direction.")
+        raise tool.refuse("Q426 must be 3, 4 or 5.", ("Enter the M function for the spindle direction."))
     drilling = tool.plain(428, 0.0) * (sense or 1.0) or rpm
     slow, begin = tool.plain(427, 0.0) * sense, surface - max(tool.length(379, 0.0), 0.0)
     yield tool.to(clear)
@@ -305,7 +305,9 @@ def heights(tool: CycleTool) -> tuple[float, float, float]:
     """Surface, set-up clearance above it, and bottom. Raises ProgramError for a depth that leads upwards."""
     surface, depth = tool.length(203, 0.0), tool.length(201)
     if depth > 0.0:
-        raise tool.refuse(f"The depth Q201 {depth:+.10g} mm leads upwards.", "Write it with a minus.")
+        raise tool.refuse(
+            f"Depth Q201={depth:+.10g} mm is positive (upward).", ("Enter the depth with a minus sign.")
+        )
     return surface, surface + tool.length(200), surface + depth
 
 
@@ -317,7 +319,7 @@ def infeeds(
         yield whole
         return
     if whole / max(step if not smaller else least or step, SMALLEST) > _MOST_PECKS:
-        raise tool.refuse(f"The infeed of {step:g} mm takes too many.", "Make Q202 larger.")
+        raise tool.refuse(f"An infeed of {step:g} mm would need too many pecks.", "Increase Q202.")
     done = 0.0
     while whole - done > SMALLEST:
         done = min(done + step, whole)

@@ -122,7 +122,7 @@ class Interpreter(Interpretation):
             left -= 1
             idle, made = (idle + 1, made) if self._state.blocks == made else (0, self._state.blocks)
             if left < 0 or idle > MOST_LINES_WITHOUT_BLOCK or self._state.blocks >= MOST_BLOCKS:
-                self._stop_endless(line.number, "Lower the counts of the repeats.")
+                self._stop_endless(line.number, "Reduce the repeat counts.")
                 return
             for block in self._guarded(line):
                 if not self._stopped:
@@ -262,11 +262,15 @@ class Interpreter(Interpretation):
                     pass
         if self._cycles.formula is None:
             text = f"{name} has no contour formula."
-            raise self._state.refuse(column, CYCLE_MISSING, text, "Write QC10 = QC1 | QC2 into it.")
+            raise self._state.refuse(
+                column, CYCLE_MISSING, text, ("Add a contour formula such as QC10 = QC1 | QC2.")
+            )
 
     def _missing_program(self, name: str, column: int) -> ProgramError:
-        text = f"The program {name} is not beside this one."
-        return self._state.refuse(column, FILE_MISSING, text, "Put it into the same folder.")
+        text = f"Program {name} is not in the same folder as this program."
+        return self._state.refuse(
+            column, FILE_MISSING, text, ("Put the file in the same folder as this program.")
+        )
 
     def _open(self, node: nodes.TableOpen) -> None:
         """FN 26: the table of FN 27 and FN 28, as its file has it. Raises ProgramError."""
@@ -276,8 +280,10 @@ class Interpreter(Interpretation):
     def _table(self, name: str, column: int) -> dict[int, Row]:
         rows = self._flow.table(name)
         if rows is None:
-            text = f"The table {name} is not beside this program."
-            raise self._state.refuse(column, FILE_MISSING, text, "Put it into the same folder.")
+            text = f"Table {name} is not in the same folder as this program."
+            raise self._state.refuse(
+                column, FILE_MISSING, text, ("Put the file in the same folder as this program.")
+            )
         return rows
 
     def _named(self, name: str | nodes.TextName) -> str:
@@ -288,7 +294,7 @@ class Interpreter(Interpretation):
         """The program of SEL PGM. Raises ProgramError where none is selected."""
         if not self._state.selected_program:
             text = "No program is selected."
-            raise self._state.refuse(column, FILE_MISSING, text, "Write SEL PGM before.")
+            raise self._state.refuse(column, FILE_MISSING, text, "Write SEL PGM before this block.")
         return self._state.selected_program
 
     def _call_program(self, name: str, column: int) -> None:
@@ -372,15 +378,17 @@ class Interpreter(Interpretation):
         else:
             flow, name = self._flow.through_subprogram(part.label), f"LBL {name_text(part.label)}"
         if flow is None:
-            text = f"{name} of the contour is nowhere in the program, or has no LBL 0."
-            raise self._state.refuse(column, LABEL, text, "Correct the number, or write the label.")
+            text = f"{name} of the contour is not in the program or has no LBL 0."
+            raise self._state.refuse(column, LABEL, text, ("Correct the label number, or add the label."))
         runner, lines = FigureRunner(state), MOST_LINES_WITHOUT_BLOCK
         while (line := flow.next()) is not None:
             lines -= 1
             if line.error is not None:
                 raise ProgramError(self._flow.located(line.error))
             if lines < 0:
-                raise self._state.refuse(column, LABEL, f"{name} does not come to its end.", "Correct it.")
+                raise self._state.refuse(
+                    column, LABEL, f"{name} never reaches its end.", ("Correct the value.")
+                )
             if not (line.skip and state.setup.block_delete):
                 state.line, state.text = self._flow.shown_line(line.number), flow.program.text(line)
                 _draw(state, runner, flow, line)
@@ -407,4 +415,4 @@ def _draw(state: State, runner: FigureRunner, flow: Flow, line: nodes.KlartextLi
             reckon(state, node)
         case nodes.Datum() | nodes.Transform() | nodes.Plane() | nodes.Cycle() | nodes.CycleLine():
             what = state.text.split("~")[0].strip()
-            raise unsupported(state.line, 1, f"{what} within a contour of SL cycles")
+            raise unsupported(state.line, 1, f"{what} inside an SL cycle contour")

@@ -103,7 +103,7 @@ def _din_iso(source: Source) -> KlartextLine | None:
     if first is None or _DIN_ISO.match(first[1]) is None:
         return None
     text = "This program is written in DIN/ISO."
-    hint = "Convert it into Klartext on the control that it comes from, or post it anew."
+    hint = "Convert the program to Klartext on its original control, or post-process it again."
     problem = fault(first[0], 1, NOT_SUPPORTED, text, hint).diagnostic
     return KlartextLine(first[0], error=problem)
 
@@ -176,27 +176,27 @@ def _frame(program: Program) -> Iterator[Diagnostic]:
     first = program.lines[with_blocks[0]] if with_blocks else None
     if first is None or not isinstance(first.node, Begin):
         if first is None or first.error is None:
-            hint = "The first block names program and unit."
+            hint = "Start the program with BEGIN PGM, the program name and the unit."
             yield _wrong(first.number if first else 1, "BEGIN PGM is missing.", hint)
         return
     program.inch = first.node.inch
     ends = ((index, node) for index in with_blocks if isinstance(node := program.lines[index].node, End))
     program.end, last = next(ends, (program.end, None))
     if last is None:
-        yield _wrong(with_blocks[-1] + 1, "END PGM is missing.", "Look whether the file is whole.")
+        yield _wrong(with_blocks[-1] + 1, "END PGM is missing.", "Check that the file is complete.")
         return
     for index in with_blocks[1:]:
         if isinstance(program.lines[index].node, Begin):
-            yield _wrong(index + 1, "BEGIN PGM stands twice.", "A file holds one program.")
+            yield _wrong(index + 1, "BEGIN PGM appears twice.", "Put only one program in a file.")
     behind = next((index for index in with_blocks if index > program.end), None)
     if behind is not None:
-        yield _wrong(behind + 1, "This block stands behind END PGM.", "Move it before END PGM.")
+        yield _wrong(behind + 1, "This block is after END PGM.", ("Move the block before END PGM."))
     if first.node.inch != last.inch:
-        text = "BEGIN PGM and END PGM name different units."
-        yield _wrong(program.end + 1, text, "Write the unit of the program in both.")
+        text = "BEGIN PGM and END PGM specify different units."
+        yield _wrong(program.end + 1, text, "Write the same unit in BEGIN PGM and END PGM.")
     elif last.name and first.node.name.upper() != last.name.upper():
-        text = f"The program begins as {first.node.name} and ends as {last.name}."
-        hint = "Look whether the file is whole."
+        text = f"BEGIN PGM names {first.node.name}, but END PGM names {last.name}."
+        hint = "Check that the file is complete."
         yield Diagnostic(program.end + 1, 1, Severity.WARNING, "program-name", text, hint)
 
 
@@ -210,8 +210,8 @@ def _labels(program: Program) -> Iterator[Diagnostic]:
         if not isinstance(node, Label) or node.name == 0:
             continue
         if program.labels.setdefault(node.name, index) != index:
-            text = f"LBL {name_text(node.name)} stands on line {program.labels[node.name] + 1} too."
-            yield fault(line.number, node.column, LABEL_TWICE, text, "Give it another number.").diagnostic
+            text = f"LBL {name_text(node.name)} is also on line {program.labels[node.name] + 1}."
+            yield fault(line.number, node.column, LABEL_TWICE, text, "Use a different number.").diagnostic
 
 
 def _calls(program: Program) -> Iterator[Diagnostic]:
@@ -222,11 +222,11 @@ def _calls(program: Program) -> Iterator[Diagnostic]:
             continue
         name, at = name_text(node.name), program.labels.get(node.name)
         if at is None:
-            text, hint = f"LBL {name} is nowhere in the program.", "Correct the number, or write the label."
+            text, hint = f"LBL {name} is not in the program.", ("Correct the label number, or add the label.")
             yield fault(line.number, node.column, LABEL, text, hint).diagnostic
         elif isinstance(node, Call) and node.repeat is None and program.subprogram_end(at) is None:
             text = f"The subprogram LBL {name} has no LBL 0."
-            yield syntax(line.number, node.column, text, "Write LBL 0 behind it.").diagnostic
+            yield syntax(line.number, node.column, text, "End the subprogram with LBL 0.").diagnostic
 
 
 DEEPEST_CALL = 19
@@ -333,7 +333,7 @@ class Flow:
             self._repeat(line, target, times)
             return
         if len(running.levels) > DEEPEST_CALL:
-            text = f"Calls are nested more than {DEEPEST_CALL} deep at LBL {name_text(node.name)}."
+            text = f"Calls are nested more than {DEEPEST_CALL} levels deep at LBL {name_text(node.name)}."
             hint = "A subprogram must not call itself."
             raise fault(line, node.column, NESTING, text, hint)
         running.levels.append(_Level(back=running.at))
@@ -380,7 +380,7 @@ class Flow:
         if called is None:
             return None
         if len(self._running) > DEEPEST_CALL:
-            text = f"Programs call each other more than {DEEPEST_CALL} deep at {name}."
+            text = f"Program calls are nested more than {DEEPEST_CALL} levels deep at {name}."
             raise fault(line, 1, NESTING, text, "A program must not call itself.")
         self._running.append(_Running(called, place=self.shown_line(line), levels=[_Level(back=called.end)]))
         return called

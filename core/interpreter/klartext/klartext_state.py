@@ -213,7 +213,7 @@ class State:
 
     def unheeded(self, what: str, column: int) -> None:
         """Tell that something steers nothing here."""
-        self.tell_once(column, Severity.NOTE, "unheeded", f"{what} does nothing here.")
+        self.tell_once(column, Severity.NOTE, "unheeded", f"{what} has no effect here.")
 
     # --- blocks -------------------------------------------------------------------------------------------
 

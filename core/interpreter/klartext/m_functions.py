@@ -46,10 +46,12 @@ UNHEEDED = frozenset(
 # before tilting (130, 138), programs and rotations cleared (142, 143), limits passed (150).
 _NOT_BUILT = frozenset({104, 114, 130, 138, 142, 143, 144, 150})
 _TURNS = {3: 1, 4: -1, 13: 1, 14: -1}
-_OWN = "It is the machine builder's: give it an output under [m_codes], or take it out."
+_OWN = "Assign an output to this machine-builder code under [m_codes], or remove the code."
 _ADVICE = {
-    M92: "Give the machine's second datum as fixed_points under [axis.X], [axis.Y] and [axis.Z], "
-    "or count from the machine's zero with M91."
+    M92: (
+        "Define the second machine datum as fixed_points under [axis.X], [axis.Y] and "
+        "[axis.Z], or use M91 to measure from machine zero."
+    )
 }
 
 
@@ -62,38 +64,36 @@ def check(state: State, codes: Sequence[MCode]) -> None:
         if code.number in {M91, M92}:
             _check_datum(state, code, codes)
         if code.number == M19 and not limits.spindle_oriented:
-            text = f"M19 stops the spindle at an angle, and {UNORIENTED}."
-            raise state.refuse(
-                code.column, M_UNDEFINED, text, f"{HOW_ORIENTED.capitalize()}, or take it out."
-            )
+            text = f"M19 stops the spindle at an angle, but {UNORIENTED}."
+            raise state.refuse(code.column, M_UNDEFINED, text, f"{HOW_ORIENTED.capitalize()}, or remove M19.")
         if code.number in _NOT_BUILT - known:
             raise unsupported(state.line, code.column, f"M{code.number}")
         if code.number not in known:
-            text = f"This machine's file has no M{code.number}."
+            text = f"M{code.number} is not defined in the machine file."
             raise state.refuse(code.column, M_UNDEFINED, text, _ADVICE.get(code.number, _OWN))
         if code.number in UNHEEDED | limits.m_ignored:
             state.unheeded(f"M{code.number}", code.column)
         if code.number == SISTER_TOOL:
-            text = "M101 changes to no replacement tool here: the tool that was called goes on."
-            hint = "Look at the tool's life before the start."
+            text = "M101 does not change to a replacement tool here: the called tool remains in use."
+            hint = "Check the tool life before you start the program."
             state.tell_once(code.column, Severity.WARNING, "no-replacement-tool", text, hint)
         if any(other.number == code.number for other in codes[:position]):
-            text = f"M{code.number} stands twice in the block."
-            raise syntax(state.line, code.column, text, "Take one out.")
+            text = f"M{code.number} is programmed twice in the block."
+            raise syntax(state.line, code.column, text, "Remove one of them.")
     turning = [code for code in codes if code.number in {*_TURNS, 5, M19}]
     if len(turning) > 1:
-        text = "More than one M function of the block steers the spindle."
-        raise state.refuse(turning[1].column, CONTRADICTION, text, "Take one out.")
+        text = "More than one M function in the block controls the spindle."
+        raise state.refuse(turning[1].column, CONTRADICTION, text, "Remove one of them.")
 
 
 def _check_datum(state: State, code: MCode, codes: Sequence[MCode]) -> None:
     """M91 and M92: not while M128 is on, and one of both."""
     if state.m128:
-        text = f"M{code.number} while M128 is on."
-        raise state.refuse(code.column, NOT_WITH_M128, text, "Switch it off with M129 before.")
+        text = f"M{code.number} is not allowed while M128 is active."
+        raise state.refuse(code.column, NOT_WITH_M128, text, ("Switch M128 off with M129 before this block."))
     if {M91, M92} <= {other.number for other in codes}:
-        text = "M91 and M92 count from different zeros."
-        raise state.refuse(code.column, CONTRADICTION, text, "Take one out.")
+        text = "M91 and M92 measure from different datums."
+        raise state.refuse(code.column, CONTRADICTION, text, "Remove one of them.")
 
 
 def datum(state: State, codes: Sequence[MCode]) -> Mapping[str, float] | None:
@@ -159,8 +159,8 @@ def end(state: State) -> Block:
 
 def _start(state: State, code: MCode) -> Block:
     if not state.modal.rpm:
-        why = f"M{code.number} starts the spindle, and no TOOL CALL has given S."
-        raise state.refuse(code.column, WRONG_RPM, why, "Write S behind TOOL CALL.")
+        why = f"M{code.number} starts the spindle, but no TOOL CALL sets S."
+        raise state.refuse(code.column, WRONG_RPM, why, "Program S in TOOL CALL.")
     state.modal = state.modal._replace(spindle=_TURNS[code.number], oriented=None)
     return state.action(actions.SpindleRun(state.modal.rpm * state.modal.spindle))
 

@@ -8,16 +8,16 @@ from core.language.klartext import klartext_nodes as nodes
 from core.language.klartext import read_line
 from core.language.source import Source
 
-_HINT = "Write it in a program."
+_HINT = "Use this command in a program."
 _NEEDS_OTHERS: tuple[tuple[type, str], ...] = (
     (nodes.Begin, "BEGIN PGM begins a program"),
     (nodes.End, "END PGM ends a program"),
-    (nodes.BlankForm, "BLK FORM describes the blank of a program"),
-    (nodes.Label, "LBL marks a place in a program"),
-    (nodes.Call, "CALL LBL leads to another block"),
-    (nodes.Jump, "A jump leads to another block"),
+    (nodes.BlankForm, "BLK FORM defines the blank of a program"),
+    (nodes.Label, "LBL marks a position in a program"),
+    (nodes.Call, "CALL LBL goes to another block"),
+    (nodes.Jump, "A jump goes to another block"),
     (nodes.ProgramCall, "CALL PGM calls another program"),
-    (nodes.Corner, "RND and CHF stand between two blocks of a contour"),
+    (nodes.Corner, "RND and CHF belong between two blocks of a contour"),
 )
 
 
@@ -36,17 +36,17 @@ def _alone(line: nodes.KlartextLine) -> Diagnostic | None:
     node = line.node
     column = getattr(node, "column", 1) or 1
     if line.skip:
-        return _refuse(1, "/ leaves a block of a program out, and there is nothing to leave out")
+        return _refuse(1, "/ skips a block of a program and has no meaning here")
     for kind, why in _NEEDS_OTHERS:
         if isinstance(node, kind):
             return _refuse(column, why)
     if isinstance(node, nodes.Move):
         if node.form.startswith(("APPR", "DEP")):
-            return _refuse(column, f"{node.form} leads to a contour, or away from one")
+            return _refuse(column, f"{node.form} approaches or departs from a contour")
         if node.compensation in {"L", "R"}:
-            return _refuse(column, f"R{node.compensation} compensates along a contour of more than one block")
+            return _refuse(column, f"R{node.compensation} needs a contour of more than one block")
     if isinstance(node, nodes.CycleLine) and node.number == 12:
-        return _refuse(column, "Cycle 12 names another program")
+        return _refuse(column, "Cycle 12 selects another program")
     return None
 
 

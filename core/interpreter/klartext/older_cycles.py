@@ -42,7 +42,7 @@ class Told:
         if word is None:
             number = next(iter(self._lines.values())).number if self._lines else 0
             text = f"Line {number}.{part} of the cycle has no {axis or 'number'}."
-            raise self._state.refuse(self._column, CYCLE_MISSING, text, "Write it in CYCL DEF.")
+            raise self._state.refuse(self._column, CYCLE_MISSING, text, "Complete the CYCL DEF.")
         return value(self._state, word.value.formula)
 
     def length(self, part: int, axis: str = "") -> float:
@@ -58,7 +58,7 @@ class Told:
         """The same, which must not be rapid."""
         found = self.feed(part)
         if found is None:
-            text = "A pocket is not milled in rapid."
+            text = "A pocket cannot be milled at rapid."
             raise self._state.refuse(self._column, CYCLE_MISSING, text, "Write F in CYCL DEF.")
         return found
 
@@ -114,7 +114,7 @@ def _slot(state: State, tool: CycleTool, lines: Lines, column: int) -> Iterator[
     end = x + first[0], y + first[1]
     width = (abs(second[0]) + abs(second[1])) / 2.0 - tool.radius
     if width < -_SMALLEST:
-        raise tool.refuse("The tool is wider than the slot.", "Take a smaller tool.")
+        raise tool.refuse("The tool is wider than the slot.", "Use a smaller tool.")
     surface, feed = clear - told.length(1), told.cutting_feed(6)
     ends = [(x, y), end]
     for at, done in enumerate(_levels(tool, abs(told.length(2)), abs(told.length(3)))):
@@ -146,7 +146,7 @@ def _pocket(state: State, tool: CycleTool, lines: Lines, column: int) -> Iterato
     (x, y), clear = tool.here, tool.height
     half = abs(told.length(4, "X")) / 2.0 - tool.radius, abs(told.length(5, "Y")) / 2.0 - tool.radius
     if min(half) < -_SMALLEST:
-        raise tool.refuse("The tool is wider than the pocket.", "Take a smaller tool.")
+        raise tool.refuse("The tool is wider than the pocket.", "Use a smaller tool.")
     surface, feed, turn = clear - told.length(1), told.cutting_feed(6), told.turn(6)
     step = tool.radius * 2.0 * _OVERLAP
     count = max(1, math.ceil(min(half) / step)) if step > _SMALLEST else 1
@@ -174,7 +174,7 @@ def _circular_pocket(state: State, tool: CycleTool, lines: Lines, column: int) -
     (x, y), clear = tool.here, tool.height
     radius = abs(told.length(4, "R" if told.has(4, "R") else "")) - tool.radius
     if radius < -_SMALLEST:
-        raise tool.refuse("The tool is wider than the pocket.", "Take a smaller tool.")
+        raise tool.refuse("The tool is wider than the pocket.", "Use a smaller tool.")
     surface, feed, turn = clear - told.length(1), told.cutting_feed(5), told.turn(5)
     step = tool.radius * 2.0 * _OVERLAP
     count = max(1, math.ceil(radius / step)) if step > _SMALLEST else 1
@@ -195,7 +195,9 @@ def _thread_cutting(state: State, tool: CycleTool, lines: Lines, column: int) ->
     tool.warn_uncoupled()
     rpm, pitch, depth = tool.speed, told.length(2), told.length(1)
     if not rpm or not pitch:
-        raise tool.refuse("Cycle 18 needs a speed and a pitch.", "Write S behind TOOL CALL, and PITCH.")
+        raise tool.refuse(
+            "Cycle 18 needs a spindle speed and a pitch.", ("Program S in TOOL CALL and PITCH in cycle 18.")
+        )
     yield tool.turn(rpm if pitch > 0.0 else -rpm)
     yield tool.tap(tool.height + depth, abs(pitch), in_hole=True)
     yield tool.stop()
@@ -215,7 +217,9 @@ def _levels(tool: CycleTool, depth: float, step: float) -> Iterator[float]:
         return
     count = math.ceil(depth / step - 1e-9)
     if count > _MOST_LEVELS:
-        raise tool.refuse(f"The infeed of {step:g} mm takes {count} passes.", "Make it larger.")
+        raise tool.refuse(
+            f"An infeed of {step:g} mm would need {count} passes, which is too many.", "Increase the infeed."
+        )
     yield from (min(step * at, depth) for at in range(1, count + 1))
 
 

@@ -140,8 +140,8 @@ def _paraxial(state: State, node: Move, start: Vector, end: Vector) -> Vector:
 def pole(state: State, node: Move) -> Point:
     """The pole of CC. Raises ProgramError where none was programmed."""
     if state.pole is None:
-        text = "No CC has set a pole."
-        raise state.refuse(node.column, NO_POLE, text, "Write CC with X and Y before.")
+        text = "No pole is defined with CC."
+        raise state.refuse(node.column, NO_POLE, text, "Write CC with X and Y before this block.")
     return state.pole
 
 
@@ -184,8 +184,12 @@ def _by_radius(state: State, node: Move, start: Point, end: Point, _: Point | No
     radius = word_values.coordinate(state, word)
     chord = math.dist(start, end)
     if chord < SAME_POINT or chord / 2.0 > abs(radius) + ON_CIRCLE:
-        text = f"An arc of R {abs(radius):.10g} mm does not reach over {chord:.10g} mm."
-        hint = "A full circle takes two arcs, or C." if chord < SAME_POINT else "Correct R or the end point."
+        text = f"An arc with R {abs(radius):.10g} mm cannot connect two points {chord:.10g} mm apart."
+        hint = (
+            "Program a full circle as two arcs or with C."
+            if chord < SAME_POINT
+            else "Correct R or the end point."
+        )
         raise state.refuse(word.column, ARC_END, text, hint)
     if not node.turn:
         return _no_turn(state, node)
@@ -197,13 +201,13 @@ def _by_radius(state: State, node: Move, start: Point, end: Point, _: Point | No
 def _tangential(state: State, node: Move, start: Point, end: Point, before: Point | None) -> Arc | None:
     """CT and CTP: goes on in the direction of the element before; straight on it is a line."""
     if before is None:
-        text = f"Nothing moves before {node.form}, so it has no direction to begin with."
-        raise state.refuse(node.column, PREVIOUS, text, "Program a path before it.")
+        text = f"No move precedes {node.form}, so its starting direction is not defined."
+        raise state.refuse(node.column, PREVIOUS, text, "Program a move before this block.")
     dx, dy = end[0] - start[0], end[1] - start[1]
     aside = -before[1] * dx + before[0] * dy  # of the end to the left of the way
     if abs(aside) < _PARALLEL * max(1.0, math.hypot(dx, dy)):
         if before[0] * dx + before[1] * dy <= 0.0:
-            text = f"The end of {node.form} lies straight behind its start."
+            text = f"{node.form} would have to reverse its direction to reach its end point."
             raise state.refuse(node.column, ARC_END, text, "Correct the end point.")
         return None
     radius = (dx * dx + dy * dy) / (2.0 * aside)  # positive where the centre is on the left
@@ -226,8 +230,8 @@ def _round_the_pole(state: State, node: Move, made: PathElement) -> Iterator[Pat
     sweep = _sweep(state, node, first)
     turns = math.ceil(abs(sweep) / 360.0 - 1e-9)
     if turns > _MOST_TURNS:
-        text = f"CP goes round {turns} times."
-        raise state.refuse(node.column, ARC_END, text, f"{_MOST_TURNS} turns are the most.")
+        text = f"CP makes {turns} turns, which is too many."
+        raise state.refuse(node.column, ARC_END, text, f"Program at most {_MOST_TURNS} turns.")
     z1 = _along(state, node.word("XYZ"[order[2]]), start[2])
     here = start
     for turn in range(1, turns + 1):
@@ -252,23 +256,29 @@ def _sweep(state: State, node: Move, first: float) -> float:
         turned = 0.0 if 360.0 - turned < 1e-9 else turned
         return (turned or 360.0) if node.turn == "+" else turned - 360.0
     if value == 0.0 or (value > 0.0) != (node.turn == "+"):
-        text = f"IPA{value:+g} and DR{node.turn} go different ways." if value else "IPA+0 goes nowhere."
-        raise state.refuse(word.column, DIRECTION, text, "Give both the same sign.")
+        text = (
+            f"IPA{value:+g} and DR{node.turn} have opposite directions."
+            if value
+            else ("IPA+0 produces no motion.")
+        )
+        raise state.refuse(word.column, DIRECTION, text, "Use the same sign for IPA and DR.")
     return value
 
 
 def _demand_radius(state: State, node: Move, radius: float) -> None:
     if radius < SAME_POINT:
-        text = "The tool stands on the pole, so there is no circle."
-        raise state.refuse(node.column, ARC_END, text, "Go to the circle before.")
+        text = "The tool is on the pole, so no circle is possible."
+        raise state.refuse(node.column, ARC_END, text, "Move to the circle before this block.")
 
 
 def _demand_on_circle(state: State, node: Move, first: float, last: float) -> None:
     if abs(first - last) > ON_CIRCLE:
-        text = f"The end lies {last:.10g} mm from the pole, the start {first:.10g} mm."
+        text = (
+            f"The end point is {last:.10g} mm from the pole, but the start point is {first:.10g} mm from it."
+        )
         raise state.refuse(node.column, ARC_END, text, "Correct the end point or CC.")
 
 
 def _no_turn(state: State, node: Move) -> Arc:
     text = f"{node.form} needs DR+ or DR-."
-    raise state.refuse(node.column, DIRECTION, text, "Write DR+ for counter-clockwise.")
+    raise state.refuse(node.column, DIRECTION, text, "Write DR+ for counterclockwise.")

@@ -55,7 +55,7 @@ class _Approach:
 
 
 _Waiting = PathElement | _Between | _Approach
-_BETWEEN = "Put it between two elements of the contour."
+_BETWEEN = "Put RND or CHF between two contour elements."
 
 
 class PathRunner:
@@ -77,8 +77,8 @@ class PathRunner:
     def waits_for(self) -> str:
         """What the path waits for, so that no pass can begin here; empty where it waits for nothing."""
         if self._side:
-            return "radius compensation is on"
-        return "the block before it waits for its corner" if self._waiting or self._corner else ""
+            return "radius compensation is active"
+        return "the previous block is part of an unfinished corner" if self._waiting or self._corner else ""
 
     @property
     def here(self) -> Vector:
@@ -99,7 +99,7 @@ class PathRunner:
         """RND or CHF behind an element that waits for it. Raises ProgramError where there is none."""
         last = next((each for each in reversed(self._waiting) if isinstance(each, PathElement)), None)
         if last is None or last.flat is None or self._corner is not None:
-            text = f"{node.form} needs a path in the working plane before it."
+            text = f"{node.form} must follow a path in the working plane."
             raise self._state.refuse(node.column, ROUNDING, text, _BETWEEN)
         self._corner, self._corner_line = node, self._state.line
 
@@ -113,14 +113,16 @@ class PathRunner:
     def finish(self, column: int, what: str) -> Iterator[Block]:
         """Everything that waits, before ``what``, which radius compensation does not let through."""
         if self._side:
-            text = f"{what} stands while radius compensation is on."
-            raise self._state.refuse(column, COMPENSATION, text, "End the contour with R0 or DEP before.")
+            text = f"{what} is not allowed while radius compensation is active."
+            raise self._state.refuse(
+                column, COMPENSATION, text, ("End the contour with R0 or DEP before this block.")
+            )
         yield from self._release()
 
     def end(self) -> Iterator[Block]:
         """The end of the program: a contour that was never left is run to its end."""
         if self._side:
-            text = "The program ends while radius compensation is on."
+            text = "The program ends while radius compensation is active."
             hint = "End the contour with R0 or DEP."
             self._state.log.warn(self._state.line, 0, "compensation-left-on", text, hint)
             yield from self._close(None)
@@ -163,8 +165,10 @@ class PathRunner:
             _warn(state, node)
         rotary = _rotary(state, node, state.kinematics.zero)
         if rotary and self._side:
-            text = "A rotary axis moves while radius compensation is on."
-            raise state.refuse(node.column, COMPENSATION, text, "End the contour with R0 before.")
+            text = "A rotary axis moves while radius compensation is active."
+            raise state.refuse(
+                node.column, COMPENSATION, text, ("End the contour with R0 before this block.")
+            )
         if node.form.startswith(("APPR", "DEP")):
             yield PathElement(
                 self.here, goal(state, node, self.here), feed, state.line, state.text, node.column
@@ -172,8 +176,10 @@ class PathRunner:
             return
         made = list(elements(state, node, self.here, self._direction, feed, rotary))
         if made[0].upright and (self._side or node.compensation in {"L", "R"}):
-            text = "Radius compensation holds in X and Y, and this arc stands upright."
-            raise state.refuse(node.column, COMPENSATION, text, "End the contour with R0 before.")
+            text = "Radius compensation works only in X and Y, but this arc is vertical."
+            raise state.refuse(
+                node.column, COMPENSATION, text, ("End the contour with R0 before this block.")
+            )
         yield from (replace(each, feed=_plunged(state, each)) for each in made)
 
     def _add(self, made: list[PathElement], *, hold: bool) -> Iterator[Block]:
@@ -198,9 +204,9 @@ class PathRunner:
 
     def _approach(self, node: Move, element: PathElement) -> Iterator[Block]:
         if self._side:
-            text = "APPR stands while radius compensation is on."
+            text = "APPR is not allowed while radius compensation is active."
             raise self._state.refuse(
-                node.column, COMPENSATION, text, "End the contour with R0 or DEP before."
+                node.column, COMPENSATION, text, "End the contour with R0 or DEP before this block."
             )
         yield from self._release()
         self._begin(node, _Approach(node, element), element)
@@ -211,8 +217,8 @@ class PathRunner:
             yield from self._close(node)
             return
         if self._direction is None:
-            text = f"Nothing moves before {node.form}, so it has no direction to begin with."
-            raise self._state.refuse(node.column, PREVIOUS, text, "Program a path before it.")
+            text = f"No move precedes {node.form}, so its starting direction is not defined."
+            raise self._state.refuse(node.column, PREVIOUS, text, "Program a move before this block.")
         here, direction = self.here, self._direction
         yield from self._release()
         yield from self._emit_all(way_out(self._state, node, here, direction, "", 0.0, self._take_feed(node)))
@@ -221,7 +227,7 @@ class PathRunner:
         """LN goes to its point where there is nothing to compensate along its normal. Raises ProgramError."""
         state = self._state
         if any(word.axis[0] == "T" for word in node.words):
-            raise unsupported(state.line, node.column, "LN with the tool's direction (TX TY TZ)")
+            raise unsupported(state.line, node.column, "LN with a tool direction vector (TX TY TZ)")
         row = state.setup.mill_tools.get(state.modal.tool)
         off = (*state.oversize, *((row.dl, row.dr, row.dr2) if row is not None else ()))
         if any(off) or node.compensation in {"L", "R"} or self._side:
@@ -229,11 +235,13 @@ class PathRunner:
 
     def _demand_same_side(self, node: Move) -> None:
         if node.compensation in {"+", "-"} and self._side:
-            text = f"R{node.compensation} stands while R{self._side} is on."
-            raise self._state.refuse(node.column, COMPENSATION, text, "Write R0 before.")
+            text = f"R{node.compensation} is not allowed while R{self._side} is active."
+            raise self._state.refuse(node.column, COMPENSATION, text, "Write R0 before this block.")
         if node.compensation in {"L", "R"} and self._side and node.compensation != self._side:
-            text = f"R{node.compensation} stands while R{self._side} is on."
-            raise self._state.refuse(node.column, COMPENSATION, text, "Write R0 between them.")
+            text = f"R{node.compensation} is not allowed while R{self._side} is active."
+            raise self._state.refuse(
+                node.column, COMPENSATION, text, ("Write R0 before you change the side.")
+            )
 
     def _switched(self, node: Move) -> Iterator[Block]:
         """An L without axes that ends compensation."""
@@ -253,7 +261,7 @@ class PathRunner:
         size = word_values.number(self._state, corner.size, corner.form, word_values.MOST_COORDINATE, 0.0)
         size *= self._state.scale
         if first is None or last is None:
-            text = f"{corner.form} needs a path in the working plane behind it."
+            text = f"{corner.form} must be followed by a path in the working plane."
             raise self._no_corner(corner, text, _BETWEEN)
         if size <= SAME_POINT:
             return after
@@ -261,7 +269,7 @@ class PathRunner:
             cut = rounding(first, last, size) if corner.form == "RND" else chamfer(first, last, size)
         except CornerError as problem:
             text = f"{corner.form} {size:g} mm: {problem}."
-            raise self._no_corner(corner, text, "Make it smaller.") from None
+            raise self._no_corner(corner, text, "Use a smaller chamfer or radius.") from None
         feed = before.feed if corner.feed is None else self._feed_of(corner)
         z = before.end[2]
         self._waiting[at] = _reshaped(before, cut[0], before.start[2], z)
@@ -290,7 +298,7 @@ class PathRunner:
         """Raises ProgramError where a corner still waits for the element behind it."""
         corner, self._corner = self._corner, None
         if corner is not None:
-            text = f"{corner.form} needs a path in the working plane behind it."
+            text = f"{corner.form} must be followed by a path in the working plane."
             raise self._no_corner(corner, text, _BETWEEN)
 
     def _no_corner(self, corner: Corner, text: str, hint: str) -> ProgramError:
@@ -396,8 +404,8 @@ class PathRunner:
     def _demand_axes(self, node: Move) -> None:
         for word in node.axes:
             if word.axis not in self._state.at:
-                text = f"This machine has no axis {word.axis}."
-                raise self._state.refuse(word.column, WRONG_AXIS, text, "Take the word out.")
+                text = f"This machine has no {word.axis} axis."
+                raise self._state.refuse(word.column, WRONG_AXIS, text, "Remove the word.")
 
     def _take_feed(self, node: Move) -> float | None:
         """The feed of the block, None for rapid, which holds for this block alone."""
@@ -419,7 +427,7 @@ def _plunged(state: State, each: PathElement) -> float | None:
         return each.feed
     down = each.start[2] - each.end[2]
     if each.upright:
-        text = "An arc that stands upright while M103 is on"
+        text = "A vertical arc with M103 active"
         raise unsupported(each.line, each.column, text)
     along = math.dist(each.start, each.end) if each.arc is None else math.hypot(each.arc.length, down)
     return plunged(state, each.feed, along, down)
@@ -454,7 +462,7 @@ def _warn(state: State, node: Move) -> None:
         return
     if not state.modal.spindle and "spindle" not in state.reported:
         state.reported.add("spindle")
-        text, hint = "This feed move runs with the spindle at rest.", "Start it with M3 or M4."
+        text, hint = "This feed move runs with the spindle stopped.", ("Start the spindle with M3 or M4.")
         state.log.warn(state.line, 0, "spindle-stopped", text, hint)
     plane = state.plane
     if plane is None or ("table", plane.line) in state.reported:
@@ -466,6 +474,9 @@ def _warn(state: State, node: Move) -> None:
     ]
     if off:
         state.reported.add(("table", plane.line))
-        text = f"{' and '.join(off)} stand elsewhere than the plane of line {plane.line} asks."
-        hint = "Position them before the cut: L A+Q120 C+Q122 R0 FMAX, or TURN in the PLANE block."
+        text = f"The position of {' and '.join(off)} does not match the plane of line {plane.line}."
+        hint = (
+            "Position the rotary axes before the cut with L A+Q120 C+Q122 R0 FMAX, or write TURN "
+            "in the PLANE block."
+        )
         state.log.warn(state.line, 0, "table-elsewhere", text, hint)

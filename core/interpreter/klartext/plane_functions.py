@@ -65,8 +65,8 @@ def working_plane(state: State, node: Plane) -> WorkingPlane:
     found = choose(state.kinematics, frame, state.rotary, side, table_rot=table_rot)
     if found is None:
         asked = f" with {side}" if side else ""
-        text = f"No position of the rotary axes inside their ranges gives this plane{asked}."
-        raise state.refuse(node.column, ANGLE, text, "Look at points, angles and SYM.")
+        text = f"The rotary axes cannot reach this plane within their ranges{asked}."
+        raise state.refuse(node.column, ANGLE, text, "Check the points, angles and SYM.")
     if side is None and not state.table_known:
         _tell_of_two_ways(state, node, frame)
     return WorkingPlane(frame, found.angles, state.line)
@@ -75,8 +75,8 @@ def working_plane(state: State, node: Plane) -> WorkingPlane:
 def _tell_of_two_ways(state: State, node: Plane, frame: Matrix) -> None:
     """Which way the table swivels hangs on where it stands at the start, which no proof knows."""
     if len(fitting(state.kinematics, frame, state.rotary)) > 1:
-        text = "Where the table stands at the start decides which of two ways it swivels."
-        hint = "Write SYM+ or SYM-, or position the table before."
+        text = "The position of the table at the start decides in which of two directions it swivels."
+        hint = "Write SYM+ or SYM-, or position the table before this block."
         state.log.add(Diagnostic(state.line, node.column, Severity.NOTE, "two-ways", text, hint))
 
 
@@ -87,7 +87,7 @@ def _axial(state: State, node: Plane) -> WorkingPlane:
         axis = state.kinematics.rotary(word.axis)
         if axis is None:
             text = f"This machine has no rotary axis {word.axis}."
-            hint = f"Take the word out, or choose a machine that has {word.axis}."
+            hint = f"Remove the word, or select a machine with axis {word.axis}."
             raise state.refuse(word.column, WRONG_AXIS, text, hint)
         value = word_values.number(state, word.value, word.axis, word_values.MOST_ANGLE)
         zero = state.kinematics.zero[axis.name]
@@ -161,8 +161,8 @@ def _as_figured(state: State, node: Plane, frame: Matrix) -> Matrix:
     figure = state.figure
     if figure.plain:
         return frame
-    text = f"MIRROR, ROTATION or SCALE is in force: PLANE {node.form} goes with it."
-    hint = "Look at the angles of the axes, or write PLANE before them, or PLANE AXIAL."
+    text = f"MIRROR, ROTATION or SCALE is active and also applies to PLANE {node.form}."
+    hint = "Check the axis angles, write PLANE before MIRROR, ROTATION and SCALE, or use PLANE AXIAL."
     state.log.warn(state.line, node.column, "plane-figure", text, hint)
     columns = [figure.plane(applied(frame, figure.program(unit))) for unit in IDENTITY]
     return transposed((columns[0], columns[1], columns[2]))
@@ -233,22 +233,22 @@ def retract_way(state: State, asked: Retract | None) -> float:
             ways.append(((slide.high if share > 0.0 else slide.low) - at) / share)
     up = min(ways, default=math.inf)
     if math.isinf(up):
-        text = "MB MAX needs a software limit, and this machine has none along the tool."
+        text = "MB MAX needs a software limit, but this machine has none along the tool axis."
         raise state.refuse(asked.column, INPUT_VALUE, text, "Write MB with a length.")
     return max(up - SHORT_OF_LIMIT, 0.0)
 
 
 def _demand_possible(state: State, node: Plane) -> None:
     if state.m128:
-        text = "M128 is on."
-        raise state.refuse(node.column, M128_ON, text, "Switch it off with M129 before.")
+        text = "M128 is active."
+        raise state.refuse(node.column, M128_ON, text, "Switch M128 off with M129 before this block.")
 
 
 def _demand_tool_axis(state: State, node: Plane) -> None:
     """A plane that is not tilted needs none: programs begin with PLANE SPATIAL SPA+0 SPB+0 SPC+0 STAY."""
     if not state.tool_axis:
-        text = "No TOOL CALL has named a tool axis."
-        raise state.refuse(node.column, TOOL_AXIS_MISSING, text, "Write TOOL CALL n Z before.")
+        text = "No TOOL CALL has defined a tool axis."
+        raise state.refuse(node.column, TOOL_AXIS_MISSING, text, ("Write TOOL CALL n Z before this block."))
 
 
 def _raised(state: State, up: float) -> Vector:
@@ -285,6 +285,9 @@ def _warn_of_shift(state: State, made: WorkingPlane | None) -> None:
     """A datum that was shifted in a tilted system, and another plane straight behind it: the classic trap."""
     if made is None or state.plane is None or state.shift == ORIGIN:
         return
-    text = f"The datum was shifted in the tilted system of line {state.plane.line}."
-    hint = "Where it was meant in the workpiece's system, write PLANE RESET STAY before TRANS DATUM."
+    text = f"The datum was shifted in the tilted coordinate system of line {state.plane.line}."
+    hint = (
+        "If the shift is meant for the workpiece coordinate system, write PLANE RESET STAY "
+        "before TRANS DATUM."
+    )
     state.log.warn(state.line, 0, "datum-in-plane", text, hint)

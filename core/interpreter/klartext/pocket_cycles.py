@@ -32,8 +32,11 @@ class _Milling:
         self.scope = int(tool.plain(215, float(_ROUGH)))
         overlap = tool.plain(370, 1.0)
         if not 0.0 < overlap <= _MOST_OVERLAP or tool.radius <= SMALLEST:
-            text = f"The overlap Q370 {overlap:g} of a tool of R {tool.radius:g} mm clears nothing."
-            raise tool.refuse(text, "Write Q370 between 0.1 and 1.9999, and the tool's radius.")
+            text = (
+                f"With path overlap Q370={overlap:g} and tool radius {tool.radius:g} mm, the cycle "
+                "cannot clear the area."
+            )
+            raise tool.refuse(text, "Set Q370 between 0.1 and 1.9999, and enter the tool radius.")
         self.step = overlap * tool.radius
         self.against = (tool.plain(351, 1.0) < 0.0) != (tool.rpm < 0.0)
 
@@ -97,7 +100,7 @@ def slot(tool: CycleTool) -> Iterator[Block]:
 def _placed(tool: CycleTool, places: dict[int, tuple[float, float]]) -> tuple[float, float]:
     found = places.get(int(tool.plain(367, 0.0)))
     if found is None:
-        raise tool.refuse("Q367 is not between 0 and 4.", "Correct the position.")
+        raise tool.refuse("Q367 must be 0, 1, 2, 3 or 4.", "Correct Q367.")
     return found
 
 
@@ -108,7 +111,7 @@ def _pocket(tool: CycleTool, seat: Seat, wall: Ring) -> Iterator[Block]:
     last = wall.wider(-tool.radius)
     rough = last.wider(-told.side) if told.scope != _FINISH else last
     if min(rough.b, last.b) < -SMALLEST:
-        raise tool.refuse("The tool is wider than the figure.", "Take a smaller tool.")
+        raise tool.refuse("The tool is wider than the pocket or slot.", "Use a smaller tool.")
     rough, last = (Ring(max(each.a, 0.0), max(each.b, 0.0), each.radius) for each in (rough, last))
     yield tool.to(max(told.clear, min(tool.height, told.safe)))
     if told.surface - told.bottom < SMALLEST:
@@ -146,8 +149,8 @@ def _down(told: _Milling, seat: Seat, ring: Ring, above: float, z: float) -> Ite
 def _helix(told: _Milling, seat: Seat, radius: float, above: float, z: float) -> Iterator[Block]:
     tool = told.tool
     if radius < SMALLEST * 1000.0:
-        text = "There is no room to go down by a ramp."
-        raise tool.refuse(text, "Write Q366=+0 for a tool that cuts in its middle.")
+        text = "There is not enough room to plunge along a ramp."
+        raise tool.refuse(text, "Set Q366=+0 for a center-cutting tool.")
     begin = seat.at(radius, 0.0)
     yield tool.across(begin)
     yield tool.to(above, told.plunge)
@@ -231,7 +234,7 @@ def _stud(tool: CycleTool, seat: Seat, wall: Ring, more: float) -> Iterator[Bloc
     """Level by level in rings that come nearer; ``more`` is how far the blank stands out."""
     told = _Milling(tool)
     if more < SMALLEST:
-        raise tool.refuse("The blank is not larger than the stud.", "Correct the sides of the blank.")
+        raise tool.refuse("The blank is not larger than the stud.", "Correct the blank dimensions.")
     last = wall.wider(tool.radius)
     rough = last.wider(told.side if told.scope != _FINISH else 0.0)
     outside = last.a + more + tool.radius + tool.length(200)

@@ -22,8 +22,8 @@ def points(state: State, node: PatternDef) -> list[Vector]:
         told = _numbers(state, part)
         found += [(*at, told.get("Z", 0.0)) for at in _of_a_part(state, part, told)]
     if len(found) > MOST_POINTS:
-        text = f"The pattern has {len(found)} points."
-        raise state.refuse(node.column, INPUT_VALUE, text, f"{MOST_POINTS} are the most.")
+        text = f"The pattern has too many points: {len(found)}."
+        raise state.refuse(node.column, INPUT_VALUE, text, f"The maximum is {MOST_POINTS}.")
     return found
 
 
@@ -73,6 +73,6 @@ def _grid(state: State, part: PatternPart, told: dict[str, float]) -> Iterator[t
 
 def _count(state: State, part: PatternPart, number: float) -> int:
     if number != int(number) or not 1 <= number <= MOST_POINTS:
-        text = f"{part.form} has {number:g} points."
-        raise state.refuse(part.column, INPUT_VALUE, text, "Write a whole number from 1 on.")
+        text = f"{part.form}: {number:g} is not a valid number of points."
+        raise state.refuse(part.column, INPUT_VALUE, text, "Enter a whole number of 1 or more.")
     return int(number)

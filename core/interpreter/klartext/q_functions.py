@@ -54,8 +54,10 @@ def _has_value(state: State, kind: str, number: int) -> bool:
 def _predefined(state: State, number: int, column: int) -> float:
     """What GLOBAL DEF has told for a parameter of cycles. Raises ProgramError where none has."""
     if number not in state.q_global:
-        text = f"Q{number}=PREDEF, and no GLOBAL DEF has told Q{number}."
-        raise state.refuse(column, CYCLE_MISSING, text, "Write GLOBAL DEF before, or a number.")
+        text = f"Q{number}=PREDEF, but no GLOBAL DEF defines Q{number}."
+        raise state.refuse(
+            column, CYCLE_MISSING, text, ("Write GLOBAL DEF before this block, or enter a number.")
+        )
     return state.q_global[number]
 
 
@@ -82,7 +84,7 @@ def value(state: State, formula: Formula) -> float:
         error = state.refuse(problem.column, ARITHMETIC, f"{problem}.", "Correct the formula.")
         raise state.of_the_place(error) from None
     if abs(found) > MOST_Q:
-        text = f"The result {found:g} is larger than {MOST_Q:.15g}."
+        text = f"The result {found:g} exceeds the limit of {MOST_Q:.15g}."
         raise state.refuse(1, INPUT_VALUE, text, "Correct the formula.")
     return 0.0 if abs(found) < SMALLEST else found
 
@@ -107,5 +109,5 @@ def jumps(state: State, node: Jump) -> bool:
 
 def own_error(state: State, node: ErrorMessage) -> ProgramError:
     """FN 14: the fault that the program itself tells, and stops at."""
-    text = f"The program tells its error {node.number} and stops."
-    return state.refuse(node.column, OWN_ERROR, text, "Look at the conditions before this block.")
+    text = f"The program reports its own error {node.number} and stops."
+    return state.refuse(node.column, OWN_ERROR, text, "Check the conditions before this block.")

@@ -52,7 +52,7 @@ class Contour:
         except GougeError as problem:
             at = self._flats[min(problem.index, len(self._flats) - 1)]
             text = f"The tool radius of {radius:.10g} mm does not fit here: {problem.why}."
-            hint = "Take a smaller tool, or change the contour."
+            hint = "Use a smaller tool, or change the contour."
             raise fault(at.line, at.column, RADIUS_TOO_LARGE, text, hint) from None
         for piece in found:
             self._pieces[id(self._flats[piece.source])].append(piece)
@@ -162,8 +162,11 @@ def _radius(state: State, entry: Entry) -> tuple[float, float]:
     turn = -1.0 if (entry.side == "R") != (value < 0.0) else 1.0
     size = value - entry.radius if value > 0.0 else entry.radius - value
     if value == 0.0 or size < SAME_POINT:
-        text = f"R {value:.10g} mm of {entry.node.form} is not over the tool radius {entry.radius:.10g} mm."
-        raise state.refuse(word.column, RADIUS_TOO_LARGE, text, "Make R larger.")
+        text = (
+            f"R {value:.10g} mm of {entry.node.form} must be larger than the tool radius of "
+            f"{entry.radius:.10g} mm."
+        )
+        raise state.refuse(word.column, RADIUS_TOO_LARGE, text, "Increase R.")
     return size, turn
 
 
@@ -172,8 +175,8 @@ def _touching(state: State, entry: Entry, centre: Point, size: float, *, clockwi
     dx, dy = entry.start[0] - centre[0], entry.start[1] - centre[1]
     away = math.hypot(dx, dy)
     if away < size:
-        text = f"{entry.node.form} has no way: the tool stands inside its arc."
-        raise state.refuse(entry.node.column, INPUT_VALUE, text, "Begin farther off, or make R smaller.")
+        text = f"{entry.node.form} has no possible path because the tool is inside its arc."
+        raise state.refuse(entry.node.column, INPUT_VALUE, text, "Start farther away, or reduce R.")
     half = math.acos(min(1.0, size / away))
     # Counter-clockwise the circle is met half an angle further on, seen from its centre.
     angle = math.atan2(dy, dx) + (-half if clockwise else half)

@@ -72,7 +72,7 @@ def write_system(state: State, node: SystemWrite) -> None:
             raise unsupported(
                 state.line,
                 node.column,
-                f"FN 17 with {name} of tool {tool} in the tool table (type it in there)",
+                f"FN 17 for {name} of tool {tool} in the tool table (enter the value there)",
             )
     state.tool_cells[tool, number] = content
     state.unheeded(f"FN 17 SYSWRITE ID50 NR{number} {name}".rstrip(), node.column)
@@ -86,15 +86,13 @@ def _cell(state: State, column: int, number: int, index: int) -> float:
     row = _row(state, tool)
     if row is None:
         text = f"Tool {tool} is not in the tool table."
-        raise state.refuse(column, TOOL_UNKNOWN, text, "Write it into the tool table.")
+        raise state.refuse(column, TOOL_UNKNOWN, text, ("Add the tool to the tool table."))
     if number in _COLUMNS:
         return _COLUMNS[number][1](row) / (state.scale if number in _LENGTHS else 1.0)
     if number not in _EMPTY:
         raise _not_here(state, column, 18, _TOOL_TABLE, number, index)
     found = _AS_THE_RADIUS if number == _OFFSET_IN_PLANE else 0.0
-    text = (
-        f"The tool table here has no column {_EMPTY[number]}: FN 18 reads {found:.9g}, as of an empty cell."
-    )
+    text = f"The tool table has no column {_EMPTY[number]}, so FN 18 reads {found:.9g} as for an empty cell."
     state.tell_once(column, Severity.WARNING, "tool-table-column", text)
     return found
 

@@ -39,8 +39,8 @@ def assign_text(state: State, node: TextAssign) -> None:
             continue
         text = "".join(filter(None, made))
         if len(text) > MOST_SIGNS:
-            message = f"QS{number} would have {len(text)} signs."
-            raise state.refuse(node.column, INPUT_VALUE, message, f"{MOST_SIGNS} are the most.")
+            message = f"QS{number} would have {len(text)} characters, which is too many."
+            raise state.refuse(node.column, INPUT_VALUE, message, f"The maximum is {MOST_SIGNS}.")
         state.texts[number] = text
 
 
@@ -48,7 +48,9 @@ def text_of(state: State, name: TextName) -> str:
     """The text of QS. Raises ProgramError where it has none, or nobody knows it here."""
     found = _kept(state, name.number, name.column)
     if found is None:
-        raise unsupported(state.line, name.column, f"What goes by QS{name.number}, a text of the control,")
+        raise unsupported(
+            state.line, name.column, (f"A function that uses QS{name.number}, a text from the control,")
+        )
     return found
 
 
@@ -77,7 +79,7 @@ def _number_as_text(state: State, part: TextPart) -> str:
     decimals = 0 if part.second is None else int(value(state, part.second))
     if not 0 <= decimals <= _MOST_DECIMALS:
         text = f"DECIMALS{decimals} is not between 0 and {_MOST_DECIMALS}."
-        raise state.refuse(part.column, INPUT_VALUE, text, "Correct it.")
+        raise state.refuse(part.column, INPUT_VALUE, text, "Correct the value.")
     return f"{value(state, part.first):.{decimals}f}"
 
 
@@ -87,8 +89,8 @@ def _cut(state: State, part: TextPart) -> str | None:
     begin = _whole(state, part.first, 0)
     length = _whole(state, part.second, MOST_SIGNS)
     if begin < 0 or length < 0:
-        text = "SUBSTR takes no BEG or LEN under 0."
-        raise state.refuse(part.column, INPUT_VALUE, text, "Correct it.")
+        text = "BEG and LEN of SUBSTR cannot be negative."
+        raise state.refuse(part.column, INPUT_VALUE, text, "Correct the value.")
     return None if whole is None else whole[begin : begin + length]
 
 
@@ -118,8 +120,10 @@ def _as_number(state: State, node: TextRead, text: str) -> float:
     try:
         return float(text.strip().replace(",", "."))
     except ValueError:
-        message = f'QS{node.source}, "{text}", is no number.'
-        raise state.refuse(node.column, INPUT_VALUE, message, "Look what it holds.") from None
+        message = f'QS{node.source}, "{text}", is not a number.'
+        raise state.refuse(
+            node.column, INPUT_VALUE, message, ("Check the content of the QS parameter.")
+        ) from None
 
 
 def _place(source: str, sought: str, begin: int) -> float:
@@ -142,7 +146,7 @@ def texts_agree(state: State, node: Jump) -> bool:
     for part in node.texts:
         text = _of(state, part)
         if text is None:
-            raise unsupported(state.line, part.column, "A jump by a text of the control")
+            raise unsupported(state.line, part.column, ("A jump that depends on a text from the control"))
         known.append(text)
     return (known[0] == known[1]) == (value(state, node.condition) != 0.0)
 
@@ -155,8 +159,8 @@ def read_cells(state: State, node: TableRead) -> None:
     row = _row(state, node)
     for offset, column in enumerate(node.columns):
         if column not in row:
-            text = f"The row has no number under {column}."
-            raise state.refuse(node.column, INPUT_VALUE, text, "Correct the column, or fill the cell.")
+            text = f"The row has no number in column {column}."
+            raise state.refuse(node.column, INPUT_VALUE, text, ("Correct the column, or fill in the cell."))
         keep(state, node.kind, node.q + offset, row[column])
 
 
@@ -165,17 +169,19 @@ def write_cells(state: State, node: TableWrite) -> None:
     row = _row(state, node)
     for offset, column in enumerate(node.columns):
         row[column] = content(state, node.kind, node.q + offset, node.column)
-    state.unheeded("FN 27 TABWRITE into the file", node.column)
+    state.unheeded("FN 27 TABWRITE to the file", node.column)
 
 
 def _row(state: State, node: TableRead | TableWrite) -> Row:
     if state.free_table is None:
         text = "No table is open."
-        raise state.refuse(node.column, FILE_MISSING, text, "Write FN 26: TABOPEN with the file before.")
+        raise state.refuse(
+            node.column, FILE_MISSING, text, ("Open the file with FN 26: TABOPEN before this block.")
+        )
     if node.kind == "QS":
-        raise unsupported(state.line, node.column, "A text of a free table")
+        raise unsupported(state.line, node.column, "A text in a freely definable table")
     number = int(value(state, node.row))
     if number not in state.free_table:
         text = f"The table has no row {number}."
-        raise state.refuse(node.column, INPUT_VALUE, text, "Correct the row.")
+        raise state.refuse(node.column, INPUT_VALUE, text, "Correct the row number.")
     return state.free_table[number]

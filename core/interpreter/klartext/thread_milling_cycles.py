@@ -28,10 +28,12 @@ class _Thread:
         nominal = tool.length(335) / 2.0
         self.ring = nominal + tool.radius if outside else nominal - tool.radius
         if self.pitch == 0.0:
-            raise tool.refuse("Q239 is no pitch.", "Write the pitch of the thread.")
+            raise tool.refuse("Pitch Q239 must not be 0.", "Enter the thread pitch.")
         if self.ring < SMALLEST or tool.radius <= SMALLEST:
-            text = f"A tool of R {tool.radius:.10g} mm mills no thread of diameter {2 * nominal:.10g} mm."
-            raise tool.refuse(text, "Take another tool, or correct Q335.")
+            text = (
+                f"A tool with R {tool.radius:.10g} mm cannot mill a thread of diameter {2 * nominal:.10g} mm."
+            )
+            raise tool.refuse(text, "Use another tool, or correct Q335.")
         self.feed = tool.cut(207) * self.ring / nominal
         self.place = tool.cut(253)
 
@@ -48,7 +50,10 @@ class _Thread:
             return [(self.bottom if upwards else self.bottom + rise, 1)]
         turns = math.ceil(depth / (rise * per_step) - SMALLEST)
         if turns > _MOST_TURNS:
-            raise self.tool.refuse(f"The thread takes {turns} turns.", "Correct pitch and depth.")
+            raise self.tool.refuse(
+                f"The thread would need {turns} turns, which is too many.",
+                ("Correct the pitch and the depth."),
+            )
         if per_step == 1:
             return [(self.bottom if upwards else self.bottom + turns * rise, turns)]
         begins = [self.bottom + at * per_step * rise for at in range(turns)]
@@ -83,7 +88,9 @@ def thread_drilling(tool: CycleTool) -> Iterator[Block]:
     thread = _Thread(tool)
     feed, depth = thread.tool.cut(206), -tool.length(356)
     if depth < SMALLEST:
-        raise tool.refuse("The depth Q356 of the hole leads upwards.", "Write it with a minus.")
+        raise tool.refuse(
+            "Hole depth Q356 must be negative (downward).", ("Enter the depth with a minus sign.")
+        )
     breaking, back = tool.length(257, 0.0), tool.length(256, 0.2)
     yield tool.to(thread.clear)
     broken = 0.0
@@ -137,7 +144,9 @@ def outside_thread(tool: CycleTool) -> Iterator[Block]:
 
 def _milled(thread: _Thread, per_step: int) -> Iterator[Block]:
     if per_step < 0:
-        raise thread.tool.refuse(f"Q355 {per_step} is no number of threads.", "Write 0, 1 or more.")
+        raise thread.tool.refuse(
+            f"Q355={per_step} is not a valid number of threads.", ("Enter 0, 1 or a larger number.")
+        )
     ccw = thread.counter_clockwise
     upwards = (thread.pitch > 0.0) == ccw
     for begin, turns in thread.paths(per_step, upwards=upwards):
@@ -191,7 +200,9 @@ def _sunk_at_front(thread: _Thread) -> Iterator[Block]:
     if depth == 0.0:
         return
     if depth > 0.0:
-        raise tool.refuse("The depth Q358 at the front leads upwards.", "Write it with a minus.")
+        raise tool.refuse(
+            "The depth at the front, Q358, is positive (upward).", ("Enter the depth with a minus sign.")
+        )
     feed = thread.tool.cut(254)
     yield tool.to(thread.clear)
     yield tool.to(thread.surface + depth, thread.place if off > SMALLEST else feed)
@@ -215,7 +226,9 @@ def _sunk_round_stud(thread: _Thread) -> Iterator[Block]:
     tool, (x, y) = thread.tool, thread.middle
     depth, off = tool.length(358), tool.length(359)
     if depth > 0.0:
-        raise tool.refuse("The depth Q358 at the front leads upwards.", "Write it with a minus.")
+        raise tool.refuse(
+            "The depth at the front, Q358, is positive (upward).", ("Enter the depth with a minus sign.")
+        )
     feed, size = thread.tool.cut(254), tool.radius
     on, begin, end = (x + off, y), (x + off + size, y + size), (x + off + size, y - size)
     about = x + off + size, y

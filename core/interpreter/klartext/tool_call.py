@@ -25,8 +25,8 @@ def tool_call(state: State, node: ToolCall, use: ToolUse) -> Iterator[Block]:
     """
     changes = node.tool is not None or node.length is not None or node.radius is not None
     if state.m128 and changes:
-        why = "TOOL CALL with a tool or an oversize while M128 is on."
-        raise state.refuse(1, NOT_WITH_M128, why, "Switch it off with M129 before.")
+        why = "TOOL CALL with a tool or an oversize is not allowed while M128 is active."
+        raise state.refuse(1, NOT_WITH_M128, why, "Switch M128 off with M129 before this block.")
     if node.tool_axis not in {"", "Z"}:
         raise unsupported(state.line, node.column, f"The tool axis {node.tool_axis}")
     number = _number(state, node.tool, node.column)
@@ -71,8 +71,8 @@ def _number(state: State, tool: int | str | Value | TextName | None, column: int
         return NamedTool(NAMED_TOOLS + names.index(tool), tool)
     if (found := state.setup.tool_names.get(tool.upper())) is not None:
         return found
-    text = f'No tool is called "{tool}".'
-    hint = "Give a tool of the tool table this name, or call it by its number."
+    text = f'No tool is named "{tool}".'
+    hint = "Give this name to a tool in the tool table, or call the tool by its number."
     raise state.refuse(column, TOOL_UNKNOWN, text, hint)
 
 
@@ -104,8 +104,8 @@ def _measure(state: State, tool: int, longer: float, thicker: float, use: ToolUs
     if 0 < tool < NAMED_TOOLS:
         use.call(tool)
     if _defined(state, tool) is None and tool and use.offset(tool, state.setup.tools) is None:
-        text = f"Tool {tool_text(tool)} has no offset; 0 is used, and the machine will refuse to start."
-        state.log.warn(state.line, column, "tool-offset-missing", text, "Set the tool's offset.")
+        text = f"Tool {tool_text(tool)} has no offset, so 0 is used and the machine will not start."
+        state.log.warn(state.line, column, "tool-offset-missing", text, "Set the tool offset.")
     measure_again(state)
 
 
@@ -148,8 +148,10 @@ def _by_cutting_speed(state: State, node: ToolCall, number: int | None) -> float
     speed = word_values.number(state, node.cutting_speed, "VC", word_values.MOST_SPEED, 0.0)
     radius = radius_of(state, state.modal.tool if number is None else number) or 0.0
     if radius <= 0.0:
-        text = "A cutting speed needs the tool's radius, and it has none."
-        raise state.refuse(node.cutting_speed.column, WRONG_RPM, text, "Write R into the tool table, or S.")
+        text = "A cutting speed needs the tool radius, but the tool has none."
+        raise state.refuse(
+            node.cutting_speed.column, WRONG_RPM, text, ("Enter R in the tool table, or program S.")
+        )
     return speed * 1000.0 / (2.0 * math.pi * radius)
 
 
@@ -161,7 +163,7 @@ def _speed(state: State, node: ToolCall, number: int | None) -> float | None:
     rpm = word_values.number(state, node.speed, "S", word_values.MOST_SPEED, 0.0)
     highest = state.setup.limits.max_rpm
     if rpm > highest:
-        text = f"S{rpm:g} is over the spindle's {highest:g} rpm."
+        text = f"S{rpm:g} is above the spindle maximum of {highest:g} rpm."
         raise state.refuse(node.speed.column, WRONG_RPM, text, "Lower S.")
     return rpm
 

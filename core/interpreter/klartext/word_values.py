@@ -55,18 +55,18 @@ def programmed_feed(state: State, feed: Feed | None, column: int) -> tuple[float
     """F as programmed and what it counts by (U a revolution, Z a tooth); None for rapid."""
     if feed is None:
         if state.feed is None:
-            raise _missing(state, column, "No feed is in force.", "Write F or FMAX.")
+            raise _missing(state, column, "No feed rate is active.", "Write F or FMAX.")
         return state.feed, state.feed_per
     if feed.kind == "max":
         return None
     if feed.kind == "auto":
         if state.tool_feed is None:
-            raise _missing(state, feed.column, "The last TOOL CALL has no F.", "Write F behind TOOL CALL.")
+            raise _missing(state, feed.column, "The last TOOL CALL has no F.", ("Program F in TOOL CALL."))
         return state.tool_feed, state.tool_feed_per
     assert feed.value is not None
     found = number(state, feed.value, "F", MOST_FEED, 0.0)
     if found <= 0.0:
-        raise state.refuse(feed.column, INPUT_VALUE, "F must be above zero.", "Write a feed.")
+        raise state.refuse(feed.column, INPUT_VALUE, "F must be above zero.", "Enter a feed rate.")
     return found, feed.per or (REVOLUTION if state.per_revolution else "")
 
 

@@ -46,7 +46,7 @@ def arc_move(state: State, statement: Statement) -> Block:
 def _warn_of_long_way(state: State, statement: Statement, sweep: float) -> None:
     """More than half a circle by I and K: an insert can hardly cut it; the code is that of the other way."""
     if pi + _ROUNDED < sweep < 2.0 * pi - _ROUNDED:
-        text = f"The arc goes through {degrees(sweep):.0f} degrees."
+        text = f"The arc spans {degrees(sweep):.0f} degrees."
         hint = "Check G02 and G03, and the signs of I and K."
         state.log.warn(statement.line, statement.code_column, "arc-over-half", text, hint)
 
@@ -55,8 +55,8 @@ def _centre_by_radius(state: State, statement: Statement, start: Point, *, clock
     radius = checked(state, statement, "R", on_step(state, statement, "R")) or 0.0
     chord = dist(start, (state.x, state.z))
     if chord <= _SAME:
-        text = "The arc by R ends where it starts."
-        raise statement.refuse("R", "arc-no-chord", text, "A full circle takes I and K.")
+        text = "The arc with R ends at its start point."
+        raise statement.refuse("R", "arc-no-chord", text, ("Program a full circle with I and K."))
     if chord > 2 * radius + _TOLERANCE:
         shown, half = state.modal.length_text(radius), state.modal.length_text(chord / 2)
         text = f"R is {shown}; an arc between these points needs a radius of {half} or more."
@@ -76,14 +76,14 @@ def _centre_by_words(state: State, statement: Statement, start: Point) -> Point:
     if i is None or k is None:
         letter = "I" if i is None else "K"
         given = "K" if i is None else "I"
-        text = f"{letter} is missing: under G90 and G73, I and K are the centre's coordinates."
+        text = f"{letter} is missing; under G90 and G73, I and K are the coordinates of the arc center."
         raise statement.refuse(given, "arc-coordinate-missing", text, f"Add {letter}.")
     return i + state.dx, k + state.dz
 
 
 def _check_radii(state: State, statement: Statement, first: float, last: float) -> None:
     if first <= _SAME:
-        text = "The centre of the arc is its start point."
+        text = "The arc center is at the start point of the arc."
         raise statement.refuse("", "arc-no-radius", text, "Correct I and K.")
     if abs(first - last) <= _TOLERANCE:
         return
@@ -92,7 +92,7 @@ def _check_radii(state: State, statement: Statement, first: float, last: float) 
         f" and {state.modal.length_text(last)} at its end."
     )
     if state.modal.diameter or not state.absolute:
-        hint = "I and K are distances from the start here."
+        hint = "I and K are distances from the start point of the arc here."
     else:
-        hint = "I and K are the centre's coordinates here."
+        hint = "I and K are the coordinates of the arc center here."
     raise statement.refuse("", "arc-radius", text, hint)

@@ -125,7 +125,7 @@ def _goal(state: State, statement: Statement, word: Word) -> float:
     step, value = state.setup.limits.c_step, word.value or 0.0
     count = round(value / step)
     if abs(value / step - count) > 1e-6:
-        text = f"{word.text} is finer than the step of {step:g} degrees; {count * step:g} is used."
+        text = f"{word.text} is finer than the resolution of {step:g} degrees; {count * step:g} is used."
         state.log.warn(statement.line, word.column, "finer-than-step", text, "Round the number.")
         value = count * step
     absolute = word.letter == "CA" or (word.letter == "C" and state.absolute)
@@ -137,16 +137,16 @@ def _check_turns(state: State, statement: Statement, word: Word, way: float, tur
     modal, limits = state.modal, state.setup.limits
     feed = modal.feed or 0.0
     if modal.c_rpm is None:
-        text = "The slide is fed by the turns of C, and no S has said how fast it turns."
-        raise statement.refuse(word, "speed-missing", text, "Write S on the line.")
+        text = "The feed is per revolution of C, but no S sets the speed of C."
+        raise statement.refuse(word, "speed-missing", text, "Write S on this line.")
     needed = way / feed * _TURN
     if turn < needed * (1.0 - 1e-9):
-        text = f"C turns {turn:g} degrees; the way of the slide at this feed needs {round(needed, 4):g}."
-        hint = "Turn C further, or raise F: the slide would stop on its way."
+        text = f"C turns {turn:g} degrees, but the move at this feed needs {round(needed, 4):g} degrees."
+        hint = "Turn C farther, or raise F; otherwise the axes stop before the end point."
         raise statement.refuse(word, "c-too-little", text, hint)
     speed = feed * modal.c_rpm / 60.0
     if speed > limits.max_feed * (1.0 + 1e-9):
         shown = modal.feed_text(speed, per_rev=False)
         most = modal.feed_text(limits.max_feed, per_rev=False)
-        text = f"At {modal.c_rpm:g} rpm of C this feed is {shown}; {most} is the most."
+        text = f"At a C speed of {modal.c_rpm:g} rpm this feed is {shown}; the maximum is {most}."
         raise statement.refuse(0, "feed-over-speed", text, "Lower F or S.")

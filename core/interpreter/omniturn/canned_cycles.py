@@ -41,8 +41,10 @@ def length(state: State, statement: Statement, letter: str) -> float:
 def check_count(statement: Statement, letter: str, count: int, what: str) -> None:
     """Refuse a cycle of more passes than anyone means."""
     if count > MOST_PASSES:
-        text = f"{name(statement)} would make {count:,} {what}; {MOST_PASSES:,} are the most."
-        raise statement.refuse(letter, "cycle-passes", text, f"Look for a lost decimal point in {letter}.")
+        text = f"{name(statement)} would make {count:,} {what}; the maximum is {MOST_PASSES:,}."
+        raise statement.refuse(
+            letter, "cycle-passes", text, (f"Look for a missing decimal point in {letter}.")
+        )
 
 
 def blocks_of_moves(state: State, statement: Statement, moves: Sequence[Move]) -> Iterator[Block]:

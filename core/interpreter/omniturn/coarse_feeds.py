@@ -59,19 +59,22 @@ def _check_place(state: State, statement: Statement, code: int) -> None:
             state.modal.length_text(z - state.offset_z),
         )
         state.adopt(state.modal._replace(coarse=0))  # so that the rest is judged as it was meant
-        text = f"G36 stands elsewhere than its G35, which was at radius {place[0]}, Z {place[1]}."
-        raise statement.refuse(1, "coarse-place", text, "Move back there before G36.")
+        text = f"G36 is not at the position of its G35, which was at radius {place[0]}, Z {place[1]}."
+        raise statement.refuse(1, "coarse-place", text, ("Move back to the position of G35 before G36."))
 
 
 def _check_preset(state: State, statement: Statement, code: int, ahead: Sequence[ReadyLine]) -> None:
     """The next line says where the slides stand: G92 with the coordinates in force."""
     line = next((step for step in ahead if step is not None), None)
-    hint = "Write G92 with the present X and Z on the next line."
+    hint = "Write G92 with the current X and Z on the next line."
     if not isinstance(line, Statement) or line.one_shot != 92 or not {"X", "Z"}.issubset(line.words):
         text = f"G{code} is not followed by a G92 with X and Z."
         raise statement.refuse(1, "coarse-preset", text, hint)
     x, z = (line.value("X") or 0.0) * state.scale_x, (line.value("Z") or 0.0) * state.scale_z
     if max(abs(x - state.px), abs(z - state.pz)) > _SAME or line.modal:
         here = state.modal.length_text(state.px), state.modal.length_text(state.pz)
-        text = f"The G92 behind G{code} says another place than radius {here[0]}, Z {here[1]}."
+        text = (
+            f"The G92 after G{code} does not match the current position, which is radius {here[0]}"
+            f", Z {here[1]}."
+        )
         raise line.refuse("X", "coarse-preset", text, hint)

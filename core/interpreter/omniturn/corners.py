@@ -104,7 +104,7 @@ class Corners:
             held.between.append(item)
         elif item.action is not None:
             if isinstance(item.action, _PARTS):
-                raise _refused(held, "corner-next", f"no move follows before {item.text}")
+                raise _refused(held, "corner-next", f"no move comes before {item.text}")
             held.between.append(item)
         else:
             self._held = None
@@ -115,7 +115,7 @@ class Corners:
         held = self._held
         if held is not None and statement.one_shot is not None and not statement.entry.before_corner:
             what = statement.code.text if statement.code is not None else "another motion"
-            raise _refused(held, "corner-next", f"{what} on line {statement.line} is no straight move")
+            raise _refused(held, "corner-next", (f"{what} on line {statement.line} is not a straight move"))
 
     def end(self) -> None:
         """No block comes any more. Raises ProgramError where a corner is left."""
@@ -131,7 +131,7 @@ class Corners:
 
     def _cut(self, held: _Held, after: Block, corner: Corner | None) -> Iterator[Item]:
         if after.kind not in STRAIGHT or after.c != after.c0:
-            what = "an arc" if after.kind is Kind.ARC else "no straight line"
+            what = "an arc" if after.kind is Kind.ARC else "not a straight line"
             raise _refused(held, "corner-next", f"the next move, on line {after.line}, is {what}")
         block, point = held.block, (held.block.x, held.block.z)
         first, last = Line((block.x0, block.z0), point), Line(point, (after.x, after.z))
@@ -139,8 +139,11 @@ class Corners:
             make = chamfer if held.corner.letter == "C" else rounding
             cut, between, rest = make(first, last, held.corner.size)
         except NoCornerError:
-            text = f"Lines {block.line} and {after.line} run in one direction: there is no corner to cut."
-            self._log.warn(*held.place, "corner-straight", text, "Take C or R out.")
+            text = (
+                f"Lines {block.line} and {after.line} run in the same direction, so they do not form "
+                "a corner."
+            )
+            self._log.warn(*held.place, "corner-straight", text, "Remove C or R.")
             yield from (block, *held.between)
             yield from self._pass_on(after, corner)
             return
@@ -162,12 +165,12 @@ class Corners:
         of = held.block if problem.first else after
         left = held.block.modal.length_text(Line((of.x0, of.z0), (of.x, of.z)).length)
         if not problem.needed:
-            return _refused(held, "corner-too-large", f"the move on line {of.line} has no length")
+            return _refused(held, "corner-too-large", f"the move on line {of.line} has zero length")
         needed = held.block.modal.length_text(problem.needed)
         return _refused(
             held,
             "corner-too-large",
-            f"it takes {needed} of the move on line {of.line}, which has {left} left",
+            f"it needs {needed} of the move on line {of.line}, which has only {left} left",
         )
 
 
@@ -176,8 +179,12 @@ def _refused(held: _Held, code: str, why: str) -> ProgramError:
 
 
 def _impossible(line: int, column: int, letter: str, code: str, why: str) -> ProgramError:
-    hint = "Make it smaller." if code == "corner-too-large" else "A corner needs two straight moves in a row."
-    return program_error(line, column, code, f"{letter} cannot make a corner: {why}.", hint)
+    hint = (
+        "Use a smaller chamfer or radius."
+        if code == "corner-too-large"
+        else "A corner needs two straight moves in a row."
+    )
+    return program_error(line, column, code, f"Corner {letter} is not possible: {why}.", hint)
 
 
 # --- corners of a contour that a cycle reads: see ``cycle_contour``
@@ -218,14 +225,14 @@ def _corner(asked: ContourPiece, before: Element, after: Element, log: Log) -> S
     try:
         return make(before, after, asked.size)
     except NoCornerError:
-        text = "The two moves run in one direction: there is no corner to cut."
-        log.warn(asked.line, _column(asked), "corner-straight", text, "Take C or R out.")
+        text = "The two moves run in the same direction, so they do not form a corner."
+        log.warn(asked.line, _column(asked), "corner-straight", text, "Remove C or R.")
         return before, after
     except CornerTooLargeError as problem:
         needed = units.length(problem.needed, metric=asked.metric)
         left = units.length((before if problem.first else after).length, metric=asked.metric)
         which = "this move" if problem.first else "the next move"
-        why = f"it takes {needed} of {which}, which has {left} left"
+        why = f"it needs {needed} of {which}, which has only {left} left"
         raise _refused_in_contour(asked, "corner-too-large", why) from None
     except CornerError as problem:
         raise _refused_in_contour(asked, "corner-next", str(problem)) from None

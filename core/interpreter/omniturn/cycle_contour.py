@@ -38,7 +38,7 @@ def read_contour(state: State, statement: Statement, lines: Sequence[Statement])
     elements = reader.finish()
     if not elements:
         text = f"The contour of G{statement.one_shot} has no line or arc."
-        raise statement.refuse("", "cycle-contour-empty", text, "Write its points.")
+        raise statement.refuse("", "cycle-contour-empty", text, "Write the points of the contour.")
     return elements
 
 
@@ -58,17 +58,19 @@ class _Reader:
 
     def take(self, line: Statement) -> None:
         if line.flow == UNREADABLE:
-            raise _refused(line, 1, "The contour cannot be read here", "Correct the line.")
+            raise _refused(line, 1, "This line of the contour cannot be read", "Correct the line.")
         idle_corner = not line.moves and not _CORNERS.isdisjoint(line.words)
         if line.flow or idle_corner or not _TURNS.isdisjoint(line.words):
-            what = f"{line.text} cannot stand in a contour"
-            raise _refused(line, 1, what, "A contour holds moves, arcs and corners written out.")
+            what = f"{line.text} is not allowed in a contour"
+            raise _refused(line, 1, what, ("Write only moves, arcs and corners in a contour, line by line."))
         if line.one_shot is not None and not line.entry.in_contour:
             column = line.code.column if line.code else 1
-            raise _refused(line, column, f"G{line.one_shot} cannot stand in a contour", "Take it out.")
+            raise _refused(
+                line, column, f"G{line.one_shot} is not allowed in a contour", ("Remove it from the program.")
+            )
         if not _NOSE.isdisjoint(line.modal):
-            what = "Nose compensation cannot be switched in a contour"
-            raise _refused(line, 1, what, "Finish with a contour of its own.", "cycle-nose-comp")
+            what = "Nose compensation cannot be turned on or off in a contour"
+            raise _refused(line, 1, what, "Program a separate contour for finishing.", "cycle-nose-comp")
         self._tell_ignored(line)
         geometry_modes(self._own, line)
         if line.one_shot == 92:
@@ -80,7 +82,9 @@ class _Reader:
         """The elements. Warns where the modes at the end of the contour are not those of its start."""
         for mode in _MODES:
             if getattr(self._own.modal, mode) != getattr(self._state.modal, mode):
-                text = "The contour changes modes or coordinates; after the cycle those before it hold again."
+                text = (
+                    "The contour changes modes or coordinates; the previous ones apply again after the cycle."
+                )
                 self._state.log.warn(self._made.line, self._made.code_column, "cycle-modes", text)
                 break
         return cut_corners(self._pieces, self._state.log)
@@ -91,7 +95,7 @@ class _Reader:
         words += [line.code] if line.code and line.one_shot in {4, 10} else []
         if words and not self._reported:
             self._reported = True
-            text = f"{words[0].text} and its like do not count in the contour of G{self._made.one_shot}."
+            text = f"{words[0].text} and similar words are ignored in the contour of G{self._made.one_shot}."
             found = Diagnostic(line.line, words[0].column, Severity.NOTE, "cycle-ignored", text)
             self._state.log.add(found)
 
@@ -113,8 +117,8 @@ class _Reader:
         """The first line is the way from the start point to the first point of the contour."""
         if line.entry.acts is Acts.ARC or corner is not None:
             column = corner.column if corner else 1
-            what = "The first line of a contour is its first point, which takes no arc and no corner"
-            raise _refused(line, column, what, "Write X and Z of the point alone.")
+            what = "The first line of a contour is its first point and cannot have an arc or a corner"
+            raise _refused(line, column, what, "Write only X and Z of the first point.")
         self._line(line)
         self._begun = True
 

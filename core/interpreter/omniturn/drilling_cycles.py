@@ -35,7 +35,7 @@ def peck_moves(state: State, statement: Statement) -> list[Move]:
     peck = length(state, statement, "K")
     if peck > (start - depth) * (1.0 + _WHOLE):
         deep = state.modal.length_text(start - depth)
-        text = f"{statement.words['K'].text}: a peck is deeper than the hole, {deep}."
+        text = f"{statement.words['K'].text}: the peck is deeper than the hole, which is {deep} deep."
         state.log.warn(
             statement.line, statement.words["K"].column, "peck-depth", text, "Correct K, or drill with G81."
         )
@@ -65,8 +65,8 @@ def _depth(state: State, statement: Statement) -> float:
     depth = length(state, statement, "Z") + (state.dz if state.absolute else state.z)
     if depth >= state.z:
         text = (
-            f"The bottom of the hole at {state.modal.length_text(depth)} is not beyond the start point"
-            f" at {state.modal.length_text(state.z)}."
+            f"The bottom of the hole at {state.modal.length_text(depth)} is not deeper than the "
+            f"start point at {state.modal.length_text(state.z)}."
         )
         raise statement.refuse("Z", "cycle-depth", text, "Correct Z, or start farther out.")
     return depth
@@ -79,8 +79,10 @@ def _retract(state: State, statement: Statement, first: float) -> float:
         return state.z
     out = r + (state.dz if state.absolute else state.z)
     if out <= first:
-        text = f"{statement.words['R'].text} lies in the hole, not before the depth of the first peck."
-        raise statement.refuse("R", "cycle-retract", text, "R is where the drill comes out of the hole.")
+        text = f"{statement.words['R'].text} is inside the hole, at or below the depth of the first peck."
+        raise statement.refuse(
+            "R", "cycle-retract", text, ("R is the Z to which the drill retracts out of the hole.")
+        )
     return out
 
 

@@ -23,7 +23,11 @@ def dwell(state: State, statement: Statement) -> Iterator[Block]:
     if seconds > _LONG and state.modal.tool:
         text = f"The dwell takes {seconds / 60.0:.1f} minutes."
         state.log.warn(
-            statement.line, statement.words["F"].column, "dwell-long", text, "F of G04 is in seconds."
+            statement.line,
+            statement.words["F"].column,
+            "dwell-long",
+            text,
+            ("Check F; with G04 it is in seconds."),
         )
     _shorten_arrival(state, seconds)
     yield state.action(statement.line, statement.part("move"), Dwell(seconds))
@@ -47,8 +51,14 @@ def warn_of_short_dwell(state: State) -> None:
     (line, column, left), state.turning = state.turning, None
     if left > _DONE:
         needed = max(ceil(left * 100.0 - 1e-6) / 100.0, _SHORTEST)
-        text = f"The drive of C does not tell of its arrival, which takes {needed:.2f} s from here."
-        state.log.warn(line, column, "dwell-too-short", text, f"Write G04F{needed:.2f} after it, or longer.")
+        text = f"The C drive does not report when C is in position, which takes {needed:.2f} s from here."
+        state.log.warn(
+            line,
+            column,
+            "dwell-too-short",
+            text,
+            (f"Write G04F{needed:.2f}, or a longer dwell, after this line."),
+        )
 
 
 def _shorten_arrival(state: State, seconds: float) -> None:

@@ -112,7 +112,11 @@ def out_of_range(modal: Modal, feed: float, least: float, most: float) -> tuple[
     refusal = rule.too_great if feed > most else rule.wrong
     assert refusal is not None
     low, high, shown = (modal.feed_text(each, per_rev=modal.per_rev) for each in (least, most, feed))
-    hint = "Look for a lost decimal point, or G94 for G95." if modal.per_rev else refusal.hint
+    hint = (
+        "Look for a missing decimal point, or for G95 where G94 is intended."
+        if modal.per_rev
+        else refusal.hint
+    )
     return refusal.code, refusal.text.format(value=shown, least=low, most=high), hint
 
 
@@ -124,7 +128,7 @@ def warn_of_crash_feed(state: State, statement: Statement, ahead: Sequence[Ready
     if modal.feed <= HIGH_FEED or _taps(modal.spindle, ahead):
         return
     shown = modal.feed_text(modal.feed, per_rev=True)
-    hint = "Look for a lost decimal point."
+    hint = "Look for a missing decimal point."
     state.log.warn(statement.line, word.column, "feed-high", f"Feed {shown} is very high for cutting.", hint)
 
 
@@ -146,22 +150,24 @@ def check_move(state: State, line: int, x0: float, x: float, length: float) -> N
     if modal.rapid:
         return
     if modal.feed is None:
-        _once(state, line, "feed-missing", "The move has no feed.", "Write F on this line or before it.")
+        _once(
+            state, line, "feed-missing", "The move has no feed.", ("Write F on this line or an earlier line.")
+        )
         return
     if not (modal.per_rev or (modal.css and state.cut)):
         _warn_slow(state, line, length, modal.feed)
         return
     if modal.css and modal.spindle and not modal.surface_speed:
-        text = "G96 is active and no S has given a surface speed."
-        _once(state, line, "surface-speed-missing", text, "Write S beside G96.")
+        text = "G96 is active, but no S sets a surface speed."
+        _once(state, line, "surface-speed-missing", text, "Write S next to G96.")
         return
     rpm = max(abs(state.rpm_at(x0)), abs(state.rpm_at(x)))
     if x0 * x < 0:  # over the centre
         rpm = max(rpm, abs(state.rpm_at(0.0)))
     if not rpm:
         why = "a feed per revolution" if modal.per_rev else "constant surface speed"
-        text = f"The spindle stands, and the move runs at {why}."
-        _once(state, line, "spindle-stopped", text, "Start it with M03 or M04, or use G94.")
+        text = f"The spindle is stopped, but the move uses {why}."
+        _once(state, line, "spindle-stopped", text, "Start the spindle with M03 or M04, or use G94.")
         return
     speed = modal.feed * rpm / 60 if modal.per_rev else modal.feed
     most = state.setup.limits.max_feed
@@ -170,10 +176,12 @@ def check_move(state: State, line: int, x0: float, x: float, length: float) -> N
         if modal.per_rev:
             shown = modal.feed_text(modal.feed, per_rev=True)
             most_per_rev = modal.feed_text(most * 60 / rpm, per_rev=True)
-            message = f"Feed {shown} is over {most_per_rev} at {rpm:.0f} rpm, which is {limit}."
+            message = (
+                f"Feed {shown} is over the maximum of {most_per_rev} at {rpm:.0f} rpm, which equals {limit}."
+            )
         else:
             shown = modal.feed_text(speed, per_rev=False)
-            message = f"Feed {shown} is over {limit}."
+            message = f"Feed {shown} is over the maximum of {limit}."
         raise program_error(line, 0, "feed-over-speed", message, "Lower F or S.")
     _warn_slow(state, line, length, speed)
 
@@ -192,4 +200,4 @@ def _warn_slow(state: State, line: int, length: float, speed: float) -> None:
         modal = state.modal
         shown = modal.feed_text(modal.feed or 0.0, per_rev=modal.per_rev)
         text = f"This move takes {seconds:.0f} s at {shown}."
-        state.log.warn(line, 0, "feed-low", text, "Look at F and at G94/G95.")
+        state.log.warn(line, 0, "feed-low", text, "Check F and G94/G95.")

@@ -68,7 +68,10 @@ class _Finder:
         if statement.flow == "RF":
             if self._contour is None and not self._contour_lost:
                 self._refuse(
-                    statement, "rf-alone", "RF ends no contour here.", "Add G75 or G78, or take it out."
+                    statement,
+                    "rf-alone",
+                    "RF does not end a contour here.",
+                    ("Add G75 or G78, or remove RF."),
                 )
             elif self._contour is not None:
                 self.found.contours[self._contour.line - 1] = statement.line - 1
@@ -87,7 +90,7 @@ class _Finder:
         statement, self._contour = self._contour, None
         if statement is not None:
             text = f"The contour of G{statement.one_shot} has no RF."
-            hint = "Write RF alone on the line after it, or P with the number of a subroutine."
+            hint = "Write RF alone on the line after the contour, or P with a subroutine number."
             self._refuse(statement, "contour-open", text, hint)
 
     def _end_main(self, line: int) -> None:
@@ -107,8 +110,8 @@ class _Finder:
         number = int(statement.value("}") or 0)
         if number in self.found.subroutines:
             first = self.found.subroutines[number] + 1
-            text = f"Subroutine {number} begins on line {first} already."
-            self._refuse(statement, "subroutine-twice", text, "Give it another number.")
+            text = f"Subroutine {number} already begins on line {first}."
+            self._refuse(statement, "subroutine-twice", text, "Use a different number.")
         else:
             self.found.subroutines[number] = statement.line - 1
         self._inside, self._stray = number, False
@@ -116,7 +119,7 @@ class _Finder:
     def _close_subroutine(self, statement: Statement) -> None:
         if self._inside is None:
             hint = "Write M30 at the end of the program, or delete the line."
-            self._refuse(statement, "m99-outside", "M99 ends no subroutine here.", hint)
+            self._refuse(statement, "m99-outside", "M99 does not end a subroutine here.", hint)
             return
         self._unclosed_loops()
         self.found.subroutine_ends.setdefault(self._inside, statement.line - 1)
@@ -132,7 +135,7 @@ class _Finder:
     def _close_loop(self, statement: Statement) -> None:
         if not self._loops:
             self._refuse(
-                statement, "loop-unopened", "LF ends no loop.", "Add LS with a count, or take it out."
+                statement, "loop-unopened", "LF does not end any loop.", "Add LS with a count, or remove LF."
             )
             return
         start = self._loops.pop().line - 1
@@ -152,8 +155,10 @@ class _Finder:
         late_end = statement.ends_program and any(each.code == "no-end" for each in self.problems)
         if not self._stray and not late_end:
             self._stray = True
-            text = "This line stands after the end of the program and is in no subroutine."
-            self._refuse(statement, "after-end", text, "Move it before M30, or start a subroutine with }n.")
+            text = "This line is after the end of the program and not in a subroutine."
+            self._refuse(
+                statement, "after-end", text, ("Move the line before M30, or start a subroutine with }n.")
+            )
 
     def _no_end(self, line: int) -> None:
         self._ended = True
@@ -161,7 +166,7 @@ class _Finder:
         if any(problem.code == "m99-outside" for problem in self.problems):
             return  # M99 was meant to end the program
         text = "The main program ends without M30 or M02."
-        self.problems.append(refusal(line, 0, "no-end", text, "M30 goes before the subroutines."))
+        self.problems.append(refusal(line, 0, "no-end", text, "Write M30 before the subroutines."))
 
     def finish(self, length: int) -> None:
         self._open_contour()
@@ -171,7 +176,9 @@ class _Finder:
         elif self._inside is not None and not self._closed_by_job_end(self._inside):
             text = f"Subroutine {self._inside} has no M99."
             line = self.found.subroutines[self._inside] + 1
-            self.problems.append(refusal(line, 1, "subroutine-open", text, "Add M99 at its end."))
+            self.problems.append(
+                refusal(line, 1, "subroutine-open", text, ("Add M99 at the end of the subroutine."))
+            )
 
     def _refuse(self, statement: Statement, code: str, text: str, hint: str) -> None:
         self.problems.append(refusal(statement.line, 1, code, text, hint))
@@ -202,8 +209,8 @@ def find_structure(statements: Iterable[Statement], length: int) -> tuple[Struct
     for statement in calls:
         number = call_target(statement)
         if number not in finder.found.subroutines:
-            column, hint = statement.column("P") or 1, "Write it after M30."
-            text = f"Subroutine {number} is called, and no }}{number} begins it."
+            column, hint = statement.column("P") or 1, "Write the subroutine after M30."
+            text = f"Subroutine {number} is called, but no }}{number} starts it."
             finder.problems.append(refusal(statement.line, column, "subroutine-missing", text, hint))
     return finder.found, finder.problems
 
@@ -321,7 +328,7 @@ class Flow:
         if number not in self._structure.subroutines:
             return  # told when the program was read
         if len(self._calls) >= DEEPEST_CALL:
-            text = f"Subroutines call each other more than {DEEPEST_CALL} deep."
+            text = f"Subroutine calls are nested more than {DEEPEST_CALL} deep."
             raise statement.refuse("P", "recursion", text, "A subroutine must not call itself.")
         self._calls.append((statement.line, self._run_end, self._loops))
         self._loops = []

@@ -83,7 +83,7 @@ def check_m_codes(state: State, lines: tuple[Statement, ...]) -> None:
     for statement in lines:
         if statement.m in state.setup.limits.m_ignored:
             column = statement.m_word.column if statement.m_word else 0
-            text = f"M{statement.m:02d} has no effect here: the machine file says that it does nothing."
+            text = f"M{statement.m:02d} has no effect here: the machine file defines it as ignored."
             state.log.add(Diagnostic(statement.line, column, Severity.NOTE, "no-effect", text))
         elif statement.m not in state.setup.limits.m_outputs:
             state.log.add(_unknown(state, statement))
@@ -92,11 +92,14 @@ def check_m_codes(state: State, lines: tuple[Statement, ...]) -> None:
 def _unknown(state: State, statement: Statement) -> Diagnostic:
     column, name = statement.m_word.column if statement.m_word else 0, f"M{statement.m:02d}"
     if statement.m in state.setup.limits.m_disabled:
-        text = f"{name} is defined, and not switched on in the machine file."
+        text = f"{name} is defined but not enabled in the machine file."
         hint = f"Set enabled = true for {statement.m} under [m_codes]."
         return refusal(statement.line, column, "m-disabled", text, hint)
-    habit, hint = other_controls.meaning_here(name) or ("", "The machine file assigns the outputs.")
-    text = f"{name} is no code of this machine. {habit}".rstrip()
+    habit, hint = other_controls.meaning_here(name) or (
+        "",
+        ("Assign an output to the code in the machine file."),
+    )
+    text = f"{name} is not a code of this machine. {habit}".rstrip()
     return refusal(statement.line, column, "m-unknown", text, hint)
 
 

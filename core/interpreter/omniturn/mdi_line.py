@@ -10,7 +10,7 @@ from core.interpreter.omniturn.plain_moves import Columns, ReadyLines
 from core.language.diagnostics import Diagnostic, ProgramError, refusal
 from core.language.source import Source
 
-_HINT = "Write it in a program."
+_HINT = "Use this command in a program."
 
 
 def read_single(source: Source) -> Program:
@@ -44,7 +44,7 @@ def _alone(statement: Statement) -> Diagnostic | None:
     if statement.flow and statement.flow != UNREADABLE:
         return _refuse(statement, 1, _steers(statement))
     if statement.block_delete:
-        return _refuse(statement, 1, "/ leaves a line of a program out, and there is nothing to leave out")
+        return _refuse(statement, 1, "/ skips a line of a program and has no meaning in MDI")
     for code in statement.modal:
         if G_CODES[code].not_in_mdi:
             return _refuse(statement, 1, f"G{code} {G_CODES[code].not_in_mdi}")
@@ -54,7 +54,11 @@ def _alone(statement: Statement) -> Diagnostic | None:
         )
     radius = statement.words.get("R")
     if radius is not None and statement.moves and statement.one_shot is None:
-        return _refuse(statement, radius.column, f"{radius.text} rounds the corner with the next move")
+        return _refuse(
+            statement,
+            radius.column,
+            (f"{radius.text} rounds the corner with the next move, and MDI runs only one line"),
+        )
     return None
 
 

@@ -55,11 +55,11 @@ def check_distance(lead: ApproachOrDeparture, free: Point, corner: Point, log: L
     if dist(free, corner) < radius - SAME_POINT:
         length = lead.block.modal.length_text(dist(free, corner))
         text = f"The {lead.name} is {length} long, less than the nose radius {nose}."
-        raise lead.refused("-short", text, "Move farther off the part.")
+        raise lead.refused("-short", text, "Move farther away from the part.")
     off = min(distance(element, free) for element in lead.contour)
     shown = lead.block.modal.length_text(off)
     text = f"The {lead.name} {'ends' if lead.departs else 'starts'} {shown} off the part"
-    hint = "Keep twice the nose radius off the part."
+    hint = "Stay at least twice the nose radius away from the part."
     if off < radius - SAME_POINT:
         raise lead.refused("-near", f"{text}, less than the nose radius {nose}.", hint)
     if off < 2 * radius - SAME_POINT:
@@ -70,8 +70,8 @@ def check_distance(lead: ApproachOrDeparture, free: Point, corner: Point, log: L
 def check_clear(lead: ApproachOrDeparture, way: Line) -> None:
     """The nose on its way must not cut the part. Raises ProgramError."""
     if cuts_in(way, lead.contour, lead.radius):
-        text = f"On the {lead.name} the nose of G{lead.code} cuts into the part."
-        hint = f"Choose another way for the {lead.name}, or the other side."
+        text = f"With G{lead.code}, the tool nose cuts into the part during the {lead.name}."
+        hint = f"Choose a different path for the {lead.name}, or the other side."
         raise program_error(lead.block.line, 0, "comp-gouge", text, hint)
 
 
@@ -144,7 +144,10 @@ class Compensation:
     def _move(self, block: Block) -> Iterator[Block]:
         if block.kind not in _FOLLOWED or block.c != block.c0:
             raise _refused(
-                block, "comp-with", f"{self._name} cannot follow this move.", "Write G40 before it."
+                block,
+                "comp-with",
+                f"{self._name} cannot compensate this move.",
+                ("Write G40 before this line."),
             )
         move = _Move(block)
         if self._approach is None:
@@ -211,8 +214,13 @@ class Compensation:
             self.drop()
             return
         if last is None or not self._count:
-            text = f"No move follows the contour between the approach and the departure of {self._name}."
-            raise _refused((last or approach).block, "comp-empty", text, "Write the contour between them.")
+            text = f"{self._name} has no contour move between its approach and its departure."
+            raise _refused(
+                (last or approach).block,
+                "comp-empty",
+                text,
+                ("Write the contour between the approach and the departure."),
+            )
         try:
             pieces = list(self._offset.close())
         except GougeError as problem:
@@ -230,19 +238,19 @@ class Compensation:
         block = move.block
         lead = ApproachOrDeparture(block, True, self._code, self.radius, list(reversed(self._recent)))
         if any(each.moves for each in move.after):
-            text = "The departure, the last move before G40, has no length."
+            text = "The departure, the last move before G40, has zero length."
             raise lead._replace(block=move.after[-1]).refused("-short", text, "Move off the part.")
         if block.kind not in STRAIGHT:
-            text = "The departure, the move before G40, is no straight line."
-            raise lead.refused("", text, "Move off the part on a straight line.")
+            text = "The departure, the move before G40, is not a straight line."
+            raise lead.refused("", text, "Move off the part in a straight line.")
         check_distance(lead, way.end, (block.x0, block.z0), self._log)
         check_clear(lead, way)
 
     def _gouge(self, problem: GougeError) -> ProgramError:
         block = self._moves[problem.index].block
         nose = block.modal.length_text(self.radius)
-        text = f"{self._name} with a nose radius of {nose} cannot follow this move: {problem.why}."
-        return _refused(block, "comp-gouge", text, "Take a smaller nose, or change the contour.")
+        text = f"{self._name} with a nose radius of {nose} cannot compensate this move: {problem.why}."
+        return _refused(block, "comp-gouge", text, ("Use a smaller nose radius, or change the contour."))
 
     @property
     def _code(self) -> int:
@@ -279,7 +287,7 @@ def switch(state: State, statement: Statement, code: int, *, called: bool) -> Co
         return None
     check_when(state, statement, G_CODES[code])
     if called:
-        text = f"G{code} stands in a subroutine."
+        text = f"G{code} is not allowed in a subroutine."
         raise statement.refuse(
             1, "comp-subroutine", text, "Write the compensated contour in the main program."
         )
@@ -295,14 +303,19 @@ def check_under_nose(state: State, statement: Statement) -> None:
     if on == 40:
         return
     if statement.ends_program:
-        text = f"The program ends while G{on} is on."
-        raise statement.refuse(1, "comp-open", text, "Move off the part and write G40 before it.")
+        text = f"The program ends while G{on} is active."
+        raise statement.refuse(
+            1, "comp-open", text, ("Move off the part, and write G40 before the end of the program.")
+        )
     if statement.flow and statement.flow not in FLOW_CODES:
         raise statement.refuse(
-            1, "comp-with", f"Plane switching stands while G{on} is on.", "Write G40 before it."
+            1,
+            "comp-with",
+            f"Plane switching is not allowed while G{on} is active.",
+            ("Write G40 before this line."),
         )
     if statement.calls:
-        text = f"A subroutine is called while G{on} is on."
+        text = f"A subroutine is called while G{on} is active."
         raise statement.refuse(
             1, "comp-subroutine", text, "Write the compensated contour in the main program."
         )
@@ -310,11 +323,13 @@ def check_under_nose(state: State, statement: Statement) -> None:
     if refused or statement.locks or _TURNS_C & statement.words.keys():
         word = statement.code or statement.m_word
         what = word.text if word is not None else "C"
-        raise statement.refuse(1, "comp-with", f"{what} stands while G{on} is on.", "Write G40 before it.")
+        raise statement.refuse(
+            1, "comp-with", f"{what} is not allowed while G{on} is active.", ("Write G40 before this line.")
+        )
     other = statement.value("D") not in {None, state.modal.secondary}
     if other and "T" not in statement.words and not state.contour.approach:
-        text = f"D changes while G{on} is on."
-        hint = "D belongs on the first move after G41 or G42 alone."
+        text = f"D changes while G{on} is active."
+        hint = "Write D only on the first move after G41 or G42."
         raise statement.refuse("D", "comp-d", text, hint)
 
 
@@ -325,20 +340,25 @@ def check_approach(state: State, block: Block) -> None:
         return
     on = state.modal.nose_comp
     if block.kind not in STRAIGHT:
-        text = f"The first move after G{on} on line {line} is no straight line."
-        raise _refused(block, "comp-approach", text, "Approach on a straight line with D.")
+        text = f"The first move after G{on} on line {line} is not a straight line."
+        raise _refused(block, "comp-approach", text, ("Program the approach as a straight line with D."))
     if state.contour.d_line != block.line or not state.modal.secondary:
-        text = f"The first move after G{on} on line {line} names no D."
-        raise _refused(block, "comp-approach", text, "Write Dn: its R is the nose radius.")
+        text = f"The first move after G{on} on line {line} has no D."
+        raise _refused(
+            block,
+            "comp-approach",
+            text,
+            ("Write Dn on the first move after G41 or G42; R of Dn is the nose radius."),
+        )
     radius = state.setup.secondary[state.modal.secondary].r if _known(state) else 0.0
     if radius < 0:
         text = f"R of D{state.modal.secondary} is negative."
         raise _refused(
-            block, "comp-radius", text, "Enter the nose radius without a sign; G41 and G42 say the side."
+            block, "comp-radius", text, ("Enter the nose radius without a sign; G41 and G42 set the side.")
         )
     if not radius:
-        text = f"R of D{state.modal.secondary} is 0: G{on} compensates nothing."
-        state.log.warn(block.line, 0, "comp-no-radius", text, "Enter the nose radius among the offsets.")
+        text = f"R of D{state.modal.secondary} is 0, so G{on} does not compensate."
+        state.log.warn(block.line, 0, "comp-no-radius", text, ("Enter the nose radius in the offset table."))
 
 
 def nose_radius(state: State) -> float:

@@ -10,21 +10,21 @@ from core.interpreter.omniturn.code_table import CHAPTERS
 from core.language.code_book import CodeBook, Entry
 
 _PLAIN = {
-    "X": "the point in X",
-    "Z": "the point in Z",
+    "X": "the X coordinate",
+    "Z": "the Z coordinate",
     "F": "the feed",
     "S": "rpm",
     "P": "the number of the subroutine",
-    "A": "taper: X over the whole way",
-    "G02.I": "the centre in X",
-    "G02.K": "the centre in Z",
-    "G03.I": "the centre in X",
-    "G03.K": "the centre in Z",
-    "G10.X": "by how much X is shifted",
-    "G10.Z": "by how much Z is shifted",
-    "G94.F": "the feed a minute",
-    "G95.F": "the feed a turn",
-    "G83.R": "Z to which the drill comes out",
+    "A": "taper: travel of X over the length of the thread",
+    "G02.I": "the arc center in X",
+    "G02.K": "the arc center in Z",
+    "G03.I": "the arc center in X",
+    "G03.K": "the arc center in Z",
+    "G10.X": "the shift in X",
+    "G10.Z": "the shift in Z",
+    "G94.F": "the feed per minute",
+    "G95.F": "the feed per revolution",
+    "G83.R": "Z to which the drill retracts",
 }
 """Words for whose numbers no entry has a rule."""
 

@@ -50,7 +50,7 @@ def check_opening(state: State, program: Program) -> tuple[int, bool]:
     if large is not None:
         log.add(large)
     if state.setup.metric and not program.names_units and first:
-        text = "The program names neither G70 nor G71; it runs in millimetres, in which the control counts."
+        text = "The program has neither G70 nor G71, so it runs in millimeters, the unit of the control."
         log.warn(first, 0, "units-unnamed", text, "Write G70 or G71 on the first line.")
     return first, large is not None
 
@@ -61,8 +61,8 @@ def _refuse_move(program: Program, log: Log) -> None:
     named = isinstance(step, Statement) and {90, 91}.intersection(step.modal)
     moves = isinstance(step, tuple) or (step is not None and {"X", "Z"}.intersection(step.words))
     if moves and not named:
-        text = "Neither G90 (absolute) nor G91 (incremental) is in force."
-        log.add(refusal(1, 1, "first-line", text, "Say one of them first."))
+        text = "Neither G90 (absolute) nor G91 (incremental) is active."
+        log.add(refusal(1, 1, "first-line", text, "Program G90 or G91 first."))
 
 
 def _first_line(program: Program, log: Log, *, block_delete: bool) -> int:
@@ -75,8 +75,8 @@ def _first_line(program: Program, log: Log, *, block_delete: bool) -> int:
                 continue
             if step.flow == UNREADABLE or {90, 91}.intersection(step.modal):
                 return number
-        text = "The first line must say G90 (absolute) or G91 (incremental)."
-        log.add(refusal(number, 1, "first-line", text, "Begin with G90G94F300."))
+        text = "The first line must contain G90 (absolute) or G91 (incremental)."
+        log.add(refusal(number, 1, "first-line", text, "Start the program with G90G94F300."))
         return number
     return 0
 
@@ -168,7 +168,7 @@ class Interpreter(Interpretation):
             line = ready[at]
             left -= 1
             if left < 0 or state.blocks >= MOST_BLOCKS:
-                self._stop_endless(at + 1, "Lower the counts of the loops.")
+                self._stop_endless(at + 1, "Reduce the loop counts.")
                 break
             try:
                 if isinstance(line, tuple):

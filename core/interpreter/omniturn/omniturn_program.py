@@ -37,13 +37,22 @@ from core.language.source import Source
 _ODD_IN_COMMENT = frozenset("!@#$%^&*\"'?><,/\\|=-.")
 
 _KINDS = {
-    "blank-line": ("The line is blank.", "Take it out for the original control."),
-    "title-line": ("A comment stands on a line by itself.", "Put it on a line with a command."),
-    "comment-character": ("The comment holds more than letters, digits and blanks.", "Use plain text."),
+    "blank-line": ("The line is blank.", "Delete the line for use on the original control."),
+    "title-line": ("A comment is alone on its line.", ("Put the comment on a line with a command.")),
+    "comment-character": (
+        "The comment contains characters other than letters, digits and spaces.",
+        ("Use only letters, digits and spaces."),
+    ),
     "tool-zero": ("The tool number has a leading zero.", "Write T1 for T01."),
-    "subroutine-comment": ("A comment stands on the line that starts a subroutine.", "Move it down a line."),
-    "line-ends": ("The lines end in a carriage return.", "Save the file with the line ends of this machine."),
-    "last-newline": ("The last line has no line end.", "Press Return after it."),
+    "subroutine-comment": (
+        "A comment is on the line that starts a subroutine.",
+        ("Move the comment to the next line."),
+    ),
+    "line-ends": (
+        "The lines end with a carriage return.",
+        ("Save the file with the line endings of this machine."),
+    ),
+    "last-newline": ("The last line has no line ending.", "Press Enter at the end of the last line."),
 }
 
 
@@ -168,7 +177,8 @@ class _Reader:
         if lacks is not None:
             name = text.strip().upper()
             message = (
-                f"{name} is a comment without its ~, and so are the lines up to (END): nothing is milled."
+                f"{name} is a comment because its ~ is missing, and so are the lines up to (END): "
+                "nothing is milled."
             )
             weight = Severity.ERROR if lacks else Severity.WARNING
             self.problems.append(Diagnostic(number, 1, weight, "plane-sign", message, f"Write (~{name[1:]}."))
@@ -252,7 +262,7 @@ def _executable(reader: _Reader, length: int) -> int:
 def _comments_in_loops(statements: list[Statement], structure: Structure) -> list[Diagnostic]:
     found: list[Diagnostic] = []
     depth = 0
-    text, hint = "A comment stands inside a loop.", "Move it before LS."
+    text, hint = "A comment is inside a loop.", "Move the comment before LS."
     for statement in statements:
         depth += (statement.line - 1 in structure.loop_ends) - (statement.line - 1 in structure.loop_starts)
         if depth and statement.comment is not None:
@@ -267,8 +277,8 @@ def _beyond_the_end(ready: ReadyLines, structure: Structure) -> list[Diagnostic]
     for at in range(structure.main_end, len(ready)):
         inside = (inside or at in starts) and at not in ends
         if not inside and isinstance(ready[at], tuple):
-            text = "This line stands after the end of the program and is in no subroutine."
-            hint = "Move it before M30, or start a subroutine with }n."
+            text = "This line is after the end of the program and not in a subroutine."
+            hint = "Move the line before M30, or start a subroutine with }n."
             return [refusal(at + 1, 1, "after-end", text, hint)]
     return []
 

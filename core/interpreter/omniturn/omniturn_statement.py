@@ -111,8 +111,14 @@ def statement_of(line: Line) -> Statement:
     statement = Statement(line.number, line.text, comment=line.comment, block_delete=line.block_delete)
     if line.comment is not None and line.comment.lstrip().startswith("~"):
         what = f"({line.comment.strip()})"
-        message = f"{what} looks like plane switching; (~PLXC) and (~PLZC) stand alone on a line."
-        raise program_error(line.number, line.comment_column, "plane-entry", message, "Write it alone.")
+        message = f"{what} looks like plane switching; (~PLXC) and (~PLZC) must be alone on a line."
+        raise program_error(
+            line.number,
+            line.comment_column,
+            "plane-entry",
+            message,
+            ("Write (~PLXC) or (~PLZC) alone on a line."),
+        )
     _sort(statement, line)
     words = statement.words
     statement.moves = statement.entry.acts is _ARC or (
@@ -147,11 +153,11 @@ def _sort(statement: Statement, line: Line) -> None:
             _sort_g(statement, word, modal)
         elif letter == "M":
             if statement.m_word is not None:
-                raise _refused(line, word, "two-m-codes", "holds two M codes", "Split the line.")
+                raise _refused(line, word, "two-m-codes", "contains two M codes", "Split the line.")
             statement.m, statement.m_word = int(word.value or 0), word
             statement.m_code = M_CODES.get(statement.m)
         elif letter in words:
-            raise _refused(line, word, "word-twice", f"holds {letter} twice", "Take one out.")
+            raise _refused(line, word, "word-twice", f"contains {letter} twice", "Remove one of them.")
         else:
             words[letter] = word
     if modal:
@@ -163,8 +169,8 @@ def _check_groups(statement: Statement, line: Line, modal: list[Word]) -> None:
     groups: dict[str, int] = {}
     for word, code in zip(modal, statement.modal, strict=True):
         if groups.setdefault(G_CODES[code].group, code) != code:
-            what = f"holds two codes of one group ({G_CODES[code].group})"
-            raise _refused(line, word, "modal-conflict", what, "Keep one of them.")
+            what = f"contains two codes of the same group ({G_CODES[code].group})"
+            raise _refused(line, word, "modal-conflict", what, "Keep only one of them.")
 
 
 def _sort_g(statement: Statement, word: Word, modal: list[Word]) -> None:
@@ -172,12 +178,12 @@ def _sort_g(statement: Statement, word: Word, modal: list[Word]) -> None:
     entry = G_CODES.get(code)
     if entry is None:
         habit, hint = other_controls.meaning_here(word.text.upper()) or ("", other_controls.LOOK_UP)
-        message = f"{word.text} is no code of this control. {habit}".rstrip()
+        message = f"{word.text} is not a code of this control. {habit}".rstrip()
         raise statement.refuse(word, "g-unknown", message, hint)
     if entry.acts is _MODE:
         modal.append(word)
     elif statement.code is not None:
-        message = f"{statement.code.text} and {word.text} cannot act on one line."
+        message = f"{statement.code.text} and {word.text} cannot be on the same line."
         raise statement.refuse(word, "two-one-shots", message, "Split the line.")
     else:
         statement.one_shot, statement.code, statement.entry = code, word, entry
@@ -220,22 +226,24 @@ def _check_words(statement: Statement, line: Line) -> None:
             if habit is not None:
                 message = f"{word.text} has no meaning here. {habit[0]}"
                 raise statement.refuse(word, "word-unused", message, habit[1])
-            what = f"holds {word.text}, which nothing on it takes"
-            raise _refused(line, word, "word-unused", what, "Take it out or add its code.")
+            what = f"contains {word.text}, which no code on the line uses"
+            raise _refused(
+                line, word, "word-unused", what, ("Remove the word, or add the code that uses it.")
+            )
 
 
 def _check_flow(statement: Statement, line: Line) -> None:
     allowed = FLOW_CODES[statement.flow].words
     for word in line.words:
         if word.letter not in allowed:
-            what = f"holds {word.text} besides {statement.flow}, which stands alone"
-            raise _refused(line, word, "not-alone", what, "Put it on a line of its own.")
+            what = f"contains {word.text} in addition to {statement.flow}, which must be alone"
+            raise _refused(line, word, "not-alone", what, "Put each command on a separate line.")
     if line.block_delete and not FLOW_CODES[statement.flow].deletable:
-        what = f"deletes {statement.flow}, without which the rest has no meaning"
-        raise _refused(line, line.words[0], "block-delete-flow", what, "Take '/' out.")
+        what = f"has '/' before {statement.flow}, which the rest of the program needs"
+        raise _refused(line, line.words[0], "block-delete-flow", what, "Remove '/'.")
     for letter in sorted(allowed - {"M", "LF", "RF"}):
         if statement.value(letter) is None:
-            what = f"holds {statement.flow} without {letter}"
+            what = f"contains {statement.flow} without {letter}"
             raise _refused(line, line.words[0], "word-missing", what, f"Add {letter} with its number.")
     for letter, rule in FLOW_CODES[statement.flow].rules.items():
         word = statement.words[letter]

@@ -43,7 +43,10 @@ def plane_move(state: State, statement: Statement, mill: Mill) -> Iterator[Block
         if "feed-missing" not in state.reported:
             state.reported.add("feed-missing")
             raise plane_refusal(
-                statement, "feed-missing", "The move has no feed.", "Write F on this line or before it."
+                statement,
+                "feed-missing",
+                "The move has no feed.",
+                ("Write F on this line or an earlier line."),
             )
         return
     for leg in _legs(state, statement, whole):
@@ -57,7 +60,7 @@ def _target(state: State, statement: Statement, mill: Mill) -> Spot:
     z = plane_length(state, statement, "Z", mill.z * 2 if side else mill.z)
     if side and z < 0.0:
         text = (
-            f"Z{state.modal.length_text(z)} lies beyond the centre: Z is the diameter that the tip touches."
+            f"Z{state.modal.length_text(z)} is past the center: Z is the diameter that the tool tip touches."
         )
         raise plane_refusal(statement, "plane-side", text, "Correct Z.", "Z")
     return x, y, z / 2 if side else z
@@ -70,7 +73,7 @@ def _arc(state: State, statement: Statement, line: PlaneMove) -> PlaneMove:
     if first <= _SAME_PLANE_MOVES or abs(first - last) > _TOLERANCE:
         begin, end = state.modal.length_text(first), state.modal.length_text(last)
         text = f"The arc's radius is {begin} at its start and {end} at its end."
-        hint = "I and J are the centre's coordinates."
+        hint = "I and J are the coordinates of the arc center."
         raise plane_refusal(statement, "arc-radius", text, hint, "G")
     return replace(line, centre=centre, clockwise=statement.plane.arc == 2)
 
@@ -83,9 +86,12 @@ def _legs(state: State, statement: Statement, whole: PlaneMove) -> list[PlaneMov
     rho, h = whole.rho(share), abs(whole.frame.h)
     if rho < h - _SAME_PLANE_MOVES:
         near, least = state.modal.length_text(rho), state.modal.length_text(h)
-        text = f"The way comes within {near} of the axis; with this H the tool reaches {least}."
+        text = (
+            f"The path comes within {near} of the axis, but with this H the tool reaches no "
+            f"closer than {least}."
+        )
         raise plane_refusal(
-            statement, "plane-reach", text, "The tool's centre line stands H beside the axis."
+            statement, "plane-reach", text, "The tool centerline is offset from the axis by H."
         )
     return whole.parts()
 
@@ -157,9 +163,9 @@ def _enter(state: State, statement: Statement, name: str) -> None:
     check_when(state, statement, FLOW_CODES[f"~{name}"])
     if state.px > -_SAME:
         text = (
-            f"(~{name}) needs the tool on the negative X side, and X is {state.modal.length_text(state.px)}."
+            f"(~{name}) needs the tool on the negative X side, but X is {state.modal.length_text(state.px)}."
         )
-        raise plane_refusal(statement, "plane-side", text, "Move to X- before it.")
+        raise plane_refusal(statement, "plane-side", text, "Move to negative X before this line.")
     if name == "PLXC":
         mill = Mill(Face(state.c), -state.px, 0.0, state.pz)
     else:
@@ -170,9 +176,17 @@ def _enter(state: State, statement: Statement, name: str) -> None:
 
 def _height(state: State, statement: Statement, mill: Mill) -> None:
     if isinstance(mill.frame, Side):
-        raise plane_refusal(statement, "plane-word", "H belongs to (~PLXC).", "Take it out.", "H")
+        raise plane_refusal(
+            statement, "plane-word", "H is allowed only with (~PLXC).", ("Remove it from the program."), "H"
+        )
     if not mill.fresh:
-        raise plane_refusal(statement, "plane-h-late", "H comes after a move or F.", "Write it first.", "H")
+        raise plane_refusal(
+            statement,
+            "plane-h-late",
+            "H follows a move or F, but must come first.",
+            ("Write H before all moves and F."),
+            "H",
+        )
     h = plane_length(state, statement, "H", 0.0)
     frame = replace(mill.frame, h=h)
     state.adopt(state.modal._replace(mill=Mill(frame, mill.x, h, mill.z, atan2(h, mill.x), False)))
@@ -180,13 +194,17 @@ def _height(state: State, statement: Statement, mill: Mill) -> None:
 
 def _diameter(state: State, statement: Statement, mill: Mill) -> None:
     if isinstance(mill.frame, Face):
-        raise plane_refusal(statement, "plane-word", "D belongs to (~PLZC).", "Take it out.", "D")
+        raise plane_refusal(
+            statement, "plane-word", "D is allowed only with (~PLZC).", ("Remove it from the program."), "D"
+        )
     if abs(mill.y) > _SAME:
-        text = f"D comes where Y is {state.modal.length_text(mill.y)}: it would move Y."
-        raise plane_refusal(statement, "plane-d-late", text, "Write it where Y is 0.", "D")
+        text = f"D is programmed where Y is {state.modal.length_text(mill.y)}, so it would move Y."
+        raise plane_refusal(statement, "plane-d-late", text, "Write D where Y is 0.", "D")
     diameter = plane_length(state, statement, "D", 0.0)
     if diameter <= 0.0:
-        raise plane_refusal(statement, "plane-diameter", "D must be a diameter over 0.", "Correct it.", "D")
+        raise plane_refusal(
+            statement, "plane-diameter", "D must be a diameter greater than 0.", ("Correct the value."), "D"
+        )
     state.adopt(state.modal._replace(mill=mill._replace(frame=replace(mill.frame, diameter=diameter))))
 
 

@@ -34,12 +34,12 @@ def refuse_too_large(program: Program, inputs: Callable[[str], bool]) -> Diagnos
 
 
 def _refusal(count: Count) -> Diagnostic | None:
-    hint = "Lower the counts of the loops."
+    hint = "Reduce the loop counts."
     if count.blocks > MOST_BLOCKS:
-        text = f"The program makes {_written(count.blocks)} blocks; {MOST_BLOCKS:,} are the most."
+        text = f"The program makes {_written(count.blocks)} blocks; the maximum is {MOST_BLOCKS:,}."
         return refusal(count.worst or 1, 0, "too-many-blocks", text, hint)
     if count.lines > MOST_LINES:
-        text = f"The program executes {_written(count.lines)} lines; {MOST_LINES:,} are the most."
+        text = f"The program executes {_written(count.lines)} lines; the maximum is {MOST_LINES:,}."
         return refusal(count.worst or 1, 0, "too-many-lines", text, hint)
     return None
 

@@ -31,31 +31,45 @@ def contour_moves(state: State, statement: Statement, lines: Sequence[Statement]
     left = length(state, statement, "U")
     contour = read_contour(state, statement, lines)
     if len(contour) > _MOST_ELEMENTS:
-        text = f"The contour has {len(contour):,} lines and arcs; {_MOST_ELEMENTS:,} are the most."
-        raise statement.refuse("G", "cycle-contour-long", text, "Run it with fewer, longer moves.")
+        text = f"The contour has {len(contour):,} lines and arcs; the maximum is {_MOST_ELEMENTS:,}."
+        raise statement.refuse(
+            "G", "cycle-contour-long", text, ("Program the contour with fewer, longer moves.")
+        )
     view = _view(state, statement, contour)
     try:
         area = Area(view.from_start(contour), left)
     except TrimError:
-        text = f"{name(statement)} finds no unbroken way along the contour at the distance U."
-        raise statement.refuse("U", "cycle-no-way", text, "Lower U, or open the narrow place.") from None
+        text = f"{name(statement)} finds no continuous path along the contour at the distance U."
+        raise statement.refuse(
+            "U", "cycle-no-way", text, ("Lower U, or widen the narrow part of the contour.")
+        ) from None
     rougher = Rougher(area, state.modal.rapid_rate, LIFT)
     if cut is not None:
         _passes(state, statement, rougher, area, cut, len(contour))
     try:
         rougher.finish(backwards=view.backwards)
     except StartNearError:
-        text = "On the way from the start point to the contour and back the tool comes nearer to it than U."
+        text = (
+            "On the path from the start point to the contour and back, the tool comes closer to "
+            "the contour than U."
+        )
         hint = "Move the start point away from the contour."
         if _falls_at_once(view.from_start(contour)[0]):
             hint = (
-                "The contour falls from its first point: begin it with a way up the face from its lowest X."
+                "The contour falls from its first point; start it with a move up the face from its lowest X."
             )
         raise statement.refuse("G", "cycle-start-near", text, hint) from None
     if area.turns_back:
-        text = "The contour runs back along Z: behind that edge the pass along it cuts all that is there."
+        text = (
+            "The contour runs back along Z, so the pass along the contour cuts all the material "
+            "in this undercut."
+        )
         state.log.warn(
-            statement.line, statement.code_column, "cycle-undercut", text, "Look whether the tool fits."
+            statement.line,
+            statement.code_column,
+            "cycle-undercut",
+            text,
+            ("Check whether the tool fits into the undercut."),
         )
     return [view.placed(move) for move in rougher.moves]
 
@@ -70,19 +84,25 @@ def _passes(
     state: State, statement: Statement, rougher: Rougher, area: Area, cut: float, elements: int
 ) -> None:
     if area.deepest <= 0:
-        text = "The contour leaves nothing to cut between it and the start point."
+        text = "The contour leaves no material to cut between itself and the start point."
         raise statement.refuse("G", "cycle-nothing", text, "Start farther from the contour in X.")
     count = ceil(area.deepest / cut - _WHOLE)
     check_count(statement, "I", count, "passes")
     if count * elements > _MOST_LOOKS:
-        text = f"{count:,} passes beside a contour of {elements:,} lines and arcs are too many to work out."
-        raise statement.refuse("I", "cycle-passes", text, "Raise I, or describe the contour in fewer moves.")
+        text = f"{count:,} passes along a contour of {elements:,} lines and arcs are too many to calculate."
+        raise statement.refuse(
+            "I", "cycle-passes", text, ("Raise I, or program the contour with fewer moves.")
+        )
     for k in range(1, count + 1):
         rougher.cut(area.deepest * k / count)
     if rougher.plunged:
-        text = "The contour rises and falls again: the tool plunges into the material behind the rise."
+        text = "The contour rises and falls again, so the tool plunges into the material after the rise."
         state.log.warn(
-            statement.line, statement.code_column, "cycle-plunge", text, "Look whether the tool can do so."
+            statement.line,
+            statement.code_column,
+            "cycle-plunge",
+            text,
+            ("Check whether the tool can plunge into the material."),
         )
 
 
@@ -92,10 +112,15 @@ def _view(state: State, statement: Statement, contour: list[Element]) -> Contour
     for axis, letter in ((0, "X"), (1, "Z")):
         to_first, to_last = first[axis] - start[axis], last[axis] - start[axis]
         if to_first * to_last < 0:
-            text = f"The start point lies between the ends of the contour in {letter}, not outside of both."
-            raise statement.refuse("G", "cycle-quadrant", text, "Move the start point beyond both ends.")
+            text = f"The start point is between the ends of the contour in {letter}, not outside both."
+            raise statement.refuse(
+                "G", "cycle-quadrant", text, ("Move the start point beyond both ends of the contour.")
+            )
         if to_first == to_last == 0:
-            text = f"Both ends of the contour have the {letter} of the start point: there is no area to cut."
+            text = (
+                f"Both ends of the contour have the same {letter} as the start point, so the contour "
+                "encloses no area to cut."
+            )
             raise statement.refuse("G", "cycle-nothing", text, "Move the start point away from the contour.")
     return view_from(start, first, last)
 
@@ -111,8 +136,10 @@ def box_moves(state: State, statement: Statement) -> list[Move]:
     towards = 1.0 if x > state.x else -1.0
     depth = abs(x - state.x) - left
     if depth <= 0:
-        text = f"{statement.words['U'].text} leaves nothing of the box to cut."
-        raise statement.refuse("U", "cycle-nothing", text, "U is less than the way from the start to X.")
+        text = f"{statement.words['U'].text} leaves no material in the box to cut."
+        raise statement.refuse(
+            "U", "cycle-nothing", text, ("U must be less than the distance from the start point to X.")
+        )
     count = ceil(depth / cut - _WHOLE)
     check_count(statement, "I", count, "passes")
     rapid = state.modal.rapid_rate
@@ -128,6 +155,6 @@ def _corner(state: State, statement: Statement, letter: str, start: float, offse
     """X or Z of the corner opposite to the start."""
     end = length(state, statement, letter) + (offset if state.absolute else start)
     if end == start:
-        text = f"The box has no size along {letter}: its corner lies at the start point."
+        text = f"The box has no size along {letter}: its corner is at the start point."
         raise statement.refuse(letter, "cycle-nothing", text, f"Correct {letter} or the start point.")
     return end

@@ -30,9 +30,9 @@ def spindle_modes(state: State, statement: Statement) -> None:
         state.adopt(state.modal._replace(css_max=_limit(state, statement, 77)))
     modal = state.modal
     if modal.css_max is not None and modal.css_min > modal.css_max:
-        message = f"G76 ({modal.css_min:g} rpm) is over G77 ({modal.css_max:g} rpm)."
+        message = f"G76 ({modal.css_min:g} rpm) is higher than G77 ({modal.css_max:g} rpm)."
         state.adopt(state.modal._replace(css_min=modal.css_max))
-        raise statement.refuse("S", "speed-limits", message, "Correct one of them.")
+        raise statement.refuse("S", "speed-limits", message, "Correct G76 or G77.")
 
 
 def _limit(state: State, statement: Statement, code: int) -> float:

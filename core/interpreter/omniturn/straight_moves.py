@@ -103,15 +103,17 @@ def check_tool(state: State, line: int, x: float | None, z: float | None) -> Non
     tool_line, state.tool_line = state.tool_line, 0
     if tool_line and (x is None or z is None):
         where = f"the T on line {tool_line}" if tool_line > 0 else "the T"
-        text = f"The first move after {where} lacks {'X' if x is None else 'Z'}."
-        raise program_error(line, 0, "tool-first-move", text, "Write both X and Z, or G92 before it.")
+        text = f"The first move after {where} has no {('X' if x is None else 'Z')}."
+        raise program_error(
+            line, 0, "tool-first-move", text, ("Write both X and Z, or write G92 before this move.")
+        )
 
 
 def warn_of_title_rapid(state: State, line: int) -> None:
     """``G00 (TITLE)`` switched the rapid on, and here a move follows that would have cut."""
     if state.title_rapid and state.modal.rapid:
-        text = f"This move is a rapid because of the G00 beside the comment on line {state.title_rapid}."
-        state.log.warn(line, 0, "title-rapid", text, "Write G01 if it is meant to cut.")
+        text = f"This move is a rapid because of the G00 next to the comment on line {state.title_rapid}."
+        state.log.warn(line, 0, "title-rapid", text, ("Write G01 if the move is meant to cut."))
     state.title_rapid = 0
 
 
@@ -131,7 +133,7 @@ def mill_step(state: State, line: int, word: Word) -> float:
     step = units.METRIC_STEP if state.modal.metric else _COARSE[state.modal.coarse]
     value, finer = _nearest(step, word.value or 0.0)
     if finer:
-        text = f"{word.text} is finer than the step; {value:.5f} is used."
+        text = f"{word.text} is finer than the resolution; {value:.5f} is used."
         state.log.warn(line, word.column, "finer-than-step", text, "Round the number.")
     return value * state.scale_z
 
@@ -176,7 +178,7 @@ def _nearest(step: float, value: float) -> tuple[float, bool]:
 def _warn_of_finer(state: State, line: int, word: Word, value: float) -> None:
     name = "mm" if state.modal.metric else "in"
     step = f"{step_of(state, word.letter):.5f}".rstrip("0")
-    text = f"{word.text} is finer than the step of {step} {name}; {value:.5f} is used."
+    text = f"{word.text} is finer than the resolution of {step} {name}; {value:.5f} is used."
     state.log.warn(line, word.column, "finer-than-step", text, "Round the number.")
 
 

@@ -81,20 +81,20 @@ def read_thread(state: State, statement: Statement) -> Thread:
     )
     if along * (z1 - state.z) <= depth * tan(angle) + _NEAR:
         text = "The flank angle moves the start of the last pass beyond its end."
-        raise statement.refuse("C", "thread-angle", text, "Start farther away from Z.")
+        raise statement.refuse("C", "thread-angle", text, "Start farther away from the end point Z.")
     return thread
 
 
 def _lead(state: State, statement: Statement) -> float:
     lead, feed = statement.value("K"), statement.words.get("F")
     if lead is None and feed is not None:
-        text = f"K is missing, and {feed.text} is there."
-        raise statement.refuse("F", "thread-lead-missing", text, f"Was K{feed.text[1:]} meant?")
-    coarser = ("G35 allows more.", "G35F2 allows more.", "Correct K.")[state.modal.coarse]
+        text = f"K is missing, but the line has {feed.text}."
+        raise statement.refuse("F", "thread-lead-missing", text, f"Did you mean K{feed.text[1:]}?")
+    coarser = ("Use G35 for a larger lead.", "Use G35F2 for a larger lead.", "Correct K.")[state.modal.coarse]
     value = checked(state, statement, "K", lead and lead * state.scale_z, more=coarser) or 0.0
     if value < _LEAST_LEAD:
         least = state.modal.feed_text(_LEAST_LEAD, per_rev=True)
-        text = f"{statement.words['K'].text}: the least lead is {least}."
+        text = f"{statement.words['K'].text}: the minimum lead is {least}."
         raise statement.refuse("K", "thread-lead-range", text, "Correct K.")
     return value
 
@@ -106,7 +106,7 @@ def _check_spindle(state: State, statement: Statement, lead: float) -> None:
     if speed > most * _ROUNDING:
         shown = modal.feed_text(speed, per_rev=False)
         limit = modal.feed_text(most, per_rev=False)
-        text = f"At {rpm:.0f} rpm this lead is {shown}; {limit} is the most."
+        text = f"At {rpm:.0f} rpm this lead needs a feed of {shown}; the maximum is {limit}."
         raise statement.refuse("K", "feed-over-speed", text, "Lower S.")
 
 
@@ -115,8 +115,8 @@ def _way(state: State, statement: Statement) -> tuple[float, float]:
     z = checked(state, statement, "Z", on_step(state, statement, "Z")) or 0.0
     z1 = (z if state.absolute else state.pz + z) + state.dz
     if abs(z1 - state.z) <= _NEAR:
-        text = "The thread ends at the Z where it starts."
-        raise statement.refuse("Z", "thread-length", text, "Correct Z, or move away before the G33.")
+        text = "The thread ends at the same Z where it starts."
+        raise statement.refuse("Z", "thread-length", text, "Correct Z, or move away before G33.")
     return copysign(1.0, z1 - state.z), z1
 
 
@@ -124,15 +124,13 @@ def _depth(state: State, statement: Statement) -> tuple[float, float]:
     """Depth of the last pass below S, and the sign of X away from the work."""
     x = checked(state, statement, "X", on_step(state, statement, "X")) or 0.0
     x1 = (x if state.absolute else state.px + x) + state.dx
-    here = f"the tool stands at radius {state.modal.length_text(state.x)}"
+    here = f"the tool is at radius {state.modal.length_text(state.x)}"
     if abs(x1 - state.x) <= _NEAR:
-        text = f"{statement.words['X'].text} leaves nothing to cut: {here}."
+        text = f"{statement.words['X'].text} leaves no material to cut: {here}."
         raise statement.refuse("X", "thread-side", text, "Start at the depth of the first pass.")
     if x1 * state.x < 0:
-        text = f"{statement.words['X'].text} lies on the other side of the spindle axis: {here}."
-        raise statement.refuse(
-            "X", "thread-side", text, "Look at the sign of X and at where the tool starts."
-        )
+        text = f"{statement.words['X'].text} is on the other side of the spindle axis: {here}."
+        raise statement.refuse("X", "thread-side", text, "Check the sign of X and where the tool starts.")
     return abs(x1 - state.x), copysign(1.0, state.x - x1)
 
 
@@ -143,7 +141,7 @@ def _count(statement: Statement, depth: float, first: float, lead: float) -> int
         raise statement.refuse("I", "thread-depth", text, "Correct I, the depth of the first pass, or K.")
     count = max(ceil((depth / first + 1.0) ** 2 - _CLICK), 1)
     if count > MOST_PASSES:
-        text = f"The thread would take {count:,} passes; {MOST_PASSES:,} are the most."
+        text = f"The thread would take {count:,} passes; the maximum is {MOST_PASSES:,}."
         raise statement.refuse("I", "thread-passes", text, "Correct I.")
     return count
 
@@ -231,15 +229,15 @@ class _Cutter:
 def _warn(state: State, statement: Statement, thread: Thread) -> None:
     if thread.passes > MANY_PASSES:
         text = f"The thread takes {thread.passes} passes."
-        hint = "A larger I takes fewer; look at I and at the X where the tool starts."
+        hint = "Check I (a larger I takes fewer passes) and the X where the tool starts."
         state.log.warn(statement.line, statement.code_column, "thread-passes", text, hint)
     speed = thread.lead * abs(state.rpm_at(state.x)) / 60
     needed = speed**2 / (2 * state.setup.limits.slide_accel)
     run_up = _run_up(thread)
     if run_up < needed:
         text = (
-            f"The run-up is {state.modal.length_text(max(run_up, 0.0))}; the slide needs "
-            f"{state.modal.length_text(needed)} to reach the speed of the lead."
+            f"The run-up is {state.modal.length_text(max(run_up, 0.0))}, but the Z axis needs "
+            f"{state.modal.length_text(needed)} to reach the speed for the lead."
         )
         state.log.warn(
             statement.line, statement.code_column, "thread-run-up", text, "Start farther away, or lower S."

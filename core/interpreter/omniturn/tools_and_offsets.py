@@ -27,11 +27,11 @@ def _offset(state: State, line: int, word: Word, use: ToolUse) -> ToolOffset:
 
 def missing_offset(tools: Sequence[int], line: int, column: int) -> Diagnostic:
     """The warning for tools whose offset nobody has set."""
-    names, hint = ", ".join(f"T{number}" for number in tools), "Set their offsets."
-    text = f"{names} have no offset; 0 is used, and the machine will refuse to start."
+    names, hint = ", ".join(f"T{number}" for number in tools), "Set the tool offsets."
+    text = f"{names} have no offset; 0 is used, and the machine will not start."
     if len(tools) == 1:
-        hint = "Set the tool's offset."
-        text = f"Tool {tools[0]} has no offset; 0 is used, and the machine will refuse to start."
+        hint = "Set the tool offset."
+        text = f"Tool {tools[0]} has no offset, so 0 is used and the machine will not start."
     return Diagnostic(line, column, Severity.WARNING, "tool-offset-missing", text, hint)
 
 
@@ -40,8 +40,8 @@ def tool_change(state: State, statement: Statement, word: Word, use: ToolUse) ->
     modal = state.modal
     number = int(word.value or 0)
     if modal.css and number:
-        text = "G96 is active at a tool change: the spindle drive has to follow every jump of X."
-        state.log.warn(statement.line, word.column, "tool-under-css", text, "Put G97 before the T.")
+        text = "G96 is active at a tool change, so the spindle drive must follow every jump of X."
+        state.log.warn(statement.line, word.column, "tool-under-css", text, "Write G97 before T.")
     offset = _offset(state, statement.line, word, use)
     if number:
         state.pending_shift.update(dict.fromkeys(state.pending_shift, True))
@@ -86,7 +86,7 @@ def preset(state: State, statement: Statement) -> Iterator[Block]:
     """G92: the current point gets these coordinates. Raises ProgramError without any."""
     check_together(statement, statement.entry)
     if {"X", "Z", "F"} <= statement.words.keys():
-        text = "G92 presets the position here; no thread is cut. A thread is G33."
+        text = "G92 presets the position here and does not cut a thread. Threads are cut with G33."
         state.log.warn(statement.line, statement.column("F"), "preset-thread", text, "Write G33XnZnInKn.")
     x, z = on_step(state, statement, "X"), on_step(state, statement, "Z")
     x, z = state.x if x is None else x, state.z if z is None else z
@@ -101,5 +101,5 @@ def warn_of_idle_shifts(state: State) -> None:
     """At the end: a G10 that no T followed did nothing."""
     for line, taken in state.pending_shift.items():
         if not taken:
-            text = "No T follows this G10, so the work shift never takes effect."
-            state.log.warn(line, 0, "shift-without-tool", text, "Put it before a T.")
+            text = "No T follows this G10, so its work shift never takes effect."
+            state.log.warn(line, 0, "shift-without-tool", text, "Move G10 before a T.")

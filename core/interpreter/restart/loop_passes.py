@@ -36,12 +36,12 @@ class Visits:
     def why_not(self, line: int, number: int) -> str:
         """Why there is no such visit; empty when there is."""
         if not self.blocks:
-            return f"The program never comes to line {line}."
+            return f"The program never reaches line {line}."
         if len(self.blocks) > MOST:
-            return f"Line {line} is run more than {MOST:,} times: choose the line that begins the loop."
+            return f"Line {line} runs more than {MOST:,} times; choose the line that begins the loop."
         if 1 <= number <= len(self.blocks):
             return ""
-        return f"Line {line} is run {len(self.blocks)} times; there is no pass {number}."
+        return f"Line {line} runs {len(self.blocks)} times, so pass {number} does not exist."
 
     def anchor(self, number: int) -> tuple[int, int]:
         """The line of the main program, outside of all loops, in which the visit comes; its number there."""

@@ -69,7 +69,7 @@ def begin_on_mill(found: RestartPoint, now: MachineNow, choices: Choices, machin
 
 def why_no_way(machine: Kinematics) -> str:
     """Why no way can be planned on this machine; empty where one can."""
-    return "" if all(slide.high < inf for slide in machine.slides) else "the slides have no software limits"
+    return "" if all(slide.high < inf for slide in machine.slides) else ("the axes have no software limits")
 
 
 def goal_of(found: RestartPoint, now: MachineNow, machine: Kinematics) -> dict[str, float]:

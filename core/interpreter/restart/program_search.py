@@ -117,32 +117,37 @@ class ProgramSearch:
     def _search(self, line: int, visit: int, broken: Interruption | None) -> RestartPoint | str:
         lines = self._reading.source.lines
         if not 1 <= line <= len(lines):
-            return f"There is no line {line}; the program has {len(lines)}."
+            return f"Line {line} does not exist; the last line of the program is {len(lines)}."
         visits = self._run.visits.get(line, [])
         if not visits:
             return self._why_never(line)
         number = visit or max(1, sum(made < broken.block for made in visits) if broken is not None else 1)
         if number > len(visits):
-            return f"The run comes to line {line} {len(visits)} times only."
+            return f"The program reaches line {line} only {len(visits)} times."
         here = self._to(line, number, 0.0, broken)
         other = self._to(line, number, _ASIDE, None)
         if here.failed or here.point is None:
-            return f"Line {line} is no place to go on: {here.waits or 'the program has errors before it'}."
+            return (
+                f"The program cannot resume at line {line}: "
+                f"{here.waits or 'the program has errors before this line'}."
+            )
         at = self._places(here.point, other.point)
         if isinstance(at, str):
-            return f"Line {line} is no place to go on: {at}"
+            return f"The program cannot resume at line {line}: {at}"
         return self._good(line, here, at, LineVisit(number, len(visits)), broken)
 
     def _why_never(self, line: int) -> str:
         ended = self._run.ended
         if ended and line > ended:
             return f"The program ends on line {ended}, before line {line}."
-        return f"Line {line} is empty, a comment, part of the block before it, or the run never comes to it."
+        return (
+            f"Line {line} is empty, a comment or part of the previous block, or the program never reaches it."
+        )
 
     def _places(self, here: Checkpoint, other: Checkpoint | None) -> tuple[float | None, ...] | str:
         """Machine positions of all axes, None for one that has not moved; or why they are not known."""
         if other is None:
-            return "what comes before it depends on where the slides stood at Cycle Start."
+            return "the program before this line depends on the axis positions at Cycle Start."
         found: list[float | None] = []
         for place, start in enumerate(self._setup.start):
             a, b = _at(here)[place], _at(other)[place]
@@ -152,9 +157,9 @@ class ProgramSearch:
                 found.append(None)
             else:
                 axis = self._axes[place]
-                return f"where {axis} stands there depends on where it stood at Cycle Start."
+                return f"the position of {axis} at this line depends on its position at Cycle Start."
         if all(each is None for each in found):
-            return "nothing has moved before it; start the program from its first line."
+            return "no axis has moved before this line; start the program from its first line."
         return tuple(found)
 
     @property
@@ -175,14 +180,16 @@ class ProgramSearch:
         if self._setup.kinematics is None:
             free = (place for place, each in zip("xzc", at, strict=True) if each is None and place != "c")
             if lost := next(free, ""):
-                return f"Line {line} is no place to go on: {lost.upper()} has not been positioned before it."
+                return (
+                    f"The program cannot resume at line {line}: {lost.upper()} is not positioned before it."
+                )
             own_c = at[2] is not None and not self._setup.limits.spindle_is_c
             turned = point._replace(at=_at(point)) if own_c else point
             return found_on_lathe(line, turned, self.cut, visit, broken)
         if here.left_out and not here.above(point):
             first, last = here.left_out
             which = f"line {first}" if first == last else f"lines {first} to {last}"
-            return f"Line {line} begins in metal that {which} would have had to cut."
+            return f"Line {line} begins in material that {which} should have cut."
         clear = Retract(ToolPlace.CLEAR)
         return RestartPoint(line, point, clear, None, visit, left_out=here.left_out or (0, 0), axes=at)
 

@@ -37,7 +37,7 @@ class RestartLines:
     def why_not(self, line: int) -> str:
         """Why no program can go on from this line; empty when its text has nothing against it."""
         if not 1 <= line <= self.count:
-            return f"There is no line {line}; the program has {self.count}."
+            return f"Line {line} does not exist; the last line of the program is {self.count}."
         for lines in self.ranges:
             if lines.first <= line <= lines.last:
                 return f"Line {line} {lines.why}"
@@ -92,19 +92,19 @@ def _structured(program: Program) -> Iterator[LineRange]:
     """Contours, and what no call can reach: their first lines are good, what is inside is not."""
     structure = program.structure
     for start, end in structure.contours.items():
-        yield LineRange(start + 2, end + 1, f"describes the contour of line {start + 1}.")
+        yield LineRange(start + 2, end + 1, f"belongs to the contour of line {start + 1}.")
     spans = sorted(_subroutines(program))
     at = structure.main_end + 1
     for start, end, _number in (*spans, (len(program.ready) + 1, 0, 0)):
         if at < start:
-            yield LineRange(at, start - 1, "stands after the end of the program.")
+            yield LineRange(at, start - 1, "is after the end of the program.")
         at = max(at, end + 1)
 
 
 def _repeated(program: Program) -> Iterator[LineRange]:
     """Loops behind their LS, and subroutines."""
     for start, end in program.structure.loop_ends.items():
-        yield LineRange(start + 2, end + 1, f"is inside the loop of lines {start + 1} to {end + 1}.")
+        yield LineRange(start + 2, end + 1, (f"is inside the loop from line {start + 1} to line {end + 1}."))
     for start, end, number in _subroutines(program):
         yield LineRange(start, end, f"is in subroutine {number}.")
 
@@ -137,7 +137,7 @@ def _open(steps: ReadyLines) -> Iterator[LineRange]:
         if not nose and _NOSE_ON.intersection(step.modal):
             nose = number
         elif nose and (_NOSE_OFF in step.modal or "T" in step.words):
-            why = f"is under the nose compensation that begins on line {nose}."
+            why = f"uses the nose compensation that begins on line {nose}."
             yield LineRange(nose + 1, number, why)
             nose = 0
 
@@ -151,4 +151,4 @@ def _plane(step: Statement, number: int, begun: int) -> tuple[int, int]:
 
 
 def _corner(begun: int, ends: int) -> LineRange:
-    return LineRange(begun + 1, ends, f"is in the corner of line {begun}.")
+    return LineRange(begun + 1, ends, f"is part of the corner of line {begun}.")

@@ -103,7 +103,7 @@ class StateRebuild:
         for walk in walks:
             lost, has_moved = self._to_visit(walk, line, nth)
             if lost:
-                return f"Line {line} is no place to go on: {lost}"
+                return f"The program cannot resume at line {line}: {lost}"
             moved = moved or has_moved
         walk, known = walks[0], self._other is None or _same_state(*walks)
         why = self._why_not(line, walk, known=known, moved=moved)
@@ -122,7 +122,7 @@ class StateRebuild:
                 moved = moved or block.action is None
                 if isinstance(block.action, AskInput):
                     asks = block.action.terminal
-                    return f"what input {asks} answered on line {block.line} is not known.", moved
+                    return f"the state of input {asks} on line {block.line} is not known.", moved
         return "", moved
 
     def _count_block(self) -> None:
@@ -188,7 +188,7 @@ class StateRebuild:
             elif isinstance(block.action, ProgramEnd):
                 self._ended = block.line
             elif isinstance(block.action, AskInput) and (self._walk.called or block.line != asked):
-                self._lost = f"what input {block.action.terminal} answered on line {block.line} is not known."
+                self._lost = f"the state of input {block.action.terminal} on line {block.line} is not known."
         if self._other is not None:
             for _ in self._other.before(line):
                 pass
@@ -196,7 +196,7 @@ class StateRebuild:
     def _ask(self) -> None:
         """From here on the second pass is the one in which the input of this line answers otherwise."""
         if self._other is not None:
-            self._lost = f"what the input of line {self._at} answered is not known."
+            self._lost = f"the state of the input on line {self._at} is not known."
             return
         begin = Begin(self._walk.checkpoint, self._at)
         self._asked = self._at
@@ -208,15 +208,15 @@ class StateRebuild:
         reasons = (
             (walk.failed, f"The program has errors before line {line}."),
             (self._ended, f"The program ends on line {self._ended}, before line {line}."),
-            (self._lost, f"Line {line} is no place to go on: {self._lost}"),
-            (walk.holds_moves, f"Line {line} is under nose compensation or in a corner."),
-            (walk.checkpoint.modal.mill, f"Line {line} is in plane switching."),
-            (not known and self._asked, f"Line {line} depends on the input that line {self._asked} asks."),
+            (self._lost, f"The program cannot resume at line {line}: {self._lost}"),
+            (walk.holds_moves, f"Line {line} uses nose compensation or is part of a corner."),
+            (walk.checkpoint.modal.mill, f"Plane switching is active at line {line}."),
+            (not known and self._asked, (f"Line {line} depends on the input that line {self._asked} reads.")),
             (
                 not known and not moved,
-                f"Nothing has moved before line {line}: start the program from its first line.",
+                f"No axis has moved before line {line}; start the program from its first line.",
             ),
-            (not known, f"Where the slides stand at line {line} depends on where they stood at Cycle Start."),
+            (not known, (f"The axis positions at line {line} depend on the axis positions at Cycle Start.")),
         )
         return next((why for wrong, why in reasons if wrong), "")
 
@@ -232,14 +232,14 @@ def found_on_lathe(
     if point.blocks > done:
         first, last = _left_out(cut, done, point.blocks)
         which = f"line {first}" if first == last else f"lines {first} to {last}"
-        return f"Line {line} begins in metal that {which} would have had to cut."
+        return f"Line {line} begins in material that {which} should have cut."
     how = _HOW.get(back.tool_place, "")
-    return f"Line {line} begins in the work, and no sure way leads there. {how}".strip()
+    return f"Line {line} begins inside the part, and no safe path leads there. {how}".strip()
 
 
 _HOW = {
-    ToolPlace.TAP: "A tap stands in its thread there.",
-    ToolPlace.THREAD: "A threading tool stands in its thread there.",
+    ToolPlace.TAP: "The tap is inside its thread at that point.",
+    ToolPlace.THREAD: "The threading tool is inside its thread at that point.",
 }
 
 

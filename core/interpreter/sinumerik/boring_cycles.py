@@ -17,10 +17,12 @@ def _turning(cycle: Cycle) -> list[Step]:
     """The spindle in the direction SDIR. Raises ProgramError."""
     direction = cycle.number("SDIR")
     if direction not in {3.0, 4.0}:
-        raise cycle.wrong("SDIR", "is neither 3 nor 4", "Write the direction of the spindle.", NO_DIRECTION)
+        raise cycle.wrong("SDIR", "must be 3 or 4", "Enter the spindle direction.", NO_DIRECTION)
     modal, sign = cycle.state.modal, 1 if direction == 3.0 else -1
     if not modal.rpm or modal.css:
-        raise cycle.refused("speed-missing", f"{cycle.line.call} needs S in rpm.", "Write G97 S before it.")
+        raise cycle.refused(
+            "speed-missing", f"{cycle.line.call} needs S in rpm.", ("Write G97 with S before this block.")
+        )
     if modal.spindle == sign:
         return []
     return [Step(0.0, 0.0, action=SpindleRun(sign * modal.rpm), spindle=sign)]
@@ -30,13 +32,13 @@ def lift_off(cycle: Cycle) -> Iterator[Block]:
     """CYCLE86: at the bottom the spindle is held at POSS, the edge lifted by RPA and RPAP, and rapid out."""
     hole, state = hole_of(cycle), cycle.state
     demand_position(state, lambda text, hint: cycle.refused("spindle-position", text, hint))
-    cycle.zero_only("RPO", "this lathe has no axis Y")
+    cycle.zero_only("RPO", "this lathe has no Y axis")
     angle = cycle.number("POSS")
     if not 0.0 <= angle < 360.0:
-        raise cycle.wrong("POSS", "is an angle of 0 to under 360", "Correct it.")
+        raise cycle.wrong("POSS", ("must be an angle from 0 to less than 360 degrees"), "Correct the value.")
     aside, up = cycle.length("RPA"), cycle.length("RPAP")
     if up * hole.down > 0.0:
-        raise cycle.wrong("RPAP", "leads on into the hole", "Correct its sign.")
+        raise cycle.wrong("RPAP", ("would move the tool deeper into the hole"), "Correct the sign of RPAP.")
     x = cycle.x
     steps = [
         *approach(cycle, hole), *_turning(cycle), Step(x, hole.bottom, needed_feed(cycle)),

@@ -42,7 +42,9 @@ class Corner:
 
     def refuse(self, code: str, why: str, hint: str) -> ProgramError:
         """An error at the corner's word."""
-        return self.statement.refuse(self.word, code, f"{self.word.text} cannot make a corner: {why}.", hint)
+        return self.statement.refuse(
+            self.word, code, (f"Corner {self.word.text} is not possible: {why}."), hint
+        )
 
 
 def corner_of(state: State, statement: Statement, block: Block) -> Corner | None:
@@ -50,13 +52,13 @@ def corner_of(state: State, statement: Statement, block: Block) -> Corner | None
     word = statement.corner
     if word is None:
         return _modal_corner(state, statement, block)
-    size = positive(statement, word, state.length(statement, word), "the size of a corner")
+    size = positive(statement, word, state.length(statement, word), "the corner size")
     corner = Corner(statement, word, size, _feed(state, statement))
     if block.kind not in _CUT - {Kind.RAPID} or not _moves(block):
-        hint = "CHF, CHR and RND take G1, G2 and G3."
-        raise corner.refuse("corner-next", "the block is no line or arc", hint)
+        hint = "Use CHF, CHR and RND only with G1, G2 and G3."
+        raise corner.refuse("corner-next", ("the block is not a line or an arc"), hint)
     if state.plane != 18:
-        raise corner.refuse("corner-plane", "corners of X and Z need G18", "Write G18 before it.")
+        raise corner.refuse("corner-plane", "corners in X and Z need G18", ("Write G18 before this block."))
     return corner
 
 
@@ -116,7 +118,9 @@ class Corners:
         if held is not None and held.corner.modal:
             yield from (held.block, *held.between)
         elif held is not None:
-            raise held.corner.refuse("corner-next", "no move follows", "A corner needs two moves in a row.")
+            raise held.corner.refuse(
+                "corner-next", "no move follows", ("Program two consecutive moves for the corner.")
+            )
 
     def _cut(self, held: _Held, after: Block, corner: Corner | None) -> Iterator[Block]:
         if held.corner.modal and (after.kind not in _CUT - {Kind.RAPID} or not _moves(after)):
@@ -124,8 +128,8 @@ class Corners:
             yield from self.take(after, corner)
             return
         if after.kind not in _CUT or not _moves(after):
-            why = f"the next move, on line {after.line}, is no line or arc of X and Z"
-            raise held.corner.refuse("corner-next", why, "A corner needs two moves in a row.")
+            why = f"the next move, on line {after.line}, is not a line or an arc in X and Z"
+            raise held.corner.refuse("corner-next", why, ("Program two consecutive moves for the corner."))
         block, (dx, dz) = held.block, _shift(held.block, after)
         first, last = element_of(block), element_of(_moved(after, dx, dz))
         try:
@@ -135,9 +139,11 @@ class Corners:
                 yield from (block, *held.between)
                 yield from self.take(after, corner)
                 return
-            text = f"lines {block.line} and {after.line} run in one direction: there is no corner to cut."
+            text = f"lines {block.line} and {after.line} run in the same direction and form no corner."
             self._log.add(
-                held.corner.statement.warning(held.corner.word, "corner-straight", text, "Take it out.")
+                held.corner.statement.warning(
+                    held.corner.word, "corner-straight", text, ("Remove it from the program.")
+                )
             )
             yield from (block, *held.between)
             yield from self.take(after, corner)
@@ -145,7 +151,7 @@ class Corners:
         except CornerTooLargeError as problem:
             raise self._too_large(held, after, problem) from None
         except CornerError as problem:
-            raise held.corner.refuse("corner-next", str(problem), "Give another end point.") from None
+            raise held.corner.refuse("corner-next", str(problem), "Program another end point.") from None
         yield along(self._state, block, cut)
         made = inserted(self._state, block, between)
         yield made if held.corner.feed is None else replace(made, feed=held.corner.feed)
@@ -163,8 +169,11 @@ class Corners:
     def _too_large(self, held: _Held, after: Block, problem: CornerTooLargeError) -> ProgramError:
         of = held.block if problem.first else after
         left = element_of(of).length
-        why = f"it takes {problem.needed:.4f} mm of the move on line {of.line}, which has {left:.4f} mm"
-        return held.corner.refuse("corner-too-large", why, "Make it smaller.")
+        why = (
+            f"it needs {problem.needed:.4f} mm of the move on line {of.line}, which is only "
+            f"{left:.4f} mm long"
+        )
+        return held.corner.refuse("corner-too-large", why, ("Use a smaller chamfer or radius."))
 
 
 def _moves(block: Block) -> bool:

@@ -59,13 +59,15 @@ def belonging(lines: Iterable[Line]) -> dict[int, tuple[int, ...]]:
             opened[-1][2].append(at)
         elif jump.steering is Steering.ELSE or jump.steering in _ENDS:
             if not opened or opened[-1][1].steering is not _ENDS.get(jump.steering):
-                text = f"{jump.steering} has nothing that it belongs to."
-                raise _refused(line, jump, NESTING, text, "Look at the beginning of the structure.")
+                text = f"{jump.steering} has no matching start."
+                raise _refused(line, jump, NESTING, text, ("Check the start of the structure."))
             places = (*opened.pop()[2], at)
             found.update(dict.fromkeys(places, places))
     if opened:
         line, jump, _ = opened[-1]
-        raise _refused(line, jump, NESTING, f"{jump.steering} has no end.", "Write its end behind it.")
+        raise _refused(
+            line, jump, NESTING, f"{jump.steering} has no matching end.", ("Add the matching end statement.")
+        )
     return found
 
 
@@ -85,8 +87,8 @@ def follow(line: Line, jump: Jump, state: State, program: Lines, at: int) -> int
         state.adopt(state.modal._replace(comment=_message(line, jump, state)))
     elif steering is Steering.ALARM and jump.condition is not None:
         number = _worth(line, jump, state, jump.condition)
-        text = f"the program raises its alarm {number:g}."
-        raise _refused(line, jump, "program-alarm", text, "Look at the lines before it for the reason.")
+        text = f"the program raises its own alarm {number:g}."
+        raise _refused(line, jump, "program-alarm", text, ("Check the blocks before this one for the cause."))
     elif (steering in _BEGINS or steering in _ENDS or steering is Steering.ELSE) and not jump.target:
         return _STEPS[steering](line, jump, state, program.partners()[at], program)
     return None
@@ -115,7 +117,7 @@ def _define(line: Line, jump: Jump, state: State) -> None:
             left = state.variables.fill(each.name, scope.elements(each.name)[0], each.values,
                                         lambda asked: _worth(line, jump, state, asked))  # fmt: skip
             if left:
-                told = f"{each.name} has {left} elements too few for this list."
+                told = f"{each.name} needs {left} more elements for this list."
                 raise _refused(line, jump, "array-values", told, "Shorten the list, or enlarge the array.")
 
 
@@ -123,8 +125,14 @@ def _sizes(line: Line, jump: Jump, state: State, each: Defined) -> tuple[int, ..
     """How many elements an array has in each dimension. Raises ProgramError for none, and for too many."""
     sizes = tuple(int(_worth(line, jump, state, size)) for size in each.sizes)
     if len(sizes) > MOST_DIMENSIONS or min(sizes, default=1) < 1 or prod(sizes) > LARGEST_ARRAY:
-        told = f"{each.name}{list(sizes)} is no array of 1 to {LARGEST_ARRAY:,} elements."
-        raise _refused(line, jump, FIRST_INDEX, told, f"Correct its sizes; {MOST_DIMENSIONS} are the most.")
+        told = f"{each.name}{list(sizes)} is not an array of 1 to {LARGEST_ARRAY:,} elements."
+        raise _refused(
+            line,
+            jump,
+            FIRST_INDEX,
+            told,
+            (f"Correct the array sizes; at most {MOST_DIMENSIONS} dimensions are allowed."),
+        )
     return sizes
 
 
@@ -208,8 +216,8 @@ _STEPS: dict[Steering, _Step] = {
 
 def _set(line: Line, jump: Jump, state: State, value: float) -> None:
     if not state.variables.keep(jump.name, value):
-        text = f"the name {jump.name} is not defined: no DEF has named it."
-        raise _refused(line, jump, NOT_DEFINED, text, f"Write DEF INT {jump.name} before it.")
+        text = f"the name {jump.name} is not defined with DEF."
+        raise _refused(line, jump, NOT_DEFINED, text, (f"Write DEF INT {jump.name} before this block."))
 
 
 def _variable(jump: Jump, state: State) -> float:
@@ -233,8 +241,8 @@ def _target(line: Line, jump: Jump, program: Lines, at: int) -> int:
         return program.lines.start
     place = find_label(jump.steering, jump.target, program, at)
     if place is None:
-        text = f"the label {jump.target} is not where {jump.steering} looks for it."
-        raise _refused(line, jump, NO_TARGET, text, "Correct the label, or the direction of the jump.")
+        text = f"label {jump.target} is not in the direction in which {jump.steering} searches."
+        raise _refused(line, jump, NO_TARGET, text, ("Correct the label or the direction of the jump."))
     return place
 
 

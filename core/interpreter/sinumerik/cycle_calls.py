@@ -56,14 +56,19 @@ def cycle_blocks(state: State, line: Line, flow: Flow) -> Iterator[Block]:
 def _contour(cycle: Cycle, flow: Flow) -> list[Element]:
     named = cycle.text("NPP")
     if not named:
-        hint = 'Write "NAME" of a subprogram, or "START:END" of two labels.'
-        raise cycle.wrong("NPP", "names no contour", hint, WRONG_CONTOUR)
+        hint = 'Write "NAME" for a subprogram, or "START:END" for two labels.'
+        raise cycle.wrong("NPP", "does not name a contour", hint, WRONG_CONTOUR)
     known = flow.routine(named)
     lines = contour_lines(named, flow.running, known)
     if lines is None:
         if ":" in named:
-            raise cycle.wrong("NPP", f"names labels that are not here: {named}", "Correct them.", 14080)
-        hint = f"Put {named}.spf beside the main program, or %_N_{named}_SPF into its file."
+            raise cycle.wrong(
+                "NPP", f"names labels that do not exist: {named}", ("Correct these entries."), 14080
+            )
+        hint = (
+            f"Put {named}.spf in the main program's folder, or add %_N_{named}_SPF to the main "
+            "program's file."
+        )
         raise cycle.wrong(
             "NPP", f"names the subprogram {named}, which does not exist", hint, "subprogram-missing"
         )

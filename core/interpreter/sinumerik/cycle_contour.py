@@ -77,7 +77,9 @@ class _Reader:
         for found in line.errors:
             raise ProgramError(found)
         if line.call or line.modal_call or (line.jump is not None and line.jump.steering not in _TAKEN):
-            raise _refused(line, "a contour holds moves alone, and this line calls or jumps")
+            raise _refused(
+                line, ("a contour can contain only moves, but this line contains a call or a jump")
+            )
         if line.jump is not None:
             return line.jump.steering is Steering.RETURN
         statement = statement_of(line)
@@ -96,12 +98,12 @@ class _Reader:
         groups = statement.g.keys() - _GROUPS
         if groups:
             word = statement.g[min(groups)]
-            raise _refused(statement.line, f"{word.text} cannot stand in a contour")
+            raise _refused(statement.line, f"{word.text} is not allowed in a contour")
         motion = statement.code(MOTION)
         if motion is not None and motion not in _MOTIONS:
-            raise _refused(statement.line, "a contour holds G0, G1, G2 and G3")
+            raise _refused(statement.line, "a contour can contain only G0, G1, G2 and G3")
         if "C" in statement.words or statement.frame_key is not None:
-            raise _refused(statement.line, "C and frames cannot stand in a contour")
+            raise _refused(statement.line, "C and frames are not allowed in a contour")
 
     def elements(self) -> list[Element]:
         """Everything behind the first move."""
@@ -111,4 +113,6 @@ class _Reader:
 
 
 def _refused(line: Line, why: str) -> ProgramError:
-    return ProgramError(fault(line.number, 1, WRONG_CONTOUR, line.block, f"{why}.", "Take it out."))
+    return ProgramError(
+        fault(line.number, 1, WRONG_CONTOUR, line.block, f"{why}.", ("Remove it from the program."))
+    )

@@ -67,23 +67,28 @@ class Cycle:
     def _by_name(self) -> dict[str, Argument]:
         names, arguments = CYCLES[self.line.call], self.line.arguments or ()
         if len(arguments) > len(names):
-            text = f"{self.line.call} takes {len(names)} parameters, and {len(arguments)} are handed over."
-            raise self._fault(arguments[len(names)].column, TOO_MANY, text, f"They are {', '.join(names)}.")
+            text = f"{self.line.call} accepts {len(names)} parameters, but the call passes {len(arguments)}."
+            raise self._fault(
+                arguments[len(names)].column,
+                TOO_MANY,
+                text,
+                (f"Use only these parameters: {', '.join(names)}."),
+            )
         return {name: each for name, each in zip(names, arguments, strict=False) if each.given}
 
     def _check(self) -> None:
         """Raises ProgramError where no cycle can run: the frame is turned, or compensation is on."""
         if not self.state.programmed.plain:
-            text = f"{self.line.call} cannot run in a frame that is turned, scaled or mirrored."
-            raise self.refused("cycle-frame", text, "Write TRANS alone before it.")
+            text = f"{self.line.call} cannot run in a frame that is rotated, scaled or mirrored."
+            raise self.refused("cycle-frame", text, ("Write TRANS without axes before this block."))
         plane = self.state.transformation
         if plane is not None and (self.line.call not in _LIVE or not plane.along_z):
-            what = "turns or taps with the spindle" if plane.along_z else "goes along Z"
-            text = f"{self.line.call} {what}, and {plane.name} is on."
-            raise self.refused("transformation", text, "Write TRAFOOF before it.")
+            what = "turns or taps with the spindle" if plane.along_z else "moves along Z"
+            text = f"{self.line.call} {what}, but {plane.name} is active."
+            raise self.refused("transformation", text, ("Write TRAFOOF before this block."))
         if self.state.modal.nose_comp != 40:
-            text = f"{self.line.call} stands while G{self.state.modal.nose_comp} is on."
-            raise self.refused("comp-with", text, "Write G40 and a move before it.")
+            text = f"{self.line.call} is not allowed while G{self.state.modal.nose_comp} is active."
+            raise self.refused("comp-with", text, ("Write G40 and a move before this block."))
 
     def given(self, name: str) -> bool:
         """Whether the call hands this parameter over."""
@@ -100,7 +105,7 @@ class Cycle:
         if argument is None:
             return default
         if argument.formula is None:
-            raise self.wrong(name, "is a text, and takes a number", "Write a number.")
+            raise self.wrong(name, "is a text but must be a number", "Enter a number.")
         return self.state.worth(
             argument.formula, lambda c, t, h: self._fault(argument.column, c, f"{name}: {t}", h)
         )
@@ -115,20 +120,20 @@ class Cycle:
         """A length without a sign. Raises ProgramError under 0."""
         value = self.length(name, default)
         if value < 0.0:
-            raise self.wrong(name, "is a size, and takes no sign", "Take the sign out.")
+            raise self.wrong(name, ("is a size and cannot be negative"), "Remove the sign.")
         return value
 
     def needed(self, name: str) -> float:
         """A length that must be there. Raises ProgramError."""
         if not self.given(name):
-            raise self.wrong(name, "is missing", f"{self.line.call} needs it.")
+            raise self.wrong(name, "is missing", f"Add this parameter to {self.line.call}.")
         return self.length(name)
 
     def over_zero(self, name: str, alarm: int | str = "cycle-parameter") -> float:
         """A length that must be there and over 0. Raises ProgramError."""
         value = self.needed(name)
         if value <= 0.0:
-            raise self.wrong(name, "must be over 0", "Correct it.", alarm)
+            raise self.wrong(name, "must be greater than 0", "Correct the value.", alarm)
         return value
 
     def whole(self, name: str, default: int, low: int, high: int) -> int:
@@ -136,17 +141,19 @@ class Cycle:
         value = self.number(name, float(default))
         self._demand_whole(name, value)
         if not low <= value <= high:
-            raise self.wrong(name, f"is {value:g}, and lies between {low} and {high}", "Correct it.")
+            raise self.wrong(
+                name, f"is {value:g} but must be between {low} and {high}", ("Correct the value.")
+            )
         return round(value)
 
     def _demand_whole(self, name: str, value: float) -> None:
         if value != round(value):
-            raise self.wrong(name, f"is {value:g}, and takes a whole number", "Write a whole number.")
+            raise self.wrong(name, f"is {value:g} but must be a whole number", "Enter a whole number.")
 
     def zero_only(self, name: str, why: str) -> None:
         """Raises ProgramError where a parameter asks for what is not built."""
         if self.number(name):
-            raise self.wrong(name, f"is not executed here: {why}", f"Leave {name} out.", "not-in-subset")
+            raise self.wrong(name, f"is not supported here: {why}", f"Omit {name}.", "not-in-subset")
 
     def feed(self, name: str) -> float | None:
         """A feed as modal.feed has it; that in force without the parameter."""
@@ -154,7 +161,7 @@ class Cycle:
             return self.state.modal.feed
         value = self.number(name)
         if value < 0.0:
-            raise self.wrong(name, "is a feed, and over 0", "Correct it.")
+            raise self.wrong(name, "must be a feed rate above 0", "Correct the value.")
         value *= 25.4 if self.state.feed_in_inches else 1.0
         return value if self.state.modal.per_rev else value / 60.0
 
@@ -164,7 +171,9 @@ class Cycle:
         self._demand_whole(name, value)
         if round(value) not in known:
             low, high = known[0], known[-1]
-            raise self.wrong(name, f"is {value:g}; types are {low} to {high}", "Correct it.", MACHINING_TYPE)
+            raise self.wrong(
+                name, f"is {value:g}; valid types are {low} to {high}", "Correct the value.", MACHINING_TYPE
+            )
         return round(value)
 
     def wrong(self, name: str, what: str, hint: str, code: int | str = "cycle-parameter") -> ProgramError:

@@ -27,18 +27,19 @@ def hole_of(cycle: Cycle) -> Hole:
     """The hole that a call asks for. Raises ProgramError by the parameter's name."""
     if cycle.state.plane != 17:
         text = (
-            f"{cycle.line.call} drills across the plane G{cycle.state.plane}; along Z it does so under G17."
+            f"{cycle.line.call} drills perpendicular to plane G{cycle.state.plane}; drilling "
+            "along Z needs G17."
         )
-        raise cycle.refused("cycle-plane", text, "Write G17 before it, and G18 behind it.")
+        raise cycle.refused("cycle-plane", text, ("Write G17 before this block and G18 after it."))
     if cycle.number("_AXN", 3.0) not in {0.0, 3.0}:
-        raise cycle.wrong("_AXN", "names another axis than Z", "Leave it out.", "not-in-subset")
+        raise cycle.wrong("_AXN", "selects an axis other than Z", "Omit _AXN.", "not-in-subset")
     retract, reference = cycle.needed("RTP"), cycle.needed("RFP")
     if cycle.given("DP") == cycle.given("DPR"):
         if not cycle.given("DP"):
-            raise cycle.wrong("DP", "is missing", "Write DP, or DPR from the reference plane.")
+            raise cycle.wrong("DP", "is missing", ("Enter DP, or DPR measured from the reference plane."))
         bottom = cycle.length("DP")
         if cycle.length("DPR") and abs(abs(bottom - reference) - cycle.length("DPR")) > _SAME:
-            cycle.warn("cycle-depth-both", "DP and DPR differ: DP counts.", "Leave one of them out.")
+            cycle.warn("cycle-depth-both", ("DP and DPR differ, so DP is used."), "Omit DP or DPR.")
     else:
         bottom = cycle.length("DP")
         if cycle.given("DPR"):
@@ -46,8 +47,13 @@ def hole_of(cycle: Cycle) -> Hole:
     down = 1.0 if bottom > reference else -1.0
     if abs(bottom - reference) < _SAME or (retract - reference) * down > _SAME:
         name = "DP" if cycle.given("DP") else "DPR"
-        text = f"lies not beyond RFP as seen from RTP ({retract:g}, {reference:g}, {bottom:g})"
-        raise cycle.wrong(name, text, "RTP, RFP and the depth lie one behind the other.", REFERENCE_PLANE)
+        text = f"is not past RFP as seen from RTP ({retract:g}, {reference:g}, {bottom:g})"
+        raise cycle.wrong(
+            name,
+            text,
+            ("Enter RTP, RFP and the depth in this order along the drilling direction."),
+            REFERENCE_PLANE,
+        )
     return Hole(retract, reference, reference - down * cycle.size("SDIS"), bottom, down)
 
 
@@ -58,14 +64,16 @@ def seconds(cycle: Cycle, name: str) -> float:
         return value
     rpm = abs(cycle.state.rpm)
     if not rpm:
-        raise cycle.wrong(name, "counts revolutions of a spindle that stands", "Write seconds.")
+        raise cycle.wrong(
+            name, ("is in revolutions, but the spindle is stopped"), ("Enter the dwell in seconds.")
+        )
     return -value / rpm * 60.0
 
 
 def needed_feed(cycle: Cycle, name: str = "") -> float:
     feed = cycle.feed(name) if name else cycle.state.modal.feed
     if feed is None:
-        raise cycle.refused(10860, "no feedrate is programmed.", "Write F before it.")
+        raise cycle.refused(10860, "no feedrate is programmed.", "Program F before this block.")
     return feed
 
 
@@ -97,7 +105,7 @@ def peck(cycle: Cycle) -> Iterator[Block]:
     hole, feed = hole_of(cycle), needed_feed(cycle)
     factor = cycle.number("FRF", 1.0) or 1.0
     if not 0.001 <= factor <= 1.0:
-        raise cycle.wrong("FRF", "is a factor of 0.001 to 1", "Correct it.")
+        raise cycle.wrong("FRF", ("must be a factor from 0.001 to 1"), "Correct the value.")
     clears = cycle.machining("VARI", range(2)) == 1
     at_start, at_bottom = seconds(cycle, "DTS"), seconds(cycle, "DTB")
     back = cycle.size("_VRT") or 1.0
@@ -123,13 +131,15 @@ def depths(cycle: Cycle, hole: Hole) -> list[float]:
     whole = abs(hole.bottom - hole.reference)
     first = abs(cycle.length("FDEP") - hole.reference) if cycle.given("FDEP") else cycle.size("FDPR")
     if cycle.given("FDEP") and (cycle.length("FDEP") - hole.reference) * hole.down < -_SAME:
-        raise cycle.wrong("FDEP", "lies before RFP", "Correct it.", FIRST_DEPTH)
+        raise cycle.wrong("FDEP", "is before RFP", "Correct the value.", FIRST_DEPTH)
     if first > whole + _SAME:
         name = "FDEP" if cycle.given("FDEP") else "FDPR"
-        raise cycle.wrong(name, "lies beyond the depth of the hole", "Correct it.", FIRST_DEPTH)
+        raise cycle.wrong(name, "is deeper than the hole", "Correct the value.", FIRST_DEPTH)
     step, less, least = first or whole, cycle.number("DAM"), cycle.size("_MDEP")
     if less <= -1.0:
-        raise cycle.wrong("DAM", "is a factor of over -1 to 0, or an amount", "Correct it.")
+        raise cycle.wrong(
+            "DAM", ("must be a factor greater than -1 and up to 0, or an amount"), "Correct the value."
+        )
     smallest = max(least, 0.0)
     found, reached, halved = [step], step, False
     while reached < whole - _SAME:
@@ -137,7 +147,7 @@ def depths(cycle: Cycle, hole: Hole) -> list[float]:
         floor = smallest or (max(0.0, less))
         step = max(shorter, floor) if not halved else whole - reached
         if step < 1e-3 or len(found) > MOST_PASSES:
-            raise cycle.wrong("DAM", "makes pecks that come to nothing", "Write _MDEP, or a smaller DAM.")
+            raise cycle.wrong("DAM", "makes the pecks too small", ("Enter _MDEP, or reduce DAM."))
         left = whole - reached
         if step < left - _SAME and left < 2.0 * step and not halved:
             step, halved = left / 2.0, True

@@ -18,7 +18,7 @@ def home(state: State, statement: Statement) -> Block:
     named = _named(state, statement, _AXES)
     for word in named:
         if state.number(statement, word) != 0.0:
-            text = f"{word.text}: G74 goes to the home of the machine."
+            text = f"{word.text}: G74 always moves to machine home."
             raise statement.refuse(word, "word-unused", text, f"Write {word.name}=0.")
     return _to(state, statement, dict.fromkeys((word.name[0] for word in named), 0.0))
 
@@ -48,11 +48,11 @@ def _named(state: State, statement: Statement, words: frozenset[str]) -> list[Wo
     named = [each for name, each in statement.words.items() if name in _AXES]
     others = statement.words.keys() - words or statement.m or statement.sets
     if not named or others or statement.g.keys() - {BLOCKWISE, MOTION}:
-        text = f"{word.text} names the axes that go there, each with 0, and nothing else."
+        text = f"{word.text} must be in a block with only the axes to move, each programmed as 0."
         raise statement.refuse(word, "own-block", text, f"Write {word.text} X1=0 Z1=0.")
     if (code := state.modal.nose_comp) != 40:
-        text = f"{word.text} leaves the contour while G{code} is on."
-        raise statement.refuse(word, "comp-with", text, "Write G40 and a move before it.")
+        text = f"{word.text} leaves the contour while G{code} is active."
+        raise statement.refuse(word, "comp-with", text, "Write G40 and a move before this block.")
     return named
 
 
@@ -63,25 +63,28 @@ def _number(state: State, statement: Statement) -> int:
         return 1
     number = state.number(statement, word)
     if number not in {1, 2, 3, 4}:
-        text = f"{word.text} is no fixed point."
+        text = f"{word.text} is not a valid fixed point."
         raise statement.refuse(word, "fixed-point", text, "Write FP=1 to FP=4.")
     return int(number)
 
 
 def _missing(statement: Statement, axis: str, number: int, known: int) -> ProgramError:
-    key = f"fixed_points under [axis.{axis}] of the machine file"
+    key = f"fixed_points under [axis.{axis}] in the machine file"
     word = statement.words.get("FP") or statement.g[BLOCKWISE]
     if known:
-        text = f"{word.text}: the machine file names {known} of {axis}, and number {number} is asked for."
-        return statement.refuse(word, "fixed-point", text, f"Correct FP, or add to {key}.")
-    text = f"{word.text}: the machine file names no fixed point of {axis}."
-    hint = f"Add {key}, or write SUPA G0 D0 with X and Z of the machine."
+        text = (
+            f"{word.text}: the machine file defines {known} fixed points for {axis}, but number "
+            f"{number} is programmed."
+        )
+        return statement.refuse(word, "fixed-point", text, (f"Correct FP, or add the point to {key}."))
+    text = f"{word.text}: the machine file defines no fixed point for {axis}."
+    hint = f"Add {key}, or write SUPA G0 D0 with machine coordinates X and Z."
     return statement.refuse(word, "fixed-point", text, hint)
 
 
 def _tell_value(state: State, statement: Statement, word: Word, end: float) -> None:
     """Who writes X150 may expect to arrive there."""
-    text = f"{word.text} beside G75 says nothing: the axis goes to {end:g} mm of the machine."
+    text = f"{word.text} has no effect with G75: the axis goes to machine position {end:g} mm."
     state.log.add(statement.warning(word, "fixed-point-value", text, f"Write {word.name[0]}0."))
 
 

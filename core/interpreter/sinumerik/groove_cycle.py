@@ -43,13 +43,13 @@ def groove_of(cycle: Cycle) -> Groove:
     """The groove that a call asks for. Raises ProgramError by the parameter's name."""
     kind = (cycle.machining("VARI", range(1, 19)) - 1) % 10 + 1
     if kind > 8:
-        raise cycle.wrong("VARI", "is none of 1 to 8 and 11 to 18", "Correct it.", 61002)
-    cycle.zero_only("STA1", "write a groove in a cone as a contour of CYCLE95")
+        raise cycle.wrong("VARI", "must be 1 to 8 or 11 to 18", "Correct the value.", 61002)
+    cycle.zero_only("STA1", "program a groove on a taper as a CYCLE95 contour")
     for name in ("RCO1", "RCO2", "RCI1", "RCI2"):
-        cycle.zero_only(name, "write its corners as a contour of CYCLE95, or chamfer them with G1")
+        cycle.zero_only(name, "program the corners as a CYCLE95 contour, or chamfer them with G1")
     if kind % 2 == 0:
-        hint = "Write a groove in a face as a contour of CYCLE95, or as G1 blocks."
-        raise cycle.wrong("VARI", f"is {kind}, a groove in a face", hint, "not-in-subset")
+        hint = "Program a face groove as a CYCLE95 contour or in G1 blocks."
+        raise cycle.wrong("VARI", f"is {kind}, which is a face groove", hint, "not-in-subset")
     inside, right = kind in {3, 7}, kind > 4
     x, z = cycle.over_zero("SPD") / 2.0, cycle.needed("SPL")
     width, depth = cycle.over_zero("WIDG"), cycle.over_zero("DIAG", WRONG_FORM)
@@ -58,7 +58,7 @@ def groove_of(cycle: Cycle) -> Groove:
     low, high = (z - here - width, z - here) if right else (z + here, z + here + width)
     runs = (there, here) if right else (here, there)
     if x - out * depth < 0.0:
-        raise cycle.wrong("DIAG", "reaches beyond the axis", "Correct SPD or DIAG.", WRONG_FORM)
+        raise cycle.wrong("DIAG", "reaches past the spindle axis", "Correct SPD or DIAG.", WRONG_FORM)
     return Groove(out, x, x - out * depth, low, high, *runs)
 
 
@@ -66,7 +66,7 @@ def _run(cycle: Cycle, name: str, depth: float) -> float:
     """How far a flank goes along Z from the bottom to the surface, mm. Raises ProgramError."""
     angle = cycle.number(name)
     if not 0.0 <= angle <= _STEEPEST:
-        raise cycle.wrong(name, "is an angle of a flank, 0 to under 90 degrees", "Correct it.")
+        raise cycle.wrong(name, "must be a flank angle from 0 to less than 90 degrees", "Correct the value.")
     return depth * tan(radians(angle))
 
 
@@ -79,25 +79,25 @@ def tool_width(cycle: Cycle, widest: float) -> tuple[float, bool]:
     state = cycle.state
     key, tools = state.modal.tool, state.setup.tools
     if not key or state.modal.edge == 0:
-        text = f"{cycle.line.call} needs a tool with its offset."
-        raise cycle.refused(NO_TOOL, text, "Write T and D before it.")
+        text = f"{cycle.line.call} needs an active tool with an offset."
+        raise cycle.refused(NO_TOOL, text, "Write T and D before this block.")
     number = cycle.whole("_DN", 0, 0, 9) or edge_of(key) + 1
     other = edge_key(tool_of(key), number)
     if key not in tools and other not in tools:
         width = min(_USUAL_WIDTH, widest)
-        text = f"{cycle.line.call} reckons with a tool {width:g} mm wide: {edge_name(key)} is not set."
-        cycle.warn("tool-width", text, "Set its two corners on the page of tool offsets (F8).")
+        text = f"{cycle.line.call} assumes a tool {width:g} mm wide because {edge_name(key)} is not set."
+        cycle.warn("tool-width", text, "Set both tool corners on the TOOL OFFSETS page (F8).")
         return width, False
     if key not in tools or other not in tools:
         name = edge_name(other)
-        text = f"{cycle.line.call} reckons with the tool's width, and {name}, its other corner, is not set."
-        raise cycle.refused(WRONG_WIDTH, text, f"Set {edge_name(other)} on the page of tool offsets (F8).")
+        text = f"{cycle.line.call} needs the tool width, but {name}, the other tool corner, is not set."
+        raise cycle.refused(WRONG_WIDTH, text, (f"Set {edge_name(other)} on the TOOL OFFSETS page (F8)."))
     here, there = tools[key], tools[other]
     # A corner further to plus has the smaller machine position at part zero.
     way = here.z - there.z
     if abs(way) < _SAME:
-        text = f"{edge_name(key)} and {edge_name(other)} stand in one place: the tool has no width."
-        raise cycle.refused(WRONG_WIDTH, text, "Correct the offsets of its two corners.")
+        text = f"{edge_name(key)} and {edge_name(other)} are at the same position, so the tool has no width."
+        raise cycle.refused(WRONG_WIDTH, text, "Correct the offsets of the two tool corners.")
     return abs(way), way > 0.0
 
 
@@ -108,18 +108,20 @@ def groove(cycle: Cycle) -> Iterator[Block]:
     width, at_low = tool_width(cycle, shape.high - shape.low - 2.0 * flank_left)
     room = shape.high - shape.low - 2.0 * flank_left - width
     if room < -_SAME:
-        text = f"is {shape.high - shape.low:g} with FAL2 on both flanks, and the tool is {width:g} wide"
-        raise cycle.wrong("WIDG", text, "Take a narrower tool.", WRONG_WIDTH)
+        text = f"is {shape.high - shape.low:g} with FAL2 on both flanks, but the tool is {width:g} wide"
+        raise cycle.wrong("WIDG", text, "Use a narrower tool.", WRONG_WIDTH)
     feed = cycle.state.modal.feed
     if feed is None:
-        raise cycle.refused(10860, "no feedrate is programmed.", "Write F before it.")
+        raise cycle.refused(10860, "no feedrate is programmed.", "Program F before this block.")
     off = cycle.size("_VRT") or RETRACT
     plan = _Plan(cycle, shape, feed, shape.top + shape.out * off, 0.0 if at_low else width)
     steps = plan.begin()
     bottom = shape.bottom + shape.out * bottom_left
     count = ceil(max(room, 0.0) / (width * _OVERLAP) - _WHOLE)
     if count > MOST_PASSES:
-        raise cycle.wrong("WIDG", f"would take {count:,} cuts", "Look for a lost decimal point.")
+        raise cycle.wrong(
+            "WIDG", f"would need {count:,} cuts, which is too many", "Look for a missing decimal point."
+        )
     for k in range(count + 1):
         place = shape.high - flank_left - width - (room * k / count if count else 0.0)
         steps += plan.plunge(place, bottom)
@@ -138,7 +140,7 @@ class _Plan:
         self._clear, self._corner = clear, corner
         self._infeed, self._dwell = cycle.size("IDEP"), cycle.number("DTB")
         if self._dwell < 0.0:
-            raise cycle.wrong("DTB", "is a time in seconds", "Correct it.")
+            raise cycle.wrong("DTB", "must be a time of 0 s or more", "Correct the value.")
 
     def begin(self) -> list[Step]:
         """Off the part in depth first, from where the tool stands."""
@@ -151,7 +153,11 @@ class _Plan:
         whole = abs(bottom - shape.top)
         count = max(ceil(whole / self._infeed - _WHOLE), 1) if self._infeed else 1
         if count > MOST_PASSES:
-            raise self._cycle.wrong("IDEP", f"would take {count:,} steps", "Look for a lost decimal point.")
+            raise self._cycle.wrong(
+                "IDEP",
+                f"would need {count:,} steps, which is too many",
+                ("Look for a missing decimal point."),
+            )
         steps = [self._to(self._clear, place)]
         for k in range(1, count + 1):
             depth = shape.top - shape.out * whole * k / count
@@ -164,7 +170,9 @@ class _Plan:
         """Plunges outwards from ``place`` under a flank that rises by ``run``, each less deep."""
         count = ceil(abs(run) / (width * _OVERLAP) - _WHOLE)
         if count > MOST_PASSES:
-            raise self._cycle.wrong("ANG1", f"would take {count:,} cuts", "Look at the angles.")
+            raise self._cycle.wrong(
+                "ANG1", f"would need {count:,} cuts, which is too many", "Check the angles."
+            )
         steps: list[Step] = []
         for share in (k / (count + 1) for k in range(1, count + 1)):
             depth = bottom + (self._shape.top - bottom) * share

@@ -18,8 +18,8 @@ _MOST = 1000
 
 def no_cycle(line: Line) -> ProgramError:
     """A pattern without a cycle to drill with."""
-    text = f"{line.call} drills by the cycle of MCALL, and none is in force."
-    hint = "Write MCALL CYCLE81( ) or another cycle before it."
+    text = f"{line.call} uses the cycle of MCALL, but no MCALL is active."
+    hint = "Write MCALL CYCLE81( ) or another cycle before this block."
     return ProgramError(fault(line.number, line.call_column, "pattern-cycle", line.block, text, hint))
 
 
@@ -28,11 +28,13 @@ def places(state: State, line: Line) -> Iterator[Block]:
     cycle = Cycle(state, line)
     plane = state.transformation
     if plane is None or not plane.along_z:
-        text = f"{line.call} has places of X and Y, and this lathe has no axis Y."
-        raise cycle.refused("not-in-subset", text, "Write TRANSMIT before it, or the places behind MCALL.")
+        text = f"{line.call} uses positions in X and Y, but this lathe has no Y axis."
+        raise cycle.refused(
+            "not-in-subset", text, ("Write TRANSMIT before this block, or program the positions after MCALL.")
+        )
     number = cycle.whole("NUM", 0, 0, _MOST)
     if not number:
-        raise cycle.wrong("NUM", "is the number of holes, and over 0", "Correct it.")
+        raise cycle.wrong("NUM", "is the number of holes and must be greater than 0", "Correct the value.")
     found = _row(cycle, number) if line.call == "HOLES1" else _circle(cycle, number)
     for k, (x, y) in enumerate(found, 1):
         yield plane.over(cycle.statement, x, y, f"{line.call} {k}/{number}")
@@ -43,7 +45,9 @@ def _row(cycle: Cycle, number: int) -> list[tuple[float, float]]:
     x, y, angle = cycle.length("SPCA"), cycle.length("SPCO"), radians(cycle.number("STA1"))
     first, apart = cycle.length("FDIS"), cycle.size("DBH")
     if number > 1 and not apart:
-        raise cycle.wrong("DBH", "is the distance between the holes, and over 0", "Correct it.")
+        raise cycle.wrong(
+            "DBH", "is the distance between the holes and must be greater than 0", ("Correct the value.")
+        )
     ways = [first + apart * k for k in range(number)]
     return [(x + way * cos(angle), y + way * sin(angle)) for way in ways]
 

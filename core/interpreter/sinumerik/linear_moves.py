@@ -120,8 +120,10 @@ def _slide(state: State, statement: Statement, name: str, begun: float) -> float
         state.moved_by_tool.discard(name)
         return value
     if name in state.moved_by_tool:
-        text = f"{word.text} is a distance, and T or D has just changed where {name} stands."
-        raise statement.refuse(word, "distance-behind-tool", text, f"Write a position of {name} before it.")
+        text = f"{word.text} is a distance, but T or D has just changed the position of {name}."
+        raise statement.refuse(
+            word, "distance-behind-tool", text, (f"Program a position of {name} before this block.")
+        )
     return begun + value
 
 
@@ -131,17 +133,19 @@ def _polar(state: State, statement: Statement) -> tuple[float, float]:
     radius, angle = statement.words.get("RP"), statement.words.get("AP")
     for name in ("X", "Z", "ANG"):
         if name in statement.words:
-            text = f"{statement.words[name].text} stands beside RP and AP."
-            raise statement.refuse(statement.words[name], "polar-both", text, "Write one or the other.")
+            text = f"{statement.words[name].text} cannot be combined with RP and AP."
+            raise statement.refuse(statement.words[name], "polar-both", text, ("Use only one of the two."))
     if (radius is None or angle is None) and state.polar is None:
         text = "the first polar move needs RP and AP."
-        raise statement.refuse(radius or angle, "polar-half", text, "Write both.")
+        raise statement.refuse(radius or angle, "polar-half", text, "Write both RP and AP.")
     far = last[0] if radius is None else state.length(statement, radius)
     turn = last[1] if angle is None else state.number(statement, angle)
     far += last[0] if radius is not None and radius.form is Form.IC else 0.0
     turn += last[1] if angle is not None and angle.form is Form.IC else 0.0
     if far < 0.0:
-        raise statement.refuse(radius, "not-positive", "RP comes to less than 0.", "Correct it.")
+        raise statement.refuse(
+            radius, "not-positive", ("The resulting RP is less than 0."), ("Correct the value.")
+        )
     state.polar = far, turn
     state.moved_by_tool.clear()
     return state.pole[0] + far * sin(radians(turn)), state.pole[1] + far * cos(radians(turn))
@@ -156,21 +160,30 @@ def _inclined(
     """The end of a line by its angle and one coordinate."""
     word = statement.words["ANG"]
     if state.motion is not Motion.LINE and state.motion is not Motion.RAPID:
-        raise statement.refuse(word, "word-unused", f"{word.text} belongs to a line.", "Write G1.")
+        raise statement.refuse(
+            word, "word-unused", (f"{word.text} can be used only in a straight move."), "Write G1."
+        )
     if x is None and z is None:
-        text = f"{word.text} alone begins a contour of two lines, which is not worked out here."
-        raise statement.refuse(word, "not-in-subset", text, "Write X or Z of its end beside it.")
+        text = f"{word.text} alone begins a contour of two lines, which is not supported here."
+        raise statement.refuse(word, "not-in-subset", text, ("Add X or Z of the end point to the block."))
     if x is not None and z is not None:
-        text = f"{word.text} stands beside X and Z, which say the end."
-        raise statement.refuse(word, "angle-both", text, "Keep X or Z beside ANG.")
+        text = f"{word.text} cannot be combined with both X and Z, which define the end point."
+        raise statement.refuse(word, "angle-both", text, "Keep only X or Z with ANG.")
     angle = radians(state.number(statement, word))
     if x is None and z is not None:
         if abs(cos(angle)) < _STEEP:
-            raise statement.refuse(word, "angle-none", "this line never reaches Z.", "Write X beside ANG.")
+            raise statement.refuse(
+                word,
+                "angle-none",
+                ("this line never reaches the programmed Z."),
+                ("Write X together with ANG."),
+            )
         return begun[0] + (z - begun[1]) * tan(angle), z
     assert x is not None
     if abs(sin(angle)) < _STEEP:
-        raise statement.refuse(word, "angle-none", "this line never reaches X.", "Write Z beside ANG.")
+        raise statement.refuse(
+            word, "angle-none", ("this line never reaches the programmed X."), ("Write Z together with ANG.")
+        )
     return x, begun[1] + (x - begun[0]) / tan(angle)
 
 
@@ -212,10 +225,10 @@ def _hint(number: int, *, linear: bool) -> str:
 
 
 _WHOLE_TURN = "Write an angle from 0 to 359.999, or IC( ) for a distance."
-_NOT_MODULO = "This axis counts -360 to +360; write AC( ) or IC( )."
+_NOT_MODULO = "This axis ranges from -360 to +360; write AC( ) or IC( )."
 _HINTS = {
     third_axis.WRONG_MODULO: _WHOLE_TURN,
-    third_axis.WRONG_RANGE: "Correct the target or the offset of the axis.",
+    third_axis.WRONG_RANGE: ("Correct the target or the axis offset."),
     **dict.fromkeys(third_axis.NO_ROTARY.values(), _NOT_MODULO),
 }
 
@@ -223,8 +236,10 @@ _HINTS = {
 def straight(state: State, statement: Statement) -> Block:
     """G0 or G1 to where the words lead. Raises ProgramError."""
     for name in sorted(ARC & statement.words.keys()):
-        text = f"{statement.words[name].text} belongs to an arc, and G{state.motion:d} is in force."
-        raise statement.refuse(statement.words[name], "word-unused", text, "Write G2 or G3, or take it out.")
+        text = f"{statement.words[name].text} belongs to an arc, but G{state.motion:d} is active."
+        raise statement.refuse(
+            statement.words[name], "word-unused", text, ("Write G2 or G3, or remove the word.")
+        )
     travel = travel_of(state, statement)
     if state.motion is Motion.RAPID:
         return rapid(state, statement, travel)

@@ -35,8 +35,8 @@ def live_words(state: State, statement: Statement) -> None:
 
 def _demand(state: State, statement: Statement, word: Word) -> None:
     if not state.setup.limits.live_output:
-        text = f"{word.text}: this machine has one spindle, and no output that turns a live tool."
-        hint = "Take it out, or name an output live under [io.out] of the machine file."
+        text = f"{word.text}: this machine has one spindle and no output for a live tool."
+        hint = "Remove it, or define an output named live under [io.out] in the machine file."
         raise statement.refuse(word, "one-spindle", text, hint)
 
 
@@ -53,25 +53,30 @@ def live_tool(state: State, statement: Statement) -> Iterator[Block]:
 def _speed(state: State, statement: Statement, word: Word) -> None:
     value = state.number(statement, word)
     if value < 0.0:
-        text = f"{word.text}: the speed has no sign; M3 and M4 say the direction."
-        raise statement.refuse(word, "speed-sign", text, "Take the sign out.")
+        text = f"{word.text}: the speed cannot be negative; M3 and M4 set the direction."
+        raise statement.refuse(word, "speed-sign", text, "Remove the sign.")
     state.live_speed = value
     if state.live_rpm:
         state.live_rpm = value
     if "live-speed" not in state.told:
         state.told.add("live-speed")
-        text = f"{word.text}: the live tool is switched on and off here; its speed is set at its own drive."
-        state.log.add(statement.warning(word, "live-speed", text, f"Set it to {value:g} rpm by hand."))
+        text = (
+            f"{word.text}: this machine only switches the live tool on and off; its speed is set "
+            "at its drive."
+        )
+        state.log.add(
+            statement.warning(word, "live-speed", text, (f"Set the live tool to {value:g} rpm by hand."))
+        )
 
 
 def _turn(state: State, statement: Statement, word: Word) -> Iterator[Block]:
     code = int(word.value or 0)
     if code == 4:
-        text = f"{word.text}: the live tool turns one way."
-        raise statement.refuse(word, "live-direction", text, "Write M3, with a tool of that hand.")
+        text = f"{word.text}: the live tool turns in only one direction."
+        raise statement.refuse(word, "live-direction", text, "Write M3, and use a tool of that hand.")
     on = code == 3
     if on and not state.live_speed:
-        text = f"{word.text} starts the live tool, and no S has said how fast."
+        text = f"{word.text} starts the live tool, but no S sets its speed."
         raise statement.refuse(word, "speed-missing", text, "Write S2= in the block.")
     state.live_rpm = state.live_speed if on else 0.0
     name = state.setup.limits.live_output

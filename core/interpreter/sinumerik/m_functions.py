@@ -27,7 +27,7 @@ def check_m(state: State, statement: Statement, lacking: list[Need]) -> None:
     limits = state.setup.limits
     for code, word in statement.m.items():
         if code in limits.m_ignored:
-            tell_idle(state, statement, word, f"M{code}", "the machine file says that it does nothing")
+            tell_idle(state, statement, word, f"M{code}", "the machine file defines it as ignored")
         elif code in M_FUNCTIONS:
             tell_idle(state, statement, word, f"M{code}", _idle(state, code))
         elif code in limits.m_outputs:
@@ -44,21 +44,21 @@ def _check_chuck(state: State, statement: Statement, word: Word, name: str, on: 
     turns = state.modal.spindle and 5 not in statement.m
     if name == COLLET and not on and turns and not state.setup.limits.unclamp_while_turning:
         text = f"{word.text} opens the chuck while the spindle turns."
-        raise statement.refuse(word, "unclamp-turning", text, "Write M5 before it.")
+        raise statement.refuse(word, "unclamp-turning", text, "Write M5 before this block.")
 
 
 def _idle(state: State, code: int) -> str:
     if code == 6 and 6 not in state.setup.limits.m_outputs:
-        return "T changes the tool by itself on this machine"
+        return "T changes the tool automatically on this machine"
     return M_FUNCTIONS[code].idle
 
 
 def _refused(state: State, statement: Statement, code: int, word: Word) -> ProgramError:
     if code in state.setup.limits.m_disabled:
-        text = f"M{code} is defined, and not switched on in the machine file."
+        text = f"M{code} is defined but not enabled in the machine file."
         return statement.refuse(word, "m-disabled", text, f"Set enabled = true for {code} under [m_codes].")
-    text = f"M{code} belongs to the ISO language of this control."
-    return statement.refuse(word, "m-unknown", text, "Write the name of a subprogram, M17 at its end.")
+    text = f"M{code} belongs to the ISO dialect of this control."
+    return statement.refuse(word, "m-unknown", text, ("Call a subprogram by its name, and end it with M17."))
 
 
 def _tell_unanswered(state: State, statement: Statement, code: int, word: Word) -> None:
@@ -66,7 +66,7 @@ def _tell_unanswered(state: State, statement: Statement, code: int, word: Word) 
     if f"M{code}" in state.told:
         return
     state.told.add(f"M{code}")
-    what = f"M{code} is the machine builder's, and nothing on this machine answers it"
+    what = f"M{code} is a machine-builder code, and nothing on this machine responds to it"
     text = f"{what}: the machine will not start."
     hint = how_bound(code)
     state.log.add(statement.warning(word, "m-unanswered", text, f"{hint[0].upper()}{hint[1:]}."))

@@ -9,7 +9,7 @@ from core.language.sinumerik.sinumerik_words import CORNERS, Line
 from core.language.sinumerik.third_axis_name import OWN
 from core.language.source import Source
 
-_HINT = "Write it in a program."
+_HINT = "Use this command in a program."
 _ALONE = frozenset({Steering.DEFINE, Steering.MESSAGE})
 
 
@@ -19,11 +19,11 @@ def needs_others(source: Source, third_axis: str = OWN) -> Diagnostic | None:
     if line.errors:
         return None  # told when it is executed
     if line.skip is not None:
-        return _refuse(1, "/ leaves a block of a program out, and there is nothing to leave out")
+        return _refuse(1, "/ skips a block of a program and has no meaning here")
     if line.call or line.modal_call:
         return _refuse(line.call_column, f"{line.call} calls another program")
     if line.jump is not None and line.jump.steering not in _ALONE:
-        return _refuse(line.jump.column, f"{line.jump.steering} leads to another block")
+        return _refuse(line.jump.column, f"{line.jump.steering} goes to another block")
     return _words(line)
 
 
@@ -31,7 +31,7 @@ def _words(line: Line) -> Diagnostic | None:
     """A word that means something with the blocks behind it alone."""
     for word in line.words:
         if word.name in CORNERS:
-            return _refuse(word.column, f"{word.text} stands between two blocks of a contour")
+            return _refuse(word.column, f"{word.text} belongs between two blocks of a contour")
     return None
 
 

@@ -36,9 +36,11 @@ def programmed_frame(state: State, statement: Statement) -> None:
     check_c(state, statement)
     name = key.name.removeprefix("A")
     if name == "ROT":
-        _refuse_axes(statement, key, "turns the plane by RPL=")
+        _refuse_axes(statement, key, "rotates the plane with RPL= and not with axes")
     elif word := statement.words.get("RPL"):
-        raise statement.refuse(word, "word-unused", f"{word.text} belongs to ROT.", "Take it out.")
+        raise statement.refuse(
+            word, "word-unused", f"{word.text} can be used only with ROT.", ("Remove it from the program.")
+        )
     frame = state.programmed if key.name[0] == "A" else NO_FRAME
     if name == "TRANS":
         frame = frame.shifted(*(_shift(state, statement, axis) for axis in "XZC"))
@@ -50,7 +52,7 @@ def programmed_frame(state: State, statement: Statement) -> None:
     else:
         frame = frame.scaled(*(-1.0 if axis in statement.words else 1.0 for axis in "XZ"))
     if name in {"SCALE", "MIRROR"} and (word := statement.words.get("C")):
-        raise statement.refuse(word, "offset-form", f"{key.name} takes X and Z.", "Take C out.")
+        raise statement.refuse(word, "offset-form", f"{key.name} can be used only with X and Z.", "Remove C.")
     state.programmed = frame
     state.derive_offsets()
 
@@ -71,7 +73,7 @@ def check_c(state: State, statement: Statement) -> None:
     if word is not None and not state.setup.limits.c_enabled:
         text = "unknown axis: this machine has no third axis."
         raise statement.refuse(
-            word, "unknown-axis", text, "Take it out, or choose a machine file that has it."
+            word, "unknown-axis", text, "Remove it, or select a machine file that has this axis."
         )
 
 
@@ -80,17 +82,17 @@ def check_y(state: State, statement: Statement) -> None:
     word = statement.words.get("Y") or statement.words.get("J")
     if word is None or state.transformation is not None:
         return
-    text = f"{word.name}: this lathe has no axis Y."
+    text = f"{word.name}: this lathe has no Y axis."
     if word.name == "J":
-        text = "J: an arc in G18 has I and K."
-    hint = "Take it out; TRANSMIT and TRACYL make Y of X and C."
+        text = "J: an arc in G18 uses I and K."
+    hint = "Remove it; TRANSMIT and TRACYL produce Y from X and C."
     raise statement.refuse(word, "not-in-subset", text, hint)
 
 
 def _refuse_axes(statement: Statement, key: Word, what: str) -> None:
     for axis in statement.axes:
         word = statement.words[axis]
-        text = f"{word.text}: {key.name} {what} on a lathe."
+        text = f"{word.text}: on a lathe, {key.name} {what}."
         raise statement.refuse(word, "offset-form", text, f"Write {key.name} RPL=…")
 
 
@@ -106,16 +108,18 @@ def _factor(state: State, statement: Statement, name: str) -> float:
     word = _plain(statement, name)
     value = 1.0 if word is None else state.number(statement, word)
     if word is not None and not 0.001 <= value <= 1000.0:
-        text = f"{word.text}: a factor lies between 0.001 and 1000."
-        raise statement.refuse(word, "offset-form", text, "Correct it; MIRROR counts the other way.")
+        text = f"{word.text}: a factor must be between 0.001 and 1000."
+        raise statement.refuse(
+            word, "offset-form", text, ("Correct the factor; to reverse an axis, use MIRROR.")
+        )
     return value
 
 
 def _plain(statement: Statement, name: str) -> Word | None:
     word = statement.words.get(name)
     if word is not None and word.form is not Form.PLAIN:
-        text = f"{word.text}: an offset is a plain number."
-        raise statement.refuse(word, "offset-form", text, f"Write {word.name} with its number.")
+        text = f"{word.text}: an offset must be a plain number."
+        raise statement.refuse(word, "offset-form", text, f"Write {word.name} with a plain number.")
     return word
 
 
@@ -146,8 +150,8 @@ def _motion_and_plane(state: State, statement: Statement) -> None:
     elif name := statement.key(table.MOTION):
         state.motion = _NAMED_MOTION[name]
     if plane is not None and plane != state.plane and state.modal.nose_comp != 40:
-        text = f"G{plane} changes the plane while G{state.modal.nose_comp} is on."
-        raise statement.refuse(statement.g[table.PLANE], "comp-plane", text, "Write G40 before it.")
+        text = f"G{plane} changes the plane while G{state.modal.nose_comp} is active."
+        raise statement.refuse(statement.g[table.PLANE], "comp-plane", text, ("Write G40 before this line."))
     state.plane = plane or state.plane
 
 
@@ -164,8 +168,8 @@ def _path_modes(state: State, statement: Statement) -> None:
         plane = 18 if state.transformation is None else state.transformation.plane
         if code != 40 and state.plane != plane:
             of = "X and Z" if state.transformation is None else state.transformation.name
-            word, text = statement.g[table.COMPENSATION], f"radius compensation of {of} needs G{plane}."
-            raise statement.refuse(word, "comp-plane", text, f"Write G{plane} before it.")
+            word, text = statement.g[table.COMPENSATION], (f"radius compensation in {of} needs G{plane}.")
+            raise statement.refuse(word, "comp-plane", text, f"Write G{plane} before this block.")
         state.adopt(state.modal._replace(nose_comp=code))
     if area := statement.key(table.AREA):
         state.area_on = area == "WALIMON"
@@ -196,8 +200,8 @@ def frame_block(state: State, statement: Statement) -> bool:
     if word is None or code not in {110, 111, 112, 25, 26}:
         return False
     if "C" in statement.words:
-        text = f"{word.text} takes X and Z."
-        raise statement.refuse(statement.words["C"], "own-block", text, "Take C out.")
+        text = f"{word.text} can be used only with X and Z."
+        raise statement.refuse(statement.words["C"], "own-block", text, "Remove C.")
     if code in {25, 26}:
         _limits(state, statement, upper=code == 26)
     else:
@@ -239,6 +243,6 @@ def check_area(state: State, statement: Statement, x: float, z: float) -> None:
         for upper in (False, True):
             limit = state.area.get((name, upper))
             if limit is not None and (value > limit + 1e-6 if upper else value < limit - 1e-6):
-                text = f"{name} leaves the working area of G{26 if upper else 25} at {limit:g} mm."
+                text = f"{name} leaves the working area limited by G{(26 if upper else 25)} at {limit:g} mm."
                 hint = "Correct the move, or write WALIMOF."
                 raise statement.refuse(statement.words.get(name), "working-area", text, hint)

@@ -60,7 +60,7 @@ def handed_over(state: State, line: Line, heading: Jump | None) -> tuple[Scope, 
     parameters = () if heading is None else heading.parameters
     arguments = line.arguments or ()
     if len(arguments) > len(parameters):
-        text = f"{line.call} takes {_count(len(parameters))}, and {len(arguments)} are handed over."
+        text = f"{line.call} accepts {_count(len(parameters))}, but the call passes {len(arguments)}."
         hint = "Correct the call, or the PROC line of the subprogram."
         raise _refused(line, arguments[len(parameters)].column, TOO_MANY, text, hint)
     scope, references = Scope(), list[tuple[str, str]]()
@@ -106,12 +106,14 @@ def _hand_over_array(
     sizes = outer.sizes.get(name, ())
     column = line.call_column if argument is None else argument.column
     if not sizes:
-        text = f"{parameter.name} of {line.call} is an array of VAR, and takes an array."
-        raise _refused(line, column, NO_VARIABLE, text, "Hand over the name of an array, without an index.")
+        text = f"{parameter.name} of {line.call} is a VAR array and needs an array."
+        raise _refused(line, column, NO_VARIABLE, text, "Pass the name of an array without an index.")
     asked = tuple(size if each is None else each for each, size in zip(parameter.sizes, sizes, strict=False))
     if asked != sizes or len(parameter.sizes) != len(sizes):
-        text = f"{name} has {' by '.join(map(str, sizes))} elements, and {parameter.name} other sizes."
-        raise _refused(line, column, OTHER_SIZE, text, "Give the array the sizes of the PROC line.")
+        text = (
+            f"{name} has {' by '.join(map(str, sizes))} elements, but {parameter.name} has different sizes."
+        )
+        raise _refused(line, column, OTHER_SIZE, text, "Use the array sizes of the PROC line.")
     scope.define(parameter.name, 0.0, sizes)
     for inside, outside in zip(scope.elements(parameter.name), outer.elements(name), strict=True):
         scope.numbers[inside] = outer.numbers[outside]
@@ -137,9 +139,9 @@ def _place(state: State, line: Line, parameter: Parameter, argument: Argument | 
     """The caller's variable that VAR writes back to."""
     formula = None if argument is None else argument.formula
     if not isinstance(formula, Variable):
-        text = f"{parameter.name} of {line.call} is VAR and takes a variable."
+        text = f"{parameter.name} of {line.call} is a VAR parameter and needs a variable."
         column = line.call_column if argument is None else argument.column
-        raise _refused(line, column, TOO_MANY, text, "Hand over a variable or an R parameter.")
+        raise _refused(line, column, TOO_MANY, text, "Pass a variable or an R parameter.")
 
     def refuse(code: int | str, text: str, hint: str) -> ProgramError:
         return _refused(line, line.call_column, code, text, hint)

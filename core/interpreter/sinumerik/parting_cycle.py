@@ -26,18 +26,20 @@ def part_off(cycle: Cycle) -> Iterator[Block]:
     A speed _SV1 is one of the surface beside its limit _SV2, counted as G96 counts S, else rpm; behind the
     cycle the speed of before is in force again, or the last one where the spindle stood without a speed.
     """
-    cycle.zero_only("_RC", "cut the chamfer or the radius with G1 before it")
-    cycle.zero_only("_VARI", "the tool goes back out, and no drawer catches the part")
+    cycle.zero_only("_RC", ("cut the chamfer or the radius with G1 before the cycle"))
+    cycle.zero_only("_VARI", ("the tool retracts, and this machine has no parts catcher"))
     if cycle.whole("_AMODE", 0, 0, 10**8) % 100:
-        hint = "Write _DIAG1 and _DIAG2 as diameters, and no _AMODE."
-        raise cycle.wrong("_AMODE", "asks for depths that count from SPD", hint, "not-in-subset")
+        hint = "Enter _DIAG1 and _DIAG2 as diameters, and omit _AMODE."
+        raise cycle.wrong("_AMODE", ("specifies depths measured from SPD"), hint, "not-in-subset")
     slow, last = _depths(cycle)
     first, second = _feeds(cycle)
     before = cycle.state.modal
     fast = _speed(cycle, before)
     rpm = cycle.number("_SS2")
     if rpm < 0.0 or rpm > cycle.state.setup.limits.max_rpm:
-        raise cycle.wrong("_SS2", f"is {rpm:g}, no speed of this spindle", "Correct it.")
+        raise cycle.wrong(
+            "_SS2", f"is {rpm:g}, which is not a valid speed for this spindle", "Correct the value."
+        )
     place, surface = cycle.needed("SPL"), cycle.needed("SPD") / 2.0
     clear = surface + (cycle.size("_SDIS") or RETRACT)
     out = [Step(clear, cycle.z)] if cycle.x < clear else []
@@ -50,8 +52,8 @@ def _depths(cycle: Cycle) -> tuple[float, float]:
     surface, last = cycle.over_zero("SPD"), cycle.needed("_DIAG2")
     slow = cycle.length("_DIAG1", last) if cycle.given("_DIAG1") else last
     if not last <= slow <= surface:
-        text = f"is {slow:g}, and lies between SPD {surface:g} and _DIAG2 {last:g}"
-        raise cycle.wrong("_DIAG1", text, "Write diameters, SPD the largest.", WRONG_DEPTH)
+        text = f"is {slow:g} but must be between SPD {surface:g} and _DIAG2 {last:g}"
+        raise cycle.wrong("_DIAG1", text, ("Enter diameters, with SPD as the largest."), WRONG_DEPTH)
     return slow / 2.0, last / 2.0
 
 
@@ -68,19 +70,21 @@ def _speed(cycle: Cycle, before: Modal) -> Modal:
     value, most = cycle.number("_SV1"), cycle.number("_SV2")
     direction = cycle.whole("_SDAC", 0, 0, 4)
     if direction and direction not in _DIRECTION:
-        raise cycle.wrong("_SDAC", f"is {direction}", "3 is M3, 4 is M4.", NO_DIRECTION)
+        raise cycle.wrong("_SDAC", f"is {direction}", "Enter 3 for M3 or 4 for M4.", NO_DIRECTION)
     modal = before._replace(spindle=_DIRECTION.get(direction, before.spindle))
     highest = cycle.state.setup.limits.max_rpm
     if value < 0.0 or most < 0.0 or (value > highest and not most):
-        raise cycle.wrong("_SV1", f"is {value:g}, no speed of this spindle", "Correct it.")
+        raise cycle.wrong(
+            "_SV1", f"is {value:g}, which is not a valid speed for this spindle", "Correct the value."
+        )
     if value and most:
         unit = METRES_PER_MINUTE if before.metric else FEET_PER_MINUTE
         modal = modal._replace(css=True, surface_speed=value * unit, css_max=most)
     elif value:
         modal = modal._replace(css=False, rpm=value)
     if not modal.spindle or not (modal.surface_speed if modal.css else modal.rpm):
-        text = "the spindle stands, and neither _SV1 with _SDAC nor S with M3 starts it."
-        raise cycle.refused(NO_DIRECTION, text, "Write S and M3 before it.")
+        text = "the spindle is stopped, and neither _SV1 with _SDAC nor S with M3 starts it."
+        raise cycle.refused(NO_DIRECTION, text, ("Write S and M3 before this block."))
     return modal
 
 

@@ -103,18 +103,22 @@ class Compensation:
         """The move that leads to the contour."""
         state, code = self._state, block.modal.nose_comp
         if block.kind not in _STRAIGHT or self._turns(block):
-            text = f"the first move with G{code} is no straight line."
-            raise _fault(block, "comp-approach", text, "Approach with G0 or G1, and then begin the contour.")
+            text = f"the first move with G{code} is not a straight line."
+            raise _fault(block, "comp-approach", text, ("Approach with G0 or G1, then begin the contour."))
         if not state.modal.edge:
-            text = f"G{code} needs a tool and its cutting edge."
-            raise _fault(block, "comp-no-edge", text, "Write T and D before it.")
+            text = f"G{code} needs a tool with a cutting edge."
+            raise _fault(block, "comp-no-edge", text, "Write T and D before this block.")
         edge = state.edge
         if not edge.nose_radius:
-            text = f"the nose radius of the tool is 0: G{code} compensates nothing."
-            self._warn(block, "comp-no-radius", text, "Enter the nose radius among the offsets (F8).")
+            text = f"the nose radius of the tool is 0, so G{code} does not compensate."
+            self._warn(
+                block, "comp-no-radius", text, ("Enter the nose radius on the TOOL OFFSETS page (F8).")
+            )
         elif not edge.quadrant:
-            text = f"the tool has no tip quadrant: G{code} takes its offset as that of the nose's centre."
-            self._warn(block, "comp-no-quadrant", text, "Enter the tip quadrant (F8); 9 says the centre.")
+            text = f"the tool has no tip quadrant, so G{code} applies its offset to the nose center."
+            self._warn(
+                block, "comp-no-quadrant", text, ("Enter the tip quadrant (F8); 9 means the nose center.")
+            )
         # G42 is to the right with X up, which is to the left with X down, as blocks count.
         side = 1.0 if (code == 42) is not state.programmed.mirrored else -1.0
         z, x = TIP_DIRECTIONS[edge.quadrant]
@@ -126,22 +130,24 @@ class Compensation:
         if isinstance(block.action, ProgramEnd):
             raise _open(block)
         if isinstance(block.action, ToolChange):
-            text = "T or D stands before the move that leaves the contour."
-            raise _fault(block, "comp-with", text, "Write a move behind G40 first.")
+            text = "T or D is programmed before the move that leaves the contour."
+            raise _fault(block, "comp-with", text, "Write a move after G40 first.")
         _last(contour).after.append(block)
 
     def _follow(self, contour: _Contour, block: Block) -> None:
         """One more move of the contour."""
         first, code = contour.approach.block, block.modal.nose_comp
         if code != first.modal.nose_comp:
-            text = f"G{code} follows G{first.modal.nose_comp} on the contour."
-            raise _fault(block, "comp-with", text, "Leave the contour with G40 before it.")
+            text = f"G{code} follows G{first.modal.nose_comp} within the same contour."
+            raise _fault(block, "comp-with", text, "Leave the contour with G40 before this block.")
         if block.kind not in _FOLLOWED or self._turns(block):
             what = "C turns" if self._turns(block) else "a thread is cut"
-            raise _fault(block, "comp-with", f"{what} while G{code} is on.", "Write G40 before it.")
+            raise _fault(
+                block, "comp-with", f"{what} while G{code} is active.", ("Write G40 before this line.")
+            )
         if (block.offset_x, block.offset_z) != (first.offset_x, first.offset_z):
-            text = f"the zero changes while G{code} is on."
-            raise _fault(block, "comp-with", text, "Write G40 and a move before it.")
+            text = f"the zero point changes while G{code} is active."
+            raise _fault(block, "comp-with", text, "Write G40 and a move before this block.")
         if (block.x, block.z) == (block.x0, block.z0) and block.kind is not Kind.ARC:
             _last(contour).after.append(block)
         else:
@@ -151,16 +157,16 @@ class Compensation:
         """The contour, and the move of G40 that leaves it; the program's end leaves the nose where it is."""
         code = contour.approach.block.modal.nose_comp
         if block.moves and (block.kind not in _STRAIGHT or self._turns(block)):
-            text = "the first move with G40 is no straight line."
+            text = "the first move with G40 is not a straight line."
             raise _fault(block, "comp-departure", text, "Leave the contour with G0 or G1.")
         if block.moves and (block.offset_x, block.offset_z) != (
             contour.approach.block.offset_x,
             contour.approach.block.offset_z,
         ):
-            text = "the zero is another one in the move that leaves the contour."
+            text = "the zero point is different in the move that leaves the contour."
             raise _fault(block, "comp-departure", text, "Leave the contour first.")
         if not contour.moves:
-            text = f"no move of a contour follows G{code}."
+            text = f"no contour move follows G{code}."
             raise _fault(contour.approach.block, "comp-empty", text, "Write the contour before G40.")
         yield from _Beside(self._state, contour, block).blocks()
 
@@ -222,7 +228,9 @@ class _Beside:
         except GougeError as problem:
             block = contour.moves[min(problem.index, len(contour.moves) - 1)].block
             text = f"a nose radius of {contour.radius:g} mm does not fit here: {problem.why}."
-            raise _fault(block, "comp-gouge", text, "Take a smaller nose, or change the contour.") from None
+            raise _fault(
+                block, "comp-gouge", text, ("Use a smaller nose radius, or change the contour.")
+            ) from None
         return found
 
     def _piece(self, piece: Piece) -> Iterator[Block]:
@@ -277,18 +285,20 @@ class _Beside:
         radius = contour.radius
         if not radius or not cuts_in(way, end.contour, radius):
             return [way]
-        text = f"on the {end.name} the nose of {radius:g} mm cuts into the contour."
+        text = f"during the {end.name}, the nose radius of {radius:g} mm cuts into the contour."
         if not contour.round_ends:
-            hint = "Begin it elsewhere, or write KONT, which goes round the end of the contour."
+            hint = (
+                "Choose another point for this move, or write KONT, which goes around the end of the contour."
+            )
             raise _fault(end.block, "comp-gouge", text, hint)
         away = dist(end.at, end.corner)
         if away < radius - SAME_POINT:
-            text = f"the {end.name} by KONT begins nearer to the contour's end than the nose radius."
-            raise _fault(end.block, f"comp-{end.name}-short", text, "Begin further off.")
+            text = f"the {end.name} with KONT is closer to the end of the contour than the nose radius."
+            raise _fault(end.block, f"comp-{end.name}-short", text, "Start farther away.")
         around = self._round(end, away)
         straight = Line(end.at, around.start)
         if any(clearance(straight, each) < radius - _TOUCHES for each in end.contour):
-            raise _fault(end.block, "comp-gouge", text, "Begin it elsewhere.")
+            raise _fault(end.block, "comp-gouge", text, "Choose another point for this move.")
         return [straight, *self._corner(around, end.block)]
 
     def _round(self, end: _End, away: float) -> Arc:
@@ -337,8 +347,8 @@ def _last(contour: _Contour) -> _Move:
 
 
 def _open(block: Block) -> ProgramError:
-    text = "the program ends while G41 or G42 is on."
-    return _fault(block, "comp-open", text, "Move off the part with G40 before it.")
+    text = "the program ends while G41 or G42 is active."
+    return _fault(block, "comp-open", text, "Move off the part with G40 before the program ends.")
 
 
 def _fault(block: Block, code: str, text: str, hint: str) -> ProgramError:

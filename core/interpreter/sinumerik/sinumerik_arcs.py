@@ -22,13 +22,18 @@ def arc(state: State, statement: Statement) -> Block:
     """The arc of a block. Raises ProgramError where its words give none."""
     if state.plane != 18:
         raise statement.refuse(
-            statement.g.get("motion"), "arc-plane", "arcs of X and Z need G18.", "Write G18 before it."
+            statement.g.get("motion"),
+            "arc-plane",
+            "arcs in X and Z need G18.",
+            ("Write G18 before this block."),
         )
     _check_words(state, statement)
     travel = travel_of(state, statement)
     if not travel.frame.uniform:
-        text = "SCALE has made X and Z of different sizes, in which an arc is none."
-        raise statement.refuse(statement.g.get("motion"), "arc-scaled", text, "Give both one factor.")
+        text = "SCALE uses different factors for X and Z, so an arc is not possible."
+        raise statement.refuse(
+            statement.g.get("motion"), "arc-scaled", text, ("Use the same factor for both axes.")
+        )
     clockwise, (centre, travel) = _found(state, statement, travel)
     offset = travel.offset_x
     feed = check_feed(state, statement, travel.x0 - offset, travel.x - offset)
@@ -49,7 +54,10 @@ def _check_words(state: State, statement: Statement) -> None:
         word = statement.words[name]
         kind = {Motion.THROUGH: "CIP", Motion.TANGENT: "CT"}.get(state.motion, f"G{state.motion:d}")
         raise statement.refuse(
-            word, "word-unused", f"{word.text} does not belong to {kind}.", "Take it out, or write its arc."
+            word,
+            "word-unused",
+            f"{word.text} cannot be used with {kind}.",
+            ("Remove it, or program the matching arc."),
         )
 
 
@@ -68,8 +76,8 @@ def _through(state: State, statement: Statement, travel: AxisTravel) -> tuple[bo
     """CIP: the circle through start, the point of I1 and K1, and end."""
     begun, words = travel.begun, statement.words
     if not _OF_CIP & words.keys():
-        text = "CIP needs I1 and K1, a point on its way."
-        raise statement.refuse(statement.g.get("motion"), "arc-centre-missing", text, "Add them.")
+        text = "CIP needs I1 and K1, a point on the arc."
+        raise statement.refuse(statement.g.get("motion"), "arc-centre-missing", text, ("Add I1 and K1."))
     relative = state.modal.absolute is False
     x, z = begun
     if "I1" in words:
@@ -81,7 +89,10 @@ def _through(state: State, statement: Statement, travel: AxisTravel) -> tuple[bo
     a, b, c = (travel.x0, travel.z0), travel.placed(x, z), (travel.x, travel.z)
     across = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
     if abs(across) < NO_WAY * max(dist(a, b), dist(a, c), NO_WAY):
-        text = "start, end and the point of I1 and K1 lie on one line, or two of them in one place."
+        text = (
+            "the start point, the end point and the point of I1 and K1 are on one line, or two "
+            "of them are identical."
+        )
         word = words.get("I1") or words.get("K1")
         raise statement.refuse(word, "arc-radius", text, "Correct the point, or write G1.")
     return _clockwise(across), (_circumcentre(a, b, c), travel)
@@ -104,15 +115,15 @@ def _tangent(state: State, statement: Statement, travel: AxisTravel) -> tuple[bo
     """CT: the arc that begins in the direction in which the path before it has ended."""
     word = statement.g.get("motion")
     if state.direction is None:
-        text = "CT goes on from a path, and nothing has moved before it."
-        raise statement.refuse(word, "arc-centre-missing", text, "Write a move before it.")
+        text = "CT continues a path, but no move precedes it."
+        raise statement.refuse(word, "arc-centre-missing", text, "Program a move before this block.")
     _demand_ends(statement, word, travel.length)
     ux, uz = state.direction
     dx, dz = travel.x - travel.x0, travel.z - travel.z0
     aside = ux * dz - uz * dx  # how far the end lies beside the direction, with its side
     if abs(aside) < NO_WAY:
-        text = "the end of CT lies on the line of the path before it, which makes no arc."
-        raise statement.refuse(word, "arc-radius", text, "Write G1, or another end.")
+        text = "the end point of CT is in line with the previous path, so no arc is possible."
+        raise statement.refuse(word, "arc-radius", text, "Write G1, or change the end point.")
     far = (dx * dx + dz * dz) / (2.0 * aside)
     centre = travel.x0 - uz * far, travel.z0 + ux * far
     return _clockwise(aside), (centre, travel)
@@ -124,8 +135,8 @@ def _centre(
     """Machine coordinates of the centre, and the travel with its end where the words did not give one."""
     words, by_centre = statement.words, {"I", "K"} & statement.words.keys()
     if "CR" in words and ("AR" in words or by_centre):
-        text = "the arc has CR and another way to say where its centre is."
-        raise statement.refuse(words["CR"], "arc-both", text, "Keep one of them.")
+        text = "the arc has CR and another definition of its center."
+        raise statement.refuse(words["CR"], "arc-both", text, "Keep only one of them.")
     if "CR" in words:
         return _by_radius(state, statement, travel, clockwise), travel
     if "AR" in words:
@@ -133,8 +144,10 @@ def _centre(
             return _by_angle(state, statement, travel, clockwise), travel
         return _turned(state, statement, travel, clockwise)
     if not by_centre:
-        text = "the arc has neither CR, AR nor I and K."
-        raise statement.refuse(statement.g.get("motion"), "arc-centre-missing", text, "Add one of them.")
+        text = "the arc needs CR, AR, or I and K."
+        raise statement.refuse(
+            statement.g.get("motion"), "arc-centre-missing", text, ("Add one of these values.")
+        )
     centre = _by_words(state, statement, travel)
     _check_radii(statement, travel, centre)
     return centre, travel
@@ -165,7 +178,8 @@ def _by_radius(state: State, statement: Statement, travel: AxisTravel, clockwise
     _demand_ends(statement, word, chord)
     if chord > 2 * abs(radius) + _TOLERANCE:
         text = (
-            f"{word.text} is too small: the ends are {chord:.4f} mm apart, half of which it takes at least."
+            f"{word.text} is too small: it must be at least half the distance between the arc "
+            f"ends, which is {chord:.4f} mm."
         )
         raise statement.refuse(word, "arc-radius", text, "Correct CR or the end point.")
     side = clockwise if radius > 0 else not clockwise
@@ -179,7 +193,10 @@ def _by_angle(state: State, statement: Statement, travel: AxisTravel, clockwise:
     half = radians(_angle(state, statement, word)) / 2
     if {"I", "K"} & statement.words.keys():
         raise statement.refuse(
-            word, "arc-both", "the arc has AR, an end point and a centre.", "Keep two of them."
+            word,
+            "arc-both",
+            ("the arc has AR, an end point and a center, but only two of them are allowed."),
+            "Keep only two of them.",
         )
     # To the right of the chord for a clockwise arc; for more than half a turn the cotangent changes side.
     aside = (0.5 if clockwise else -0.5) / tan(half)
@@ -193,13 +210,13 @@ def _turned(
     """AR and the centre: the end is the start turned about it."""
     word = statement.words["AR"]
     if not {"I", "K"} & statement.words.keys():
-        text = "AR stands without an end point and without I and K."
-        raise statement.refuse(word, "arc-centre-missing", text, "Add one of them.")
+        text = "AR has neither an end point nor I and K."
+        raise statement.refuse(word, "arc-centre-missing", text, "Add one of these values.")
     centre = _by_words(state, statement, travel)
     x, z = travel.x0 - centre[0], travel.z0 - centre[1]
     if hypot(x, z) < NO_WAY:
         raise statement.refuse(
-            word, "arc-radius", "the centre of the arc is its start point.", "Correct I and K."
+            word, "arc-radius", "the center of the arc is its start point.", "Correct I and K."
         )
     angle = radians(_angle(state, statement, word))
     turned = atan2(x, z) + (angle if clockwise else -angle)  # from Z+ towards X+ is clockwise with X down
@@ -211,8 +228,8 @@ def _turned(
 def _angle(state: State, statement: Statement, word: Word) -> float:
     angle = state.number(statement, word)
     if not 0.0 < angle < 360.0:
-        text = f"{word.text}: an opening angle lies over 0 and under 360."
-        raise statement.refuse(word, "arc-angle", text, "A full circle takes I and K.")
+        text = f"{word.text}: an opening angle must be greater than 0 and less than 360 degrees."
+        raise statement.refuse(word, "arc-angle", text, "Program a full circle with I and K.")
     return angle
 
 
@@ -220,7 +237,7 @@ def _demand_ends(statement: Statement, word: Word | None, chord: float) -> None:
     if chord < NO_WAY:
         by = f" by {word.name}" if word else ""
         text = f"the arc{by} ends where it starts."
-        raise statement.refuse(word, "arc-no-chord", text, "A full circle takes I and K.")
+        raise statement.refuse(word, "arc-no-chord", text, "Program a full circle with I and K.")
 
 
 def _check_radii(statement: Statement, travel: AxisTravel, centre: Point) -> None:
@@ -228,10 +245,12 @@ def _check_radii(statement: Statement, travel: AxisTravel, centre: Point) -> Non
     first, last = dist((travel.x0, travel.z0), centre), dist((travel.x, travel.z), centre)
     if first < NO_WAY:
         raise statement.refuse(
-            word, "arc-radius", "the centre of the arc is its start point.", "Correct I and K."
+            word, "arc-radius", "the center of the arc is its start point.", "Correct I and K."
         )
     if abs(first - last) > _TOLERANCE:
         text = f"the arc's radius is {first:.4f} mm at its start and {last:.4f} mm at its end."
-        hint = "I and K are distances from the start, I a radius; AC( ) makes them coordinates."
+        hint = (
+            "Enter I and K as distances from the start point (I as a radius), or as coordinates with AC( )."
+        )
         error: ProgramError = statement.refuse(word, WRONG_END, text, hint)
         raise error

@@ -27,7 +27,9 @@ def feed_words(state: State, statement: Statement) -> None:
     if word := statement.words.get("OVR"):
         state.override = state.number(statement, word) / 100.0
         if not 0.01 <= state.override <= 2.0:
-            raise statement.refuse(word, "not-positive", f"{word.text} lies beyond 1 to 200.", "Correct it.")
+            raise statement.refuse(
+                word, "not-positive", f"{word.text} is not between 1 and 200.", ("Correct the value.")
+            )
     if word := statement.words.get("FRCM"):
         value = state.number(statement, word)
         state.corner_feed = feed_of(state, statement, word) if value else None
@@ -60,19 +62,26 @@ def check_feed(
     word = statement.words.get("FB")
     feed = modal.feed if word is None else feed_of(state, statement, word)
     if feed is None:
-        hint = "Write F. Between G94 and G95 the old value is forgotten, and G96 and G97 count as G95."
+        hint = "Program F; switching between G94 and G95 deletes the old value, and G96 and G97 count as G95."
         raise statement.refuse(_mover(statement), NO_FEED, "no feedrate is programmed.", hint)
     if modal.css and modal.spindle and not modal.surface_speed:
-        text = "G96 is in force and no S has given a surface speed."
-        raise statement.refuse(statement.words.get("S"), "surface-speed-missing", text, "Write S beside G96.")
+        text = "G96 is active, but no S sets a surface speed."
+        raise statement.refuse(
+            statement.words.get("S"), "surface-speed-missing", text, ("Write S next to G96.")
+        )
     by_tool = modal.per_rev and state.master != 1
     if by_tool and not state.live_rpm:
-        text = "no speed for G95: the live tool stands, and SETMS(2) is in force."
-        raise statement.refuse(_mover(statement), "g95-spindle-stopped", text, "Start it with S and M3.")
-    if modal.per_rev and not by_tool and not (state.rpm_at(x0) and state.rpm_at(x1)):
-        text = "no spindle speed for G95: the spindle stands."
+        text = "no speed for G95: the live tool is stopped, and SETMS(2) is active."
         raise statement.refuse(
-            _mover(statement), "g95-spindle-stopped", text, "Start it with S and M3 or M4, or use G94."
+            _mover(statement), "g95-spindle-stopped", text, ("Start the live tool with S and M3.")
+        )
+    if modal.per_rev and not by_tool and not (state.rpm_at(x0) and state.rpm_at(x1)):
+        text = "no spindle speed for G95: the spindle is stopped."
+        raise statement.refuse(
+            _mover(statement),
+            "g95-spindle-stopped",
+            text,
+            ("Start the spindle with S and M3 or M4, or use G94."),
         )
     feed *= abs(state.live_rpm) / 60.0 if by_tool else 1.0
     return feed * state.override / (MM_PER_INCH if in_degrees and state.feed_in_inches else 1.0)

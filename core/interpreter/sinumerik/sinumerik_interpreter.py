@@ -65,8 +65,8 @@ from core.language.source import Source
 # Codes of findings that follow from where the machine stands and what is in force: behind a bad block nobody
 # knows either.
 _ENDS = frozenset({2, 17, 30})
-_NO_AXIS = re.compile(r"this lathe has no axis ([A-Z][0-9]?)")
-_ARC_IN_Y = re.compile(r": J: an arc in G18 has I and K")
+_NO_AXIS = re.compile(r"this lathe has no (?:axis )?([A-Z][0-9]?)\b")
+_ARC_IN_Y = re.compile(r": J: an arc in G18 uses I and K")
 _BEHIND_ERROR = 20_000
 """Lines that are gone through behind the first error, for others that it may hide."""
 
@@ -141,12 +141,13 @@ class Interpreter(Interpretation):
         """Why no other pass can go on from here."""
         if self._transformed is not None:
             where = (
-                f"it stands on a corner or a contour in {self._transformed.name}; begin before its approach"
+                f"the line is part of a corner or a contour in {self._transformed.name}; start before "
+                "the approach"
             )
             return where if self._transformed.holds else ""
         if self._compensation.holds:
-            return "it stands on a contour of G41 or G42; begin before its approach"
-        return "the block before it waits for its corner" if self._corners.holds else ""
+            return "the line is part of a G41 or G42 contour; start before the approach"
+        return "the previous block is part of an unfinished corner" if self._corners.holds else ""
 
     def _go_on_from(self, begin: Begin) -> None:
         """Take up what the block of ``begin`` inherits."""
@@ -233,8 +234,8 @@ class Interpreter(Interpretation):
         control = self._setup.limits.control
         if found := lacking(control, line):
             name, column = found
-            text = f"{name} is no function of a SINUMERIK {control.upper()}, which this machine has."
-            hint = "Write it otherwise, or correct control under [machine] of the machine file."
+            text = f"{name} is not a function of the SINUMERIK {control.upper()} on this machine."
+            hint = "Program it differently, or correct control under [machine] in the machine file."
             raise ProgramError(fault(line.number, column, "not-in-control", line.block, text, hint))
 
     def _call(self, line: Line, *, modal: bool = False) -> Iterator[Block]:
@@ -258,9 +259,16 @@ class Interpreter(Interpretation):
     def _taken_cycle(self, line: Line) -> None:
         """A cycle that changes nothing here; said once. Raises ProgramError where it asks for more."""
         if line.call == SWIVELS and any(each.given for each in line.arguments or ()):
-            text = "CYCLE800: this lathe has no head that swivels."
+            text = "CYCLE800: this lathe has no swivel head."
             raise ProgramError(
-                fault(line.number, line.call_column, "not-in-subset", line.block, text, "Take it out.")
+                fault(
+                    line.number,
+                    line.call_column,
+                    "not-in-subset",
+                    line.block,
+                    text,
+                    ("Remove it from the program."),
+                )
             )
         if line.call not in self._state.told:
             self._state.told.add(line.call)
@@ -371,12 +379,17 @@ class Interpreter(Interpretation):
             yield fixed_point(state, statement)
         elif word := statement.words.get("FP") or statement.words.get("OFFN"):
             of = "G75" if word.name == "FP" else "TRANSMIT"
-            raise statement.refuse(word, "word-unused", f"{word.text} belongs to {of}.", "Take it out.")
+            raise statement.refuse(
+                word,
+                "word-unused",
+                f"{word.text} can be used only with {of}.",
+                ("Remove it from the program."),
+            )
         elif statement.moves or (ARC & statement.words.keys()):
             yield from self._move(statement)
         elif word := statement.g.get(SUPPRESSION):
-            text = f"{word.text} acts in a block that moves an axis."
-            raise statement.refuse(word, "word-unused", text, "Add the axes.")
+            text = f"{word.text} is effective only in a block that moves an axis."
+            raise statement.refuse(word, "word-unused", text, "Add the axes to the block.")
         else:
             return
         if state.exact or EXACT_ONCE in statement.g:
@@ -440,8 +453,8 @@ class Interpreter(Interpretation):
         return told
 
     def _never_ends(self, line: Line) -> None:
-        text = f"the program makes more than {MOST_BLOCKS:,} blocks or {MOST_LINES:,} executed lines."
-        hint = "Look at its loops, and lower the passes of its calls."
+        text = f"the program exceeds the limit of {MOST_BLOCKS:,} blocks or {MOST_LINES:,} executed lines."
+        hint = "Check the loops, and reduce the number of passes of the calls."
         self._refuse(fault(line.number, 0, "too-many-blocks", line.block, text, hint))
 
 
@@ -458,8 +471,8 @@ def _set_parameters(state: State, statement: Statement) -> None:
 def _no_place(state: State, statement: Statement, word: Word, name: str) -> ProgramError:
     if word.name in state.variables.scope.sizes:
         return statement.refuse(word, *state.variables.missing(word.name, name))
-    text = f"the name {name} is not defined: it is no word, and no variable of this program."
-    return statement.refuse(word, NOT_DEFINED, text, f"Write DEF REAL {word.name} before it.")
+    text = f"the name {name} is not defined: it is neither a word nor a variable of this program."
+    return statement.refuse(word, NOT_DEFINED, text, (f"Write DEF REAL {word.name} before this block."))
 
 
 def _fill(state: State, statement: Statement, word: Word, name: str) -> None:
@@ -474,7 +487,7 @@ def _fill(state: State, statement: Statement, word: Word, name: str) -> None:
     assert word.values is not None
     left = state.variables.fill(letters, name, word.values, lambda asked: state.worth(asked, refuse))
     if left:
-        text = f"{word.text}: the array has {left} elements too few for this list."
+        text = f"{word.text}: the array needs {left} more elements for this list."
         raise refuse("array-values", text, "Shorten the list.")
 
 

@@ -217,4 +217,6 @@ def positive(statement: Statement, word: Word, value: float, what: str) -> float
     """A number that must be over 0. Raises ProgramError."""
     if value > 0.0:
         return value
-    raise statement.refuse(word, "not-positive", f"{word.text}: {what} must be over 0.", "Correct it.")
+    raise statement.refuse(
+        word, "not-positive", f"{word.text}: {what} must be greater than 0.", ("Correct the value.")
+    )

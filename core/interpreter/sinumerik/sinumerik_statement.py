@@ -100,14 +100,14 @@ def _sort(statement: Statement, word: Word) -> None:
         statement.live.append(word)
         return
     if word.spindle > 1:
-        text = f"{word.text}: this machine has one spindle that is positioned; 2 is its live tool."
-        raise statement.refuse(word, "one-spindle", text, "Write it for spindle 1, or take it out.")
+        text = f"{word.text}: this machine can position only one spindle; spindle 2 is its live tool."
+        raise statement.refuse(word, "one-spindle", text, "Program it for spindle 1, or remove it.")
     if word.name == "G":
         _sort_g(statement, word, known.G_GROUPS.get(int(word.value or 0)))
     elif word.name == "M":
         if word.value is None:
-            text = f"{word.text}: which M function it is has to be there as a number."
-            raise statement.refuse(word, "m-unknown", text, "Write M with its number.")
+            text = f"{word.text}: the M function must be given as a number."
+            raise statement.refuse(word, "m-unknown", text, "Write M with a number.")
         statement.m[int(word.value)] = word
     elif word.name in known.KEYS:
         statement.keys[word.name] = word
@@ -116,7 +116,7 @@ def _sort(statement: Statement, word: Word) -> None:
         statement.sets.append(word)
     elif word.name in statement.words:
         raise statement.refuse(
-            word, TWICE, f"{word.name} is programmed twice in the block.", "Keep one of them."
+            word, TWICE, f"{word.name} is programmed twice in the block.", "Keep only one of them."
         )
     else:
         statement.words[word.name] = word
@@ -126,30 +126,35 @@ def _sort_g(statement: Statement, word: Word, group: str | None) -> None:
     if group is None:
         why = known.WHY_OUTSIDE.get(f"G{int(word.value or 0)}")
         if why is not None:
-            raise statement.refuse(word, "not-in-subset", f"{word.text}: {why}.", "Take it out.")
+            raise statement.refuse(
+                word, "not-in-subset", f"{word.text}: {why}.", ("Remove it from the program.")
+            )
         if habit := iso_habit(statement.line.text.upper()):
             raise statement.refuse(word, "other-control", habit.text, habit.hint)
         raise statement.refuse(
-            word, UNKNOWN_G, f"{word.text} is no G function of this control.", "Take it out."
+            word,
+            UNKNOWN_G,
+            f"{word.text} is not a G function of this control.",
+            ("Remove it from the program."),
         )
     before = statement.g.get(group)
     if before is not None:
-        text = f"{before.text} and {word.text} are of one group ({group})."
-        raise statement.refuse(word, ONE_GROUP, text, "One G code of a group per block.")
+        text = f"{before.text} and {word.text} belong to the same group ({group})."
+        raise statement.refuse(word, ONE_GROUP, text, "Use only one G code of a group in a block.")
     statement.g[group] = word
 
 
 def _check_m(statement: Statement) -> None:
     if len(statement.m) > known.MOST_M:
-        text = f"the block holds {len(statement.m)} M codes."
+        text = f"the block contains {len(statement.m)} M codes."
         raise statement.refuse(
-            list(statement.m.values())[-1], "m-too-many", text, f"{known.MOST_M} are the most."
+            list(statement.m.values())[-1], "m-too-many", text, f"The maximum is {known.MOST_M}."
         )
     for group in ({3, 4, 5, 19, 70}, {0, 1, 2, 17, 30}, {7, 9}, {8, 9}, {40, 41, 42, 43, 44, 45}):
         found = sorted(group & statement.m.keys())
         if len(found) > 1:
-            text = f"M{found[0]} and M{found[1]} exclude each other."
-            raise statement.refuse(statement.m[found[1]], "m-conflict", text, "Keep one of them.")
+            text = f"M{found[0]} and M{found[1]} cannot be in the same block."
+            raise statement.refuse(statement.m[found[1]], "m-conflict", text, ("Keep only one of them."))
 
 
 def _check_alone(statement: Statement) -> None:
@@ -162,8 +167,8 @@ def _check_alone(statement: Statement) -> None:
         if habit := iso_habit(statement.line.text.upper()):
             raise statement.refuse(dwell, "other-control", habit.text, habit.hint)
         if others or len(statement.words) != 1:
-            text = "G4 needs a block of its own, with F (seconds) or S (revolutions)."
-            raise statement.refuse(dwell, "own-block", text, "Split the block.")
+            text = "G4 must be in a separate block with F (seconds) or S (revolutions)."
+            raise statement.refuse(dwell, "own-block", text, "Split the block into separate blocks.")
     if key is not None:
         others = (
             statement.words.keys() - {*known.AXES, "RPL"}
@@ -172,8 +177,8 @@ def _check_alone(statement: Statement) -> None:
             or len(statement.g) > 1
         )
         if others:
-            text = f"{key.name} needs a block of its own, with axes and nothing else."
-            raise statement.refuse(key, "own-block", text, "Split the block.")
+            text = f"{key.name} must be in a separate block that contains only axes."
+            raise statement.refuse(key, "own-block", text, "Split the block into separate blocks.")
 
 
 def _check_corner(statement: Statement) -> None:
@@ -181,10 +186,10 @@ def _check_corner(statement: Statement) -> None:
         return
     corners = sorted(known.CORNERS & statement.words.keys())
     if len(corners) > 1:
-        text = f"{corners[0]} and {corners[1]} stand in one block."
-        raise statement.refuse(statement.words[corners[1]], "corner-both", text, "Keep one of them.")
+        text = f"{corners[0]} and {corners[1]} cannot be in the same block."
+        raise statement.refuse(statement.words[corners[1]], "corner-both", text, ("Keep only one of them."))
     if corners and not (known.PLACES - {"C"}) & statement.words.keys():
-        text = f"{corners[0]} stands in a block without X or Z."
+        text = f"{corners[0]} is in a block without X or Z."
         raise statement.refuse(
-            statement.words[corners[0]], "corner-without-move", text, "Put it behind a move."
+            statement.words[corners[0]], "corner-without-move", text, ("Put it in the block of a move.")
         )

@@ -119,14 +119,20 @@ def demand_spindle_as_c(state: State, refuse: Callable[[str, str], ProgramError]
     limits = state.setup.limits
     if limits.c_enabled and limits.spindle_is_c:
         return
-    why = "C is a drive of its own" if limits.c_enabled else "it has no C"
+    why = "C has a separate drive" if limits.c_enabled else "the machine has no C axis"
     if limits.spindle_oriented:
-        text = f"the spindle of this machine is no axis C: {why}, and its drive only brings it to an angle."
-        raise refuse(text, "Take the machine sinumerik-live, whose spindle is C.")
-    text = f"the spindle of this machine is not oriented: {why}, and nothing else brings it to an angle."
+        text = (
+            f"the spindle of this machine is not a C axis: {why}, and the spindle drive can only "
+            "move it to an angle."
+        )
+        raise refuse(text, "Select the machine sinumerik-live, whose spindle is the C axis.")
+    text = (
+        f"the spindle of this machine cannot be oriented: {why}, and nothing else moves the "
+        "spindle to an angle."
+    )
     hint = (
-        "Write oriented = true under [spindle] of the machine file where its drive can; "
-        "or M5, and index the part by C."
+        "Set oriented = true under [spindle] in the machine file if the drive supports it, "
+        "or write M5 and index the part with C."
     )
     raise refuse(text, hint)
 
@@ -139,15 +145,21 @@ def _orient(state: State, statement: Statement, word: Word) -> SpindleOrient:
     value = state.number(statement, word)
     if form is Form.IC:
         if at is None:
-            text = f"{word.text} counts from an angle, and the spindle is held at none."
-            raise statement.refuse(word, "spindle-position", text, "Write SPOS with an angle before it.")
+            text = (
+                f"{word.text} is relative to a spindle angle, but the spindle is not positioned at any angle."
+            )
+            raise statement.refuse(
+                word, "spindle-position", text, ("Write SPOS with an angle before this block.")
+            )
         if abs(value) >= _TURN:
-            text = f"{word.text}: the drive turns less than once to an angle."
-            raise statement.refuse(word, "spindle-position", text, "Write less than 360.")
+            text = f"{word.text}: the drive turns less than one revolution to reach an angle."
+            raise statement.refuse(
+                word, "spindle-position", text, ("Enter an angle of less than 360 degrees.")
+            )
         return SpindleOrient((at + value) % _TURN, int(copysign(1, value)) if value else 0)
     if not 0.0 <= value < _TURN:
-        text = f"{word.text}: {value:g} is no angle of a spindle."
-        raise statement.refuse(word, WRONG_MODULO, text, "Write 0 to under 360.")
+        text = f"{word.text}: {value:g} is not a valid spindle angle."
+        raise statement.refuse(word, WRONG_MODULO, text, ("Enter an angle from 0 to less than 360 degrees."))
     sense = {Form.ACP: 1, Form.ACN: -1}.get(form, 0)
     if form is Form.AC and at is not None:  # never across 0
         sense = int(copysign(1, value - at)) if value != at else 0
@@ -193,7 +205,7 @@ def _limit(state: State, statement: Statement) -> None:
     word = statement.words.get("LIMS")
     if word is not None:
         _demand_controlled(state, statement, word)
-        highest = positive(statement, word, state.number(statement, word), "the limit of the speed")
+        highest = positive(statement, word, state.number(statement, word), "the speed limit")
         state.adopt(state.modal._replace(css_max=highest))
     word = statement.words.get("S")
     code = statement.code(BLOCKWISE)
@@ -202,11 +214,13 @@ def _limit(state: State, statement: Statement) -> None:
     _demand_controlled(state, statement, word)
     value = state.number(statement, word)
     if value < 0 or (code == 26 and not value):
-        raise statement.refuse(word, "not-positive", f"{word.text} is no limit of a speed.", "Correct it.")
+        raise statement.refuse(
+            word, "not-positive", f"{word.text} is not a valid speed limit.", ("Correct the value.")
+        )
     lowest, highest = (value, state.highest) if code == 25 else (state.lowest, value)
     highest = min(highest, state.setup.limits.max_rpm)
     if lowest > highest:
-        text = f"{word.text}: the lowest speed {lowest:g} is over the highest {highest:g}."
+        text = f"{word.text}: the minimum speed {lowest:g} is above the maximum speed {highest:g}."
         raise statement.refuse(word, "speed-limits", text, "Correct G25 or G26.")
     state.lowest, state.highest = lowest, highest
     state.adopt(state.modal._replace(css_min=lowest))
@@ -220,27 +234,27 @@ def _speed(state: State, statement: Statement) -> None:
     _demand_controlled(state, statement, word)
     value = state.number(statement, word)
     if value < 0:
-        text = f"{word.text}: the speed has no sign; M3 and M4 say the direction."
-        raise statement.refuse(word, "speed-sign", text, "Take the sign out.")
+        text = f"{word.text}: the speed cannot be negative; M3 and M4 set the direction."
+        raise statement.refuse(word, "speed-sign", text, "Remove the sign.")
     if state.modal.css:
         speed = value * (METRES_PER_MINUTE if state.modal.metric else _FEET)
         if speed > _FASTEST_SURFACE:
-            text = f"{word.text} m/min is no surface speed that a tool can stand."
-            raise statement.refuse(word, "speed-range", text, "G97 makes S rpm.")
+            text = f"{word.text} m/min is too high a surface speed for any tool."
+            raise statement.refuse(word, "speed-range", text, "Write G97 if S is in rpm.")
         state.adopt(state.modal._replace(surface_speed=speed))
         return
     highest = state.setup.limits.max_rpm
     state.adopt(state.modal._replace(rpm=min(value, highest)))
     if value > highest:
         raise statement.refuse(
-            word, "speed-range", f"{word.text} is over the spindle's {highest:g} rpm.", "Lower S."
+            word, "speed-range", f"{word.text} is above the spindle maximum of {highest:g} rpm.", "Lower S."
         )
 
 
 def _demand_controlled(state: State, statement: Statement, word: Word | None) -> None:
     if word is not None and not state.setup.limits.spindle_controlled:
         text = f"{word.text} needs a controlled spindle, which this machine does not have."
-        raise statement.refuse(word, "no-controlled-spindle", text, "Take it out.")
+        raise statement.refuse(word, "no-controlled-spindle", text, "Remove it from the program.")
 
 
 def _check_start(state: State, statement: Statement, word: Word) -> None:
@@ -248,11 +262,14 @@ def _check_start(state: State, statement: Statement, word: Word) -> None:
     if not limits.spindle_controlled:
         state.adopt(state.modal._replace(rpm=limits.max_rpm))  # it has one speed
     if not (state.modal.surface_speed if state.modal.css else state.modal.rpm):
-        text = f"{word.text} starts the spindle, and its speed S is 0: none was written, or S0."
+        text = f"{word.text} starts the spindle, but S is 0 or not programmed."
         raise statement.refuse(word, "speed-missing", text, "Write S in the block.")
     if not state.modal.collet_closed and not limits.start_with_collet_open:
         raise statement.refuse(
-            word, "collet-open", f"{word.text} starts the spindle with the collet open.", "Close it."
+            word,
+            "collet-open",
+            f"{word.text} starts the spindle with the collet open.",
+            ("Close the collet first."),
         )
 
 
@@ -261,11 +278,13 @@ def dwell(state: State, statement: Statement) -> Block:
     word = statement.words.get("F") or statement.words["S"]
     value = state.number(statement, word)
     if value < 0:
-        raise statement.refuse(word, "dwell-range", f"{word.text}: a dwell is 0 or longer.", "Correct it.")
+        raise statement.refuse(
+            word, "dwell-range", f"{word.text}: a dwell cannot be negative.", ("Correct the value.")
+        )
     seconds = value if word.name == "F" else value / _turning(state, statement, word) * 60.0
     if seconds > _LONGEST_DWELL:
-        text = f"{word.text} is a dwell of {seconds:.0f} s; {_LONGEST_DWELL:g} are the most."
-        raise statement.refuse(word, "dwell-range", text, "F counts in seconds, S in revolutions.")
+        text = f"{word.text} is a dwell of {seconds:.0f} s; the maximum is {_LONGEST_DWELL:g} s."
+        raise statement.refuse(word, "dwell-range", text, "Enter F in seconds or S in revolutions.")
     return state.action(statement.line.number, statement.line.text, Dwell(seconds))
 
 
@@ -274,6 +293,8 @@ def _turning(state: State, statement: Statement, word: Word) -> float:
     _demand_controlled(state, statement, word)
     rpm = abs(state.rpm)
     if not rpm:
-        text = f"G4 {word.text} waits for revolutions of a spindle that stands."
-        raise statement.refuse(word, "dwell-spindle-stopped", text, "Start it with M3 or M4, or write G4 F.")
+        text = f"G4 {word.text} waits for spindle revolutions, but the spindle is stopped."
+        raise statement.refuse(
+            word, "dwell-spindle-stopped", text, ("Start the spindle with M3 or M4, or write G4 F.")
+        )
     return rpm

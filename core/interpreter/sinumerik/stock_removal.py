@@ -44,9 +44,16 @@ def kind_of(cycle: Cycle) -> Kind:
     value = cycle.number("VARI", -1.0)
     number = round(value) % _ROUNDING
     if value != round(value) or value < 1 or number not in range(1, 13) or value > _ROUNDING + 12:
-        told = f"is {value:g}; types are 1 to 12" if cycle.given("VARI") else "is missing; types are 1 to 12"
+        told = (
+            f"is {value:g}; valid types are 1 to 12"
+            if cycle.given("VARI")
+            else ("is missing; valid types are 1 to 12")
+        )
         raise cycle.wrong(
-            "VARI", told, "1 roughs, 5 finishes, 9 does both, along Z and outside.", MACHINING_TYPE
+            "VARI",
+            told,
+            ("Enter 1 for roughing, 5 for finishing or 9 for both, along Z and external."),
+            MACHINING_TYPE,
         )
     rest = (number - 1) % 4
     return Kind(rest % 2 == 1, rest >= 2, number <= 4 or number >= 9, number >= 5)
@@ -56,10 +63,17 @@ def stock_removal(cycle: Cycle, contour: list[Element]) -> Iterator[Block]:
     """The whole cycle. Raises ProgramError before the first block."""
     kind = kind_of(cycle)
     if not contour:
-        raise cycle.wrong("NPP", "names a contour without a line or arc", "Write its points.", WRONG_CONTOUR)
+        raise cycle.wrong(
+            "NPP",
+            "names a contour without a line or arc",
+            ("Write the points of the contour."),
+            WRONG_CONTOUR,
+        )
     if len(contour) > _MOST_ELEMENTS:
         raise cycle.wrong(
-            "NPP", f"has {len(contour):,} elements; {_MOST_ELEMENTS:,} are the most", "Split it."
+            "NPP",
+            f"has {len(contour):,} elements; the maximum is {_MOST_ELEMENTS:,}",
+            ("Split it into smaller parts."),
         )
     plan = _Plan(cycle, kind, contour)
     steps = plan.approach()
@@ -124,8 +138,10 @@ class _Plan:
         try:
             return Area(view.from_start(contour), left + self._nose), view
         except TrimError:
-            hint = "Lower it, or open the narrow place."
-            raise self._cycle.wrong("FAL", "leaves no unbroken way along the contour", hint, 61606) from None
+            hint = "Reduce FAL, or widen the narrow place in the contour."
+            raise self._cycle.wrong(
+                "FAL", ("leaves no continuous path along the contour"), hint, 61606
+            ) from None
 
     def approach(self) -> list[Step]:
         """To the start point: first off the part in depth, then beside it."""
@@ -145,22 +161,26 @@ class _Plan:
         infeed = cycle.size("MID")
         if not infeed:
             raise cycle.wrong(
-                "MID", "is missing, and nothing says how deep a pass is", "Write MID.", NO_INFEED
+                "MID", ("is missing, so the depth of a pass is not defined"), "Write MID.", NO_INFEED
             )
         contour, left = self._with_allowance()
         area, view = self._area(contour, left)
         if area.deepest <= 0:
             raise cycle.wrong(
-                "NPP", "leaves nothing to cut", "Look at the contour's direction.", WRONG_CONTOUR
+                "NPP", "leaves nothing to cut", ("Check the direction of the contour."), WRONG_CONTOUR
             )
         count = ceil(area.deepest / infeed - _WHOLE)
         if count > MOST_PASSES or count * len(contour) > _MOST_LOOKS:
-            raise cycle.wrong("MID", f"would make {count:,} passes", "Look for a lost decimal point.")
+            raise cycle.wrong(
+                "MID",
+                f"would need {count:,} passes, which is too many",
+                ("Look for a missing decimal point."),
+            )
         rougher = Rougher(area, 1.0, self._off)
         for k in range(1, count + 1):
             rougher.cut(area.deepest * k / count)
         if rougher.plunged and not cycle.number("FF2") and cycle.state.modal.feed is None:
-            raise cycle.wrong("FF2", "is missing, and the contour has a relief", "Write FF2.", 61003)
+            raise cycle.wrong("FF2", ("is missing, but the contour has a relief cut"), "Write FF2.", 61003)
         moves = self._run(rougher, view)
         return self._fed(moves, cycle.feed("FF1"), cycle.feed("FF2"), breaks=True)
 
@@ -174,7 +194,7 @@ class _Plan:
             rougher.finish(backwards=view.backwards)
         except StartNearError:
             hint = "End the contour where the tool can leave it."
-            raise self._cycle.wrong("NPP", "lies in the way to its own ends", hint, 61607) from None
+            raise self._cycle.wrong("NPP", ("blocks the path to its own ends"), hint, 61607) from None
         return [view.placed(move) for move in rougher.moves]
 
     def _with_allowance(self) -> tuple[list[Element], float]:
@@ -198,7 +218,7 @@ class _Plan:
         cycle = self._cycle
         if feed is None:
             name = "FF1" if breaks else "FF3"
-            raise cycle.wrong(name, "is missing, and no F is in force", f"Write {name}.", 61003)
+            raise cycle.wrong(name, "is missing, and no F is active", f"Write {name}.", 61003)
         steps: list[Step] = []
         at = self._start
         for move in moves:
@@ -219,7 +239,9 @@ class _Plan:
         steps: list[Step] = []
         count = ceil(abs(way) / length - _WHOLE)
         if count > MOST_PASSES:
-            raise self._cycle.wrong("DAM", f"would break a pass {count:,} times", "Correct it.")
+            raise self._cycle.wrong(
+                "DAM", (f"would interrupt a pass {count:,} times, which is too many"), ("Correct the value.")
+            )
         for k in range(1, count + 1):
             share = min(k * length / abs(way), 1.0)
             between = Move(at[0] + (move.x - at[0]) * share, at[1] + way * share)
@@ -249,9 +271,9 @@ def _nose_of(cycle: Cycle) -> tuple[float, Point]:
         return 0.0, (0.0, 0.0)
     if not edge.quadrant:
         text = (
-            f"the tool has no tip quadrant: {cycle.line.call} cuts tapers and arcs without its nose radius."
+            f"the tool has no tip quadrant, so {cycle.line.call} ignores its nose radius on tapers and arcs."
         )
-        cycle.warn("comp-no-quadrant", text, "Enter the tip quadrant on the page of tool offsets (F8).")
+        cycle.warn("comp-no-quadrant", text, ("Enter the tip quadrant on the TOOL OFFSETS page (F8)."))
         return 0.0, (0.0, 0.0)
     z, x = TIP_DIRECTIONS[edge.quadrant]
     return edge.nose_radius, (x * edge.nose_radius, z * edge.nose_radius)

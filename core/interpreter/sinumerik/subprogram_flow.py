@@ -205,7 +205,7 @@ class Flow:
         if routine is None:
             raise _missing(line)
         if len(self._calls) > DEEPEST_CALL:
-            text = f"subprograms call each other more than {DEEPEST_CALL} deep."
+            text = f"subprogram calls are nested more than {DEEPEST_CALL} levels deep."
             raise _refused(line, "recursion", text, "A subprogram must not call itself.")
         heading = routine.heading()
         first = routine.first()
@@ -235,10 +235,10 @@ class Flow:
             call.routine.repeats = call.routine.repeats or back
             call.at = at
             if back and self._comes_round():
-                text = (
-                    "the program comes round to this jump with nothing changed that a jump goes by: no end."
+                text = "this jump repeats forever: nothing that affects a jump changes in the loop."
+                hint = (
+                    "In the loop, change a variable that the condition uses; Cycle Start runs the part again."
                 )
-                hint = "Change a variable of its condition in the loop; Cycle Start runs a part again."
                 raise _steering_fault(line, jump, ENDLESS, text, hint)
 
     def _comes_round(self) -> bool:
@@ -262,7 +262,7 @@ class Flow:
         until = find_label(Steering.GOTO, jump.until, call.routine, here) if jump.until else here
         missing = jump.target if start is None else jump.until if until is None else ""
         if start is None or until is None:
-            text = f"the label {missing} of {jump.steering} is not in this program."
+            text = f"label {missing} of {jump.steering} is not in this program."
             raise _steering_fault(line, jump, NO_TARGET, text, "Correct the label.")
         if jump.steering is Steering.REPEAT_BLOCK:
             end = start + 1
@@ -271,13 +271,15 @@ class Flow:
         else:
             end = _end_label(call.routine, start, here)
         if end <= start or (start <= here < end):
-            text = f"{jump.steering} would repeat a part that has no end before it, or itself."
-            raise _steering_fault(line, jump, NESTING, text, "The part to repeat stands before or behind it.")
+            text = f"the section to repeat contains {jump.steering} itself or does not end before it."
+            raise _steering_fault(
+                line, jump, NESTING, text, ("Put the whole section to repeat before or after this block.")
+            )
         passes = 1
         if jump.passes is not None:
             passes = int(state.worth(jump.passes, lambda c, t, h: _steering_fault(line, jump, c, t, h)))
         if not 1 <= passes <= _MOST_PASSES or len(call.repeats) >= DEEPEST_CALL:
-            text = f"P{passes} is no number of passes."
+            text = f"P{passes} is not a valid number of passes."
             raise _steering_fault(line, jump, "passes", text, f"Write P1 to P{_MOST_PASSES}.")
         call.routine.repeats = True
         call.repeats.append(_Repeat(start, end, passes, call.at))
@@ -324,9 +326,12 @@ def ends_main(statement: Statement, *, called: bool) -> bool:
 
 def _missing(line: Line) -> ProgramError:
     if reason := CYCLES_OUTSIDE.get(line.call):
-        return _refused(line, "not-in-subset", f"{line.call}: {reason}.", "Take it out.")
-    text = f"the subprogram {line.call} does not exist."
-    hint = f"Put {line.call}.spf beside the main program, or %_N_{line.call}_SPF into its file."
+        return _refused(line, "not-in-subset", f"{line.call}: {reason}.", ("Remove it from the program."))
+    text = f"subprogram {line.call} does not exist."
+    hint = (
+        f"Put {line.call}.spf in the main program's folder, or add %_N_{line.call}_SPF to the "
+        "main program's file."
+    )
     return _refused(line, "subprogram-missing", text, hint)
 
 

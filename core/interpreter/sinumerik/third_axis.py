@@ -47,7 +47,10 @@ def modulo_travel(form: Form, value: float, position: float) -> float:
     if form is Form.IC:
         return value
     if not 0.0 <= value < TURN:
-        raise TargetError(WRONG_MODULO, f"{value:.9g} is no position of a modulo axis, which has 0 to <360")
+        raise TargetError(
+            WRONG_MODULO,
+            (f"{value:.9g} is not a valid position of a modulo axis, which ranges from 0 to <360"),
+        )
     at = wrapped(position)
     if form is Form.AC:
         return _unless_noise(value - at)
@@ -75,7 +78,7 @@ def check_reach(end: float, ends: tuple[float, float] | None = TURNS) -> None:
     """Raises TargetError where an axis would stand beyond its ends in the machine's own count."""
     low, high = ends or (-inf, inf)
     if not low - ROUNDING <= end <= high + ROUNDING:
-        text = f"the end point {end:g} lies beyond {low:g} to {high:+g} of the machine"
+        text = f"the end point {end:g} is outside the machine range of {low:g} to {high:+g}"
         raise TargetError(WRONG_RANGE, text)
 
 

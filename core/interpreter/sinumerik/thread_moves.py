@@ -27,14 +27,14 @@ def thread(state: State, statement: Statement) -> Iterator[Block]:
     """The block of G33, G34 or G35, behind the way back that SF asks for. Raises ProgramError."""
     for name in ("CR", "AR", "I1", "K1"):
         if word := statement.words.get(name):
-            text = f"{word.text} is none of G{int(state.motion)}."
-            raise statement.refuse(word, "word-unused", text, "Take it out.")
+            text = f"{word.text} cannot be used with G{int(state.motion)}."
+            raise statement.refuse(word, "word-unused", text, "Remove it from the program.")
     travel = travel_of(state, statement)
     if abs(travel.z - travel.z0) < NO_WAY or travel.turn:
-        text = "a thread is cut along Z in step with the spindle; this one has no way along Z."
+        text = "a thread is cut along Z in sync with the spindle, but this one has no travel along Z."
         if travel.turn:
             text = "C cannot turn in a thread."
-        raise _refused(statement, "thread-length", text, "Write Z of its end, and K.")
+        raise _refused(statement, "thread-length", text, "Enter Z of the end point and K.")
     lead = _lead(state, statement, travel)
     growth = _growth(state, statement)
     back = _start_angle(state, statement, travel, lead, growth)
@@ -57,14 +57,16 @@ def _growth(state: State, statement: Statement) -> float:
     if word := statement.words.get("F"):
         value = state.length(statement, word)
         if value <= 0.0:
-            text = f"{word.text}: the change of the lead is over 0."
+            text = f"{word.text}: the lead change must be greater than 0."
             raise statement.refuse(
-                word, "not-positive", text, "G34 makes the lead grow, G35 makes it shrink."
+                word, "not-positive", text, "Use G34 to increase the lead and G35 to decrease it."
             )
         state.lead_change = value
     if not state.lead_change:
-        text = f"G{int(state.motion)} needs F, by what its lead changes each revolution."
-        raise _refused(statement, "thread-lead-missing", text, "Write F in mm a revolution each revolution.")
+        text = f"G{int(state.motion)} needs F, the lead change per revolution."
+        raise _refused(
+            statement, "thread-lead-missing", text, ("Enter F as the lead change per revolution, in mm/rev.")
+        )
     return state.lead_change if state.motion is Motion.GROWING else -state.lead_change
 
 
@@ -76,9 +78,10 @@ def _mean_lead(statement: Statement, travel: AxisTravel, lead: float, growth: fl
     square = lead * lead + 2.0 * growth * way
     end = sqrt(square) if square > 0.0 else 0.0
     if end < _LEAST_LEAD:
-        text = "the lead has come to nothing before the end of the thread."
+        text = "the lead decreases to 0 before the end of the thread."
         hint = (
-            f"From {lead:g} mm by {-growth:g} a revolution it comes {lead * lead / -growth / 2.0:.4g} mm far."
+            f"The lead of {lead:g} mm decreases by {-growth:g} mm per revolution and allows a "
+            f"thread only {lead * lead / -growth / 2.0:.4g} mm long."
         )
         raise _refused(statement, "thread-lead-missing", text, hint)
     return (lead + end) / 2.0, end
@@ -93,12 +96,14 @@ def _start_angle(
     if word is None or not angle:
         return None
     if state.threads:
-        text = f"{word.text} stands in the middle of a chain of threads."
-        raise statement.refuse(word, "word-unused", text, "Write it in the first.")
+        text = f"{word.text} is in the middle of a thread chain."
+        raise statement.refuse(word, "word-unused", text, "Write it in the first block of the chain.")
     state.start_turns = turns = angle / 360.0
     far = (lead - 0.5 * growth * turns) * turns
     if lead - growth * turns < _LEAST_LEAD:
-        raise statement.refuse(word, "thread-lead-missing", "no lead is left at this start.", "Lower F.")
+        raise statement.refuse(
+            word, "thread-lead-missing", "no lead is left at this start point.", "Lower F."
+        )
     share = far / abs(travel.z - travel.z0)
     x, z = (a - (b - a) * share for a, b in ((travel.x0, travel.x), (travel.z0, travel.z)))
     return rapid(state, statement, travel._replace(x=x, z=z))
@@ -110,21 +115,25 @@ def _lead(state: State, statement: Statement, travel: AxisTravel) -> float:
     if along is None and across is None:
         if state.threads:
             return state.end_lead
-        text = f"G{int(state.motion)} needs K, its lead along Z."
+        text = f"G{int(state.motion)} needs K, the lead along Z."
         raise _refused(statement, "thread-lead-missing", text, "Write K.")
     if along is not None and across is not None:
-        text = "the thread has a lead along X and one along Z."
-        raise statement.refuse(across, "thread-lead-both", text, "Write K up to 45 degrees, I above.")
+        text = "the thread has both a lead along X and a lead along Z."
+        raise statement.refuse(
+            across, "thread-lead-both", text, ("Write K for angles up to 45 degrees and I for larger angles.")
+        )
     word = along or across
     assert word is not None
     value = state.length(statement, word)
     if value <= 0.0:
-        raise statement.refuse(word, "not-positive", f"{word.text}: a lead is over 0.", "Correct it.")
+        raise statement.refuse(
+            word, "not-positive", f"{word.text}: a lead must be greater than 0.", ("Correct the value.")
+        )
     if along is not None:
         return value
     dx = abs(travel.x - travel.x0)
     if dx < NO_WAY:
-        text = f"{word.text} is the lead along X, and X does not move."
+        text = f"{word.text} is the lead along X, but X does not move."
         raise statement.refuse(word, "thread-lead-missing", text, "Write K.")
     return value * abs(travel.z - travel.z0) / dx
 
@@ -133,16 +142,19 @@ def check_spindle(state: State, statement: Statement, lead: float) -> None:
     """Raises ProgramError where the spindle stands, changes its speed, or is too fast for this lead, mm."""
     modal = state.modal
     if not modal.spindle or not state.rpm:
-        text = "a thread is cut by the revolution, and the spindle stands."
-        raise _refused(statement, "g95-spindle-stopped", text, "Start it with S and M3 or M4.")
+        text = "a thread needs a turning spindle, but the spindle is stopped."
+        raise _refused(statement, "g95-spindle-stopped", text, ("Start the spindle with S and M3 or M4."))
     if modal.css:
-        text = "G96 is in force, and a thread needs one speed from first pass to last."
+        text = "G96 is active, but a thread needs the same spindle speed from the first pass to the last."
         word = statement.g.get(FEED_AND_SPEED) or statement.g.get(MOTION)
-        raise statement.refuse(word, "thread-under-css", text, "Write G97 with S before it.")
+        raise statement.refuse(word, "thread-under-css", text, "Write G97 with S before this block.")
     speed, most = lead * abs(state.rpm) / 60.0, state.setup.limits.max_feed
     if speed > most * _ROUNDING:
         shown, limit = speed * 60.0, most * 60.0
-        text = f"at {abs(state.rpm):.0f} rpm this lead is {shown:.0f} mm/min; {limit:.0f} are the most."
+        text = (
+            f"at {abs(state.rpm):.0f} rpm, this lead requires {shown:.0f} mm/min; the maximum is "
+            f"{limit:.0f} mm/min."
+        )
         raise _refused(statement, "feed-over-speed", text, "Lower S.")
 
 
@@ -156,10 +168,10 @@ def _continues(state: State, statement: Statement, travel: AxisTravel, lead: flo
     first, last = state.threads[0], state.threads[-1]
     way_x, way_z = travel.x - travel.x0, travel.z - travel.z0
     if way_z * (first.z - first.z0) <= 0.0:
-        text = "this thread goes back along Z, and the one before it leads on."
+        text = "this thread runs in the opposite Z direction to the previous thread."
         raise _refused(statement, "thread-chain", text, "End the chain with G0.")
     if last is not first and not last.continues:
-        text = "the block before it has led out of the thread, which ends the chain."
+        text = "the previous block left the thread and ended the chain."
         raise _refused(statement, "thread-chain", text, "End the chain with G0.")
     leads_out = abs(way_x) >= _STEEP * abs(way_z) and abs(lead - state.end_lead) < _SAME and not last.growth
     return not leads_out or state.motion is not Motion.THREAD

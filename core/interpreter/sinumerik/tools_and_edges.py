@@ -25,14 +25,14 @@ def tool_words(state: State, statement: Statement, use: ToolUse) -> Iterator[Blo
         return
     if state.modal.nose_comp != 40:
         word = tool or edge
-        text = f"{word.text if word else ''} stands while G{state.modal.nose_comp} is on."
-        raise statement.refuse(word, "comp-with", text, "Write G40 and a move before it.")
+        text = f"{(word.text if word else '')} is not allowed while G{state.modal.nose_comp} is active."
+        raise statement.refuse(word, "comp-with", text, "Write G40 and a move before this block.")
     before = state.modal.tool
     number = tool_of(before) if tool is None else _number(state, statement, tool)
     wanted = 1 if edge is None else _edge(state, statement, edge)
     if not number and edge is not None and wanted:
-        text = f"{edge.text}: no tool is in work."
-        raise statement.refuse(edge, WRONG_EDGE, text, "Write T before it.")
+        text = f"{edge.text}: no tool is active."
+        raise statement.refuse(edge, WRONG_EDGE, text, "Write T before this block.")
     _take(state, statement, number, wanted if number else 0, use)
     if tool is not None or state.modal.tool != before:
         text = " ".join(word.text for word in (tool, edge) if word is not None)
@@ -43,8 +43,8 @@ def _number(state: State, statement: Statement, word: Word) -> int:
     if not word.string:
         value = state.number(statement, word)
         if not value.is_integer() or not 0 <= value < NAMED_TOOLS:
-            text = f"{word.text} comes to {value:g}, which is no tool number."
-            raise statement.refuse(word, WRONG_TOOL, text, "Tools are whole numbers.")
+            text = f"{word.text} results in {value:g}, which is not a tool number."
+            raise statement.refuse(word, WRONG_TOOL, text, "Enter the tool as a whole number.")
         return int(value)
     wanted = word.string.casefold()
     for key, offset in sorted(state.setup.tools.items()):
@@ -58,7 +58,7 @@ def _number(state: State, statement: Statement, word: Word) -> int:
 def _edge(state: State, statement: Statement, word: Word) -> int:
     value = state.number(statement, word)
     if value != 0 and value not in EDGES:
-        text = f"{word.text}: cutting edges are D1 to D9, and D0 is none."
+        text = f"{word.text}: cutting edges are D1 to D9; D0 selects none."
         raise statement.refuse(word, WRONG_EDGE, text, "Correct D.")
     return int(value)
 
@@ -85,11 +85,11 @@ def _offset(state: State, statement: Statement, key: int, use: ToolUse) -> ToolO
         text = (
             f"{name} does not exist: {edge_name(tool_of(key))} has no such cutting edge in the tool offsets."
         )
-        raise statement.refuse(word, WRONG_EDGE, text, f"Set {name} on the page of tool offsets (F8).")
+        raise statement.refuse(word, WRONG_EDGE, text, f"Set {name} on the TOOL OFFSETS page (F8).")
     offset = use.offset(key, tools)
     if offset is None:
         word = statement.words.get("T") or statement.words.get("D")
-        text = f"{edge_name(key)} has no tool offset; 0 is used, and the machine will refuse to start."
+        text = f"{edge_name(key)} has no tool offset, so 0 is used and the machine will not start."
         hint = _hint(word)
         state.log.add(statement.warning(word, "tool-offset-missing", text, hint))
     return offset or ToolOffset()
@@ -98,7 +98,7 @@ def _offset(state: State, statement: Statement, key: int, use: ToolUse) -> ToolO
 def _hint(word: Word | None) -> str:
     """What to do where a tool has no offset; T0101 is how other controls write tool 1 and its offset."""
     if word is not None and word.string:
-        return "Enter the name as remark of a tool (F8)."
+        return "Enter the name as the remark of a tool (F8)."
     if word is not None and (iso := _TOOL_AND_OFFSET.fullmatch(word.text)):
         meant = f"T{int(iso[1])} D{max(int(iso[2]) % 10, 1)}"
         return f"{word.text} is tool {int(word.text[1:])} here; write {meant}."

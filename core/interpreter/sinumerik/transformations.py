@@ -25,11 +25,11 @@ def transform(state: State, log: Log, statement: Statement) -> Iterator[Block]:
     """TRANSMIT, TRACYL or TRAFOOF. Raises ProgramError where it cannot be."""
     word = statement.g[TRANSFORMATION]
     if (PLACES & statement.words.keys()) or statement.sets or statement.m:
-        text = f"{word.text} needs a block of its own."
-        raise statement.refuse(word, "own-block", text, "Split the block.")
+        text = f"{word.text} must be in a separate block."
+        raise statement.refuse(word, "own-block", text, ("Split the block into separate blocks."))
     if state.modal.nose_comp != 40:
-        text = f"{word.text} stands while G{state.modal.nose_comp} is on."
-        raise statement.refuse(word, COMPENSATED, text, "Write G40 and a move before it.")
+        text = f"{word.text} is not allowed while G{state.modal.nose_comp} is active."
+        raise statement.refuse(word, COMPENSATED, text, ("Write G40 and a move before this block."))
     if word.name == "TRAFOOF":
         _leave(state)
         return
@@ -41,8 +41,8 @@ def transform(state: State, log: Log, statement: Statement) -> Iterator[Block]:
     _leave(state)
     if state.modal.diameter and word.name == "TRANSMIT" and "DIAMON" not in state.told:
         state.told.add("DIAMON")
-        text = "DIAMON is on: X of TRANSMIT counts as a diameter, and Y does not."
-        log.add(statement.warning(word, "transmit-diameter", text, "Write DIAMOF before it."))
+        text = "DIAMON is active: in TRANSMIT, X is a diameter, but Y is not."
+        log.add(statement.warning(word, "transmit-diameter", text, ("Write DIAMOF before this block.")))
     state.transformation = Transformation(state, log, frame)
 
 
@@ -59,19 +59,21 @@ def _leave(state: State) -> None:
 def _check_machine(state: State, statement: Statement, word: Word) -> None:
     modal, limits = state.modal, state.setup.limits
     if limits.third_axis == "Y":
-        text = f"{word.text} makes an axis Y of X and the spindle, and the third axis of this machine is Y."
-        raise statement.refuse(word, NOT_THERE, text, "Write the part for this machine's own Y.")
+        text = (
+            f"{word.text} creates a Y axis from X and the spindle, but the third axis of this machine is Y."
+        )
+        raise statement.refuse(word, NOT_THERE, text, ("Program the part with the Y axis of this machine."))
     if not limits.c_enabled:
-        text = f"{word.text} turns the part by C, and this machine has no third axis."
-        raise statement.refuse(word, NOT_THERE, text, "Choose a machine file that has C.")
+        text = f"{word.text} rotates the part with C, but this machine has no third axis."
+        raise statement.refuse(word, NOT_THERE, text, ("Select a machine file that has a C axis."))
     if limits.c_linear:
-        text = f"{word.text} turns the part by C, and the third axis of this machine is linear."
-        raise statement.refuse(word, NOT_THERE, text, "Choose a machine file that has C.")
+        text = f"{word.text} rotates the part with C, but the third axis of this machine is linear."
+        raise statement.refuse(word, NOT_THERE, text, ("Select a machine file that has a C axis."))
     if modal.spindle:
-        text = f"{word.text}: the spindle turns, and the part has to be held as C."
-        raise statement.refuse(word, "transformation", text, "Write M5 or SPOS=0 before it.")
+        text = f"{word.text}: the spindle is turning, but it must be locked as C."
+        raise statement.refuse(word, "transformation", text, ("Write M5 or SPOS=0 before this block."))
     if modal.settable_x:
-        text = f"{word.text}: G{modal.settable} shifts X, and the part turns about X0."
+        text = f"{word.text}: G{modal.settable} shifts X, but the part rotates about X0."
         raise statement.refuse(
             word, "transformation", text, f"Set X of G{modal.settable} to 0, or write G500."
         )
@@ -87,13 +89,17 @@ def _frame(state: State, statement: Statement, word: Word) -> Face | Side:
     ]  # fmt: skip
     sets = values[1:] if word.name == "TRACYL" else values
     if any(value not in {0.0, 1.0} for value in sets[:1]) or any(sets[1:]):
-        text = f"{word.text} asks for another data set or for the walls of a groove, and there is one set."
-        raise statement.refuse(word, NOT_THERE, text, f"Write {word.name} alone, and the walls as contours.")
+        text = (
+            f"{word.text} requests another data set or the walls of a groove, but only one data set exists."
+        )
+        raise statement.refuse(
+            word, NOT_THERE, text, (f"Write {word.name} alone, and program the walls as contours.")
+        )
     far = state.x - state.modal.base_x > -_SAME
     if word.name == "TRANSMIT":
         return Face(0.0, far=far)
     diameter = values[0] * (1.0 if state.modal.metric else 25.4) if values else 0.0
     if diameter <= 0.0:
         text = "TRACYL needs the diameter on which Y is measured."
-        raise statement.refuse(word, NOT_THERE, text, "Write TRACYL(40).")
+        raise statement.refuse(word, NOT_THERE, text, ("Write the diameter, as in TRACYL(40)."))
     return Side(0.0, 0.0, diameter, far=far)

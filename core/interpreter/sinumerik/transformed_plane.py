@@ -127,10 +127,10 @@ class Transformation:
         names, words = self._names, {}
         for name, word in statement.words.items():
             if name == "C" or name in {"X1", "Z1", "I1", "K1", "SF"}:
-                text = f"{word.text}: C is turned by {names.word} itself."
+                text = f"{word.text}: {names.word} itself turns C."
                 if name != "C":
-                    text = f"{word.text} is nothing in {names.word}."
-                raise statement.refuse(word, "transformation", text, "Write TRAFOOF before it.")
+                    text = f"{word.text} has no meaning in {names.word}."
+                raise statement.refuse(word, "transformation", text, ("Write TRAFOOF before this block."))
             if name in names.places:
                 made = self._resolved(statement, word)
                 words[names.places[name]] = made._replace(name=names.places[name])
@@ -138,8 +138,8 @@ class Transformation:
                 made = self._resolved(statement, word)
                 words[names.centres[name]] = made._replace(name=names.centres[name])
             elif name in {"I", "J", "K"}:
-                text = f"{word.text} is no centre of an arc in G{names.plane}."
-                raise statement.refuse(word, "word-unused", text, "Write those of the plane.")
+                text = f"{word.text} is not an arc center in G{names.plane}."
+                raise statement.refuse(word, "word-unused", text, ("Use the arc center words of the plane."))
             else:
                 words[name] = word
         return replace(statement, words=words)
@@ -255,29 +255,34 @@ class Transformation:
         """OFFN: what is left beside the contour, while no contour is under way."""
         value = self._state.length(statement, word)
         if self._compensation.holds or (value and not self.along_z):
-            text = f"{word.text} changes the contour that is under way."
+            text = f"{word.text} changes a contour that is not finished yet."
             if not self._compensation.holds:
-                text = f"{word.text} would be half of a groove in TRACYL, whose walls are not made of it."
-            raise statement.refuse(word, "not-in-subset", text, "Write the walls as contours, behind G40.")
+                text = (
+                    f"{word.text} is half the groove width in TRACYL, but the groove walls are not made "
+                    "from it here."
+                )
+            raise statement.refuse(word, "not-in-subset", text, ("Program the walls as contours after G40."))
         self.offn = value
 
     def _check(self, statement: Statement) -> None:
         """Raises ProgramError for what has no meaning in a plane."""
         state, names = self._state, self._names
         if self.holds and self._offset != (state.modal.base_x, state.modal.base_z):
-            text = "the tool or the zero changes between two moves of a corner or a contour."
-            raise statement.refuse(None, "comp-with", text, "Write it before the corner, or behind G40.")
+            text = "the tool or the zero point changes between two moves of a corner or a contour."
+            raise statement.refuse(
+                None, "comp-with", text, ("Make this change before the corner or after G40.")
+            )
         if (code := statement.code(BLOCKWISE)) in {25, 26, 74, 75} or SUPPRESSION in statement.g:
             word = statement.g.get(SUPPRESSION) or statement.g[BLOCKWISE]
             if code not in {25, 26} or {"X", "Y", "Z"} & statement.words.keys():
-                text = f"{word.text} moves the axes of the machine, and {names.word} is on."
-                raise statement.refuse(word, "transformation", text, "Write TRAFOOF before it.")
+                text = f"{word.text} moves the machine axes, but {names.word} is active."
+                raise statement.refuse(word, "transformation", text, ("Write TRAFOOF before this block."))
         if not PLACES & statement.words.keys():
             return
         word = statement.g.get(MOTION) or next(iter(statement.words.values()))
         if state.motion in THREADS | TAPS:
-            text = f"a thread is cut along Z by the spindle, which {names.word} holds as C."
-            raise statement.refuse(word, "transformation", text, "Write TRAFOOF before it.")
+            text = f"a thread along Z needs the turning spindle, but {names.word} uses the spindle as C."
+            raise statement.refuse(word, "transformation", text, ("Write TRAFOOF before this block."))
         needs = (
             state.motion in ARCS
             or state.modal.nose_comp != 40
@@ -285,8 +290,8 @@ class Transformation:
             or "ANG" in statement.words
         )
         if needs and state.plane != names.plane:
-            text = f"arcs, corners and radius compensation of {names.word} lie in G{names.plane}."
-            raise statement.refuse(word, "arc-plane", text, f"Write G{names.plane} before it.")
+            text = f"arcs, corners and radius compensation in {names.word} need G{names.plane}."
+            raise statement.refuse(word, "arc-plane", text, (f"Write G{names.plane} before this block."))
 
     def _depth_of(self, taken: Statement) -> float:
         """Where the depth of a statement leads, mm of the frame's zero."""

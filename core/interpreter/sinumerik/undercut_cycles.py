@@ -91,7 +91,7 @@ def shoulder_undercut(cycle: Cycle) -> Iterator[Block]:
     """CYCLE94. Raises ProgramError before the first block."""
     form = cycle.text("FORM")
     if form not in {"E", "F"}:
-        raise cycle.wrong("FORM", 'is none of "E" and "F"', "Correct it.", WRONG_FORM)
+        raise cycle.wrong("FORM", 'must be "E" or "F"', "Correct the value.", WRONG_FORM)
     size = _at_shoulder(cycle, form)
     out, side = position(cycle, cycle.whole("VARI", 0, 0, 4))
     place = Place(cycle.needed("SPD") / 2.0, cycle.needed("SPL"), out, side)
@@ -102,8 +102,8 @@ def _at_shoulder(cycle: Cycle, form: str) -> Size:
     """Form E or F of DIN 509 by the diameter SPD. Raises ProgramError."""
     diameter = cycle.over_zero("SPD", TOO_SMALL)
     if diameter <= 3.0:
-        text = f"is {diameter:g}: undercuts begin over 3 mm"
-        raise cycle.wrong("SPD", text, "Write the undercut as lines.", TOO_SMALL)
+        text = f"is {diameter:g}, but must be greater than 3 mm for an undercut"
+        raise cycle.wrong("SPD", text, "Program the undercut as lines.", TOO_SMALL)
     sizes = next((row[1:] for row in _DIN_509 if diameter <= row[0]), _DIN_509_OVER)
     depth, width, radius, face = sizes
     return Size(depth, width, radius, 15.0, face if form == "F" else 0.0)
@@ -113,19 +113,19 @@ def thread_undercut(cycle: Cycle) -> Iterator[Block]:
     """CYCLE96. Raises ProgramError before the first block."""
     form = cycle.text("FORM")
     if form not in {"A", "B", "C", "D"}:
-        raise cycle.wrong("FORM", 'is none of "A" to "D"', "Correct it.", WRONG_FORM)
+        raise cycle.wrong("FORM", 'must be "A", "B", "C" or "D"', "Correct the value.", WRONG_FORM)
     nominal = cycle.over_zero("DIATH", TOO_SMALL)
     lead = COARSE_LEADS.get(round(nominal), 0.0) if abs(nominal - round(nominal)) < _SAME else 0.0
     if not lead:
-        text = f"is {nominal:g}, and no size of the coarse threads M3 to M{_LARGEST_OF_ALL}"
-        raise cycle.wrong("DIATH", text, "Write the undercut as lines.", TOO_SMALL)
+        text = f"is {nominal:g}, which is not a coarse thread size from M3 to M{_LARGEST_OF_ALL}"
+        raise cycle.wrong("DIATH", text, "Program the undercut as lines.", TOO_SMALL)
     lacks, long, short, radius, long_inside, short_inside = _DIN_76[lead]
     out, side = position(cycle, cycle.whole("VARI", 0, 0, 4))
     inside = form in {"C", "D"}
     if inside is (out > 0.0):
         where, other = ("inside", "outside") if inside else ("outside", "inside")
-        text = f"{form} lies {where}, and the tool's edge is one for {other}"
-        raise cycle.wrong("FORM", text, "Correct it, or take another tool.", WRONG_EDGE)
+        text = f"{form} is for {where} undercuts, but the cutting edge of the tool is for {other}"
+        raise cycle.wrong("FORM", text, ("Correct FORM, or use another tool."), WRONG_EDGE)
     feed = _feed(cycle.state.modal.feed, cycle)
     if not inside:
         size = Size(lacks / 2.0, long if form == "A" else short, radius, 30.0)
@@ -141,7 +141,7 @@ def thread_undercut(cycle: Cycle) -> Iterator[Block]:
 _OF_PLACE = {0: 4, 1: 3, 2: 1, 3: 2}
 """Tip quadrants by _LAGE: 0 and 1 outside, 2 and 3 inside; 0 and 2 with the shoulder towards plus Z."""
 
-_NOT_BUILT = "write the undercut as lines"
+_NOT_BUILT = "program the undercut as lines"
 
 
 def undercut(cycle: Cycle) -> Iterator[Block]:
@@ -151,8 +151,8 @@ def undercut(cycle: Cycle) -> Iterator[Block]:
     """
     form = cycle.text("FORM")
     if form not in {"A", "B", "E", "F"}:
-        hint = 'Write "A", "B", "E" or "F"; C and D with CYCLE96, a free form T as lines.'
-        raise cycle.wrong("FORM", f"is {form or 'missing'}, which is not executed here", hint, WRONG_FORM)
+        hint = 'Write "A", "B", "E" or "F"; program C and D with CYCLE96, and a free form T as lines.'
+        raise cycle.wrong("FORM", f"is {form or 'missing'}, which is not supported here", hint, WRONG_FORM)
     for name in ("_EPD", "_EPL", "_R1", "_R2", "_STA", "_VRT"):
         cycle.zero_only(name, _NOT_BUILT)
     out, side = position(cycle, _OF_PLACE[cycle.whole("_LAGE", 0, 0, 3)])
@@ -171,8 +171,8 @@ def _behind_thread(cycle: Cycle, form: str) -> Size:
     else:
         lead = COARSE_LEADS.get(round(cycle.needed("SPD")), 0.0)
     if lead not in _DIN_76:
-        text = f"asks for a lead of {lead:g}, whose undercut is not known here"
-        raise cycle.wrong("_PITI", text, "Write the undercut as lines.", TOO_SMALL)
+        text = f"specifies a lead of {lead:g}, for which no undercut is defined here"
+        raise cycle.wrong("_PITI", text, "Program the undercut as lines.", TOO_SMALL)
     lacks, long, short, radius, *_ = _DIN_76[lead]
     return Size(lacks / 2.0, long if form == "A" else short, radius, 30.0)
 
@@ -181,7 +181,9 @@ def _in_passes(cycle: Cycle, place: Place, size: Size, feed: float, clear: float
     """_VARI 1 roughs, 2 finishes, 3 does both: the profile at depths of _MID at most, above _FALX, _FALZ."""
     kind = cycle.whole("_VARI", 3, 1, 13)
     if kind % 10 not in {1, 2, 3}:
-        raise cycle.wrong("_VARI", f"is {kind}", "1 roughs, 2 finishes, 3 does both.", MACHINING_TYPE)
+        raise cycle.wrong(
+            "_VARI", f"is {kind}", ("Enter 1 for roughing, 2 for finishing or 3 for both."), MACHINING_TYPE
+        )
     left = cycle.size("_FAL")
     up, off = max(left, cycle.size("_FALX")), max(left, cycle.size("_FALZ"))
     infeed = cycle.size("_MID") or size.depth
@@ -189,7 +191,11 @@ def _in_passes(cycle: Cycle, place: Place, size: Size, feed: float, clear: float
     if kind % 10 != _FINISHES:
         count = max(ceil((size.depth - up) / infeed - _SAME), 1)
         if count > MOST_PASSES:
-            raise cycle.wrong("_MID", f"would make {count:,} passes", "Look for a lost decimal point.")
+            raise cycle.wrong(
+                "_MID",
+                f"would need {count:,} passes, which is too many",
+                ("Look for a missing decimal point."),
+            )
         for k in range(1, count + 1):
             above = up + (size.depth - up) * (count - k) / count
             moved = place._replace(radius=place.radius + place.out * above, shoulder=place.shoulder
@@ -208,12 +214,12 @@ def position(cycle: Cycle, chosen: int) -> tuple[float, float]:
     """
     state = cycle.state
     if not state.modal.edge:
-        text = f"{cycle.line.call} needs a tool with its offset."
-        raise cycle.refused(61000, text, "Write T and D before it.")
+        text = f"{cycle.line.call} needs an active tool with an offset."
+        raise cycle.refused(61000, text, ("Write T and D before this block."))
     quadrant = state.edge.quadrant
     if quadrant not in _BY_POSITION and (not chosen or state.edge.nose_radius):
-        text = f"the tip quadrant of the tool is {quadrant}, and an undercut is cut with 1 to 4."
-        raise cycle.refused(WRONG_EDGE, text, "Enter the tip quadrant on the page of tool offsets (F8).")
+        text = f"the tip quadrant of the tool is {quadrant}, but an undercut needs a quadrant from 1 to 4."
+        raise cycle.refused(WRONG_EDGE, text, ("Enter the tip quadrant on the TOOL OFFSETS page (F8)."))
     return _BY_POSITION[chosen or quadrant]
 
 
@@ -234,7 +240,7 @@ def profile(place: Place, size: Size) -> list[Element]:
 
 def _feed(feed: float | None, cycle: Cycle) -> float:
     if feed is None:
-        raise cycle.refused(NO_FEED, "no feedrate is programmed.", "Write F before it.")
+        raise cycle.refused(NO_FEED, "no feedrate is programmed.", "Program F before this block.")
     return feed
 
 
@@ -257,7 +263,7 @@ def _nose(cycle: Cycle, size: Size) -> float:
     nose = cycle.state.edge.nose_radius
     if nose > size.radius + _SAME:
         text = f"the nose radius {nose:g} is larger than the radius {size.radius:g} of this undercut."
-        raise cycle.refused(NOSE_TOO_LARGE, text, "Take a tool with a smaller nose.")
+        raise cycle.refused(NOSE_TOO_LARGE, text, ("Use a tool with a smaller nose radius."))
     return nose
 
 
@@ -282,6 +288,6 @@ def _of_tip(cycle: Cycle, place: Place, contour: list[Element]) -> list[Element]
         centres += [piece.element for piece in offset.close()]
     except GougeError as problem:
         text = f"the nose radius {edge.nose_radius:g} does not fit into this undercut: {problem.why}."
-        raise cycle.refused(NOSE_TOO_LARGE, text, "Take a tool with a smaller nose.") from None
+        raise cycle.refused(NOSE_TOO_LARGE, text, ("Use a tool with a smaller nose radius.")) from None
     z, x = TIP_DIRECTIONS[edge.quadrant]
     return [shifted(each, x * edge.nose_radius, z * edge.nose_radius) for each in centres]

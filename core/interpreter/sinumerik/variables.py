@@ -52,8 +52,8 @@ class Variables:
     def value(self, asked: Parameter, worth: Callable[[Formula], float], refuse: Refuse) -> float:
         """What an R parameter or a variable holds. Raises what ``refuse`` makes where it holds nothing."""
         if asked.letters.startswith("$"):
-            text = f"{asked.letters} is a system variable, which is not read here."
-            raise refuse("system-variable", text, "Write the value, or an R parameter that has it.")
+            text = f"{asked.letters} is a system variable, which cannot be read here."
+            raise refuse("system-variable", text, ("Write the value, or an R parameter that contains it."))
         name = place_name(asked.letters, asked.number, worth, refuse)
         if asked.letters == "R" and name[1:].isdigit():
             found = self.r.get(int(name[1:]))
@@ -89,23 +89,32 @@ class Variables:
     def missing(self, letters: str, name: str) -> tuple[int | str, str, str]:
         """Why there is no number at this place: code, text and hint."""
         if name in self.scope.texts:
-            return "text-variable", f"{name} is a text, and no number.", "Use a variable of REAL or INT."
+            return (
+                "text-variable",
+                f"{name} is a text, not a number.",
+                ("Use a variable of type REAL or INT."),
+            )
         if letters in self.scope.sizes:
             sizes = self.scope.sizes[letters]
             index = name[len(letters) :].strip("[]").split(",")
             right = index[0].isdigit() and int(index[0]) < sizes[0]
-            text = f"{name} is no element of {letters}, which has {' by '.join(map(str, sizes))}."
+            text = (
+                f"{name} is not an element of {letters}, which has {' by '.join(map(str, sizes))} elements."
+            )
             last = ",".join(str(size - 1) for size in sizes)
-            hint = f"The elements go to {letters}[{last}], and indices begin with 0."
+            hint = f"Use indices from 0; the last element is {letters}[{last}]."
             return OTHER_INDEX if right else FIRST_INDEX, text, hint
         if letters == "R":
             return (
                 UNSET,
-                f"{name} has no value, and counts as 0: neither the program nor the operator has set it.",
-                f"Write {name}=… before it, or set it as R PARAMETERS (F10).",
+                (
+                    f"{name} has no value and is treated as 0: neither the program nor the operator has "
+                    "set it."
+                ),
+                f"Write {name}=… before this block, or set it in R PARAMETERS (F10).",
             )
-        text = f"the name {name} is not defined: no DEF has named it."
-        return NOT_DEFINED, text, f"Write DEF REAL {name} before it."
+        text = f"the name {name} is not defined with DEF."
+        return NOT_DEFINED, text, f"Write DEF REAL {name} before this block."
 
 
 def place_name(
@@ -119,7 +128,7 @@ def place_name(
         if abs(index - round(index)) > 1e-9 or index < 0 or (letters == "R" and place):
             code = OTHER_INDEX if place else FIRST_INDEX
             text = f"{letters}[{','.join(f'{each:g}' for each in indices)}] does not exist."
-            raise refuse(code, text, "An index is a whole number from 0.")
+            raise refuse(code, text, "Use a whole number of 0 or more as the index.")
     written = ",".join(str(round(each)) for each in indices)
     return f"R{written}" if letters == "R" else f"{letters}[{written}]"
 

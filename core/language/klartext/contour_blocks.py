@@ -37,11 +37,15 @@ def definition(cursor: Cursor, column: int) -> ContourDef:
         match = cursor.take(_CONTOUR)
         if match is None:
             if cursor.keyword("VOID") or cursor.take(_DEPTH):
-                raise unsupported(cursor.line, cursor.column, "CONTOUR DEF with a depth of its own")
-            raise cursor.expected("CONTOUR DEF takes pockets and islands", "Write P1 = LBL 1 I2 = LBL 2.")
+                raise unsupported(
+                    cursor.line, cursor.column, ("CONTOUR DEF with a separate depth for one contour")
+                )
+            raise cursor.expected(
+                "CONTOUR DEF accepts only pockets (P) and islands (I)", "Write P1 = LBL 1 I2 = LBL 2."
+            )
         parts.append(_where(cursor)._replace(pocket=match.group(1) == "P"))
     if not parts:
-        raise cursor.expected("CONTOUR DEF names no contour", "Write P1 = LBL 1.")
+        raise cursor.expected("CONTOUR DEF does not name a contour", "Write P1 = LBL 1.")
     return ContourDef(tuple(parts), column)
 
 
@@ -53,16 +57,16 @@ def _where(cursor: Cursor) -> ContourPart:
         return ContourPart(0, None, file)
     if _QC.match(cursor.upper, cursor.at):
         return ContourPart(0, None, declared=_number(cursor))
-    raise cursor.expected("A contour is LBL n, a program in quotes, or QC n")
+    raise cursor.expected("Expected a contour: LBL n, a program name in quotes, or QC n")
 
 
 def _number(cursor: Cursor) -> int:
     column, match = cursor.column, cursor.take(_QC)
     if match is None:
-        raise cursor.expected("A contour QC was expected", "Write QC and a number.")
+        raise cursor.expected("Expected QC and a contour number", "Write QC and a number.")
     if int(match.group(1)[:6]) > _HIGHEST:
-        text = f"Contours go up to QC{_HIGHEST}."
-        raise syntax(cursor.line, column, text, "Take another number.")
+        text = f"Contour numbers go up to QC{_HIGHEST}."
+        raise syntax(cursor.line, column, text, "Use another number.")
     return int(match.group(1))
 
 
@@ -70,12 +74,12 @@ def declaration(cursor: Cursor, column: int) -> ContourDeclare:
     """Behind ``DECLARE CONTOUR``: ``QC1 = "120.H"``. Raises ProgramError."""
     number = _number(cursor)
     if cursor.take(_EQUALS) is None:
-        raise cursor.expected(f"'=' was expected behind QC{number}")
+        raise cursor.expected(f"Expected '=' after QC{number}")
     part = _where(cursor)
     if cursor.take(_DEPTH):
-        raise unsupported(cursor.line, column, "A contour with a depth of its own")
+        raise unsupported(cursor.line, column, "A contour with its own depth")
     if not cursor.done:
-        raise cursor.expected("No word of DECLARE CONTOUR")
+        raise cursor.expected("Unexpected word in DECLARE CONTOUR")
     return ContourDeclare(number, part, column)
 
 
@@ -83,7 +87,7 @@ def formula(cursor: Cursor, column: int) -> ContourFormula:
     """``QC10 = ( QC1 | QC3 ) \\ QC2``. Raises ProgramError; signs that differ need brackets."""
     number = _number(cursor)
     if cursor.take(_EQUALS) is None:
-        raise cursor.expected(f"'=' was expected behind QC{number}")
+        raise cursor.expected(f"Expected '=' after QC{number}")
     reader = FormulaReader(_GRAMMAR, cursor.upper, cursor.at)
     try:
         made = reader.formula()
@@ -113,8 +117,8 @@ def _demand_brackets(cursor: Cursor, made: Formula, column: int) -> None:
 
 def _demand_one_sign(cursor: Cursor, signs: str, column: int) -> None:
     if len(set(signs)) > 1:
-        text = f"{' and '.join(sorted(set(signs)))} stand side by side in a contour formula."
-        raise syntax(cursor.line, column, text, "Write brackets.")
+        text = f"A contour formula mixes {' and '.join(sorted(set(signs)))} without parentheses."
+        raise syntax(cursor.line, column, text, "Add parentheses.")
 
 
 def selection(cursor: Cursor, column: int) -> Selection | ContourFormula:
@@ -123,9 +127,9 @@ def selection(cursor: Cursor, column: int) -> Selection | ContourFormula:
         reader = FormulaReader(_GRAMMAR, cursor.upper, cursor.at)
         made, number = reader.formula(), _number(cursor)
         if not cursor.done:
-            raise cursor.expected("No word of SEL CONTOUR")
+            raise cursor.expected("Unexpected word in SEL CONTOUR")
         return ContourFormula(number, made, column, selected=True)
     name = cursor.text_name() or cursor.rest().strip('"')
     if not name:
-        raise cursor.expected("SEL CONTOUR needs the name of a program")
+        raise cursor.expected("SEL CONTOUR needs a program name")
     return Selection("CONTOUR", name, column)

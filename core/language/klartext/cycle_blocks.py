@@ -38,12 +38,14 @@ def cycle(cursor: Cursor, column: int) -> Node:
     """Behind ``CYCL DEF``. Raises ProgramError for what is none; which are run is said when they are."""
     match = cursor.take(_NUMBER)
     if match is None:
-        raise cursor.expected("CYCL DEF needs the number of a cycle")
+        raise cursor.expected("CYCL DEF needs a cycle number")
     number, part = int(match.group(1)), match.group(2)
     if number >= _NEW or (number in _OF_CONTOURS and part in {None, "0"}):
         return Cycle(number, _values(cursor, f"CYCL DEF {number}"), column)
     if part is None:
-        raise cursor.expected(f"CYCL DEF {number} needs its line", f"Write CYCL DEF {number}.0.")
+        raise cursor.expected(
+            f"CYCL DEF {number} needs a line number after a point", f"Write CYCL DEF {number}.0."
+        )
     if number == _DATUM:
         return _datum(cursor, int(part))
     if number in {_MIRROR, _ROTATION, _SCALE} and int(part) > 0:
@@ -69,14 +71,14 @@ def global_definition(cursor: Cursor, column: int) -> GlobalDef:
     """Behind ``GLOBAL DEF``: its number, which groups the parameters for the operator, and they."""
     match = cursor.take(_NUMBER)
     if match is None:
-        raise cursor.expected("GLOBAL DEF needs its number")
+        raise cursor.expected("GLOBAL DEF needs a number")
     return GlobalDef(_values(cursor, f"GLOBAL DEF {match.group(1)}"), column)
 
 
 def preset(cursor: Cursor, column: int) -> Cycle:
     """``PRESET SELECT #3``, which is cycle 247. Raises ProgramError for what keeps transformations."""
     if cursor.take(_SELECTED) is None:
-        raise unsupported(cursor.line, column, "PRESET SELECT by a text")
+        raise unsupported(cursor.line, column, "PRESET SELECT with a name")
     at, row = cursor.column, cursor.value("#")
     if not cursor.done:
         raise unsupported(cursor.line, cursor.column, f"PRESET SELECT with {cursor.rest()}")
@@ -86,7 +88,7 @@ def preset(cursor: Cursor, column: int) -> Cycle:
 def _values(cursor: Cursor, of: str) -> tuple[CycleValue, ...]:
     """The Q parameters behind the cycle's name, which says nothing."""
     if text := _TEXT_VALUE.search(cursor.upper, cursor.at):
-        raise unsupported(cursor.line, text.start() + 1, f"{of} with a text (QS)")
+        raise unsupported(cursor.line, text.start() + 1, f"{of} with a string parameter (QS)")
     first = _Q_VALUE.search(cursor.upper, cursor.at)
     if first is None:
         cursor.rest()
@@ -96,7 +98,7 @@ def _values(cursor: Cursor, of: str) -> tuple[CycleValue, ...]:
     while not cursor.done:
         column = cursor.column
         if not _Q_VALUE.match(cursor.upper, cursor.at):
-            raise cursor.expected("A cycle takes Q parameters", "Write Q200=+2 and so on.")
+            raise cursor.expected("Expected a Q parameter of the cycle", "Write parameters such as Q200=+2.")
         _, number = q_parameters.parameter(cursor)
         cursor.take(re.compile(r"="))
         if cursor.keyword(PREDEFINED):
@@ -116,13 +118,13 @@ def _datum(cursor: Cursor, part: int) -> Datum:
     if cursor.take(_FROM_TABLE):
         made = Datum(cycle=part, row=cursor.value("#"), column=column)
         if not cursor.done:
-            raise cursor.expected("No word of cycle 7")
+            raise cursor.expected("Unexpected word in cycle 7")
         return made
     axes = axis_words(cursor, "XYZABC")
     if not axes:
-        raise cursor.expected(f"CYCL DEF 7.{part} takes X, Y or Z")
+        raise cursor.expected(f"CYCL DEF 7.{part} needs a value for X, Y or Z")
     if not cursor.done:
-        raise cursor.expected("No word of cycle 7")
+        raise cursor.expected("Unexpected word in cycle 7")
     return Datum(axes, cycle=part)
 
 
@@ -146,7 +148,7 @@ def mirrored_axes(cursor: Cursor) -> str:
     while match := cursor.take(_LETTERS):
         axes += match.group()
     if not cursor.done:
-        raise cursor.expected("Mirroring takes X, Y and Z")
+        raise cursor.expected("Mirroring accepts only the axes X, Y and Z")
     return axes
 
 
@@ -154,10 +156,10 @@ def rotation(cursor: Cursor, column: int) -> Transform:
     """``ROT+35`` or ``IROT+5``."""
     match = cursor.take(_ROT)
     if match is None:
-        raise cursor.expected("A rotation needs ROT and its angle")
+        raise cursor.expected("A rotation needs ROT and an angle")
     made = Transform("ROTATION", cursor.value("ROT"), incremental=bool(match.group(1)), column=column)
     if not cursor.done:
-        raise cursor.expected("No word of a rotation")
+        raise cursor.expected("Unexpected word in a rotation")
     return made
 
 
@@ -167,7 +169,7 @@ def scale(cursor: Cursor, column: int) -> Transform:
         raise cursor.expected("Scaling needs SCL and its factor")
     made = Transform("SCALE", cursor.value("SCL"), column=column)
     if not cursor.done:
-        raise cursor.expected("No word of scaling")
+        raise cursor.expected("Unexpected word in scaling")
     return made
 
 
@@ -205,7 +207,7 @@ def _line(cursor: Cursor, number: int, part: int, column: int) -> CycleLine:
         elif match := cursor.take(_TEXT):
             text.append(match.group())
         else:
-            raise cursor.expected(f"No word of cycle {number}")
+            raise cursor.expected(f"Unexpected word in cycle {number}")
     return CycleLine(number, part, tuple(words), speed, turn, " ".join(text), column)
 
 

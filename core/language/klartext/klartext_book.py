@@ -27,7 +27,7 @@ def _frame() -> tuple[Entry, ...]:
         Entry(
             "BEGIN PGM",
             "name MM",
-            "Begins the program, in millimetres or in inches.",
+            "Starts the program, in millimeters or in inches.",
             program,
             "BEGIN PGM EXAMPLE\nEND PGM EXAMPLE\n",
             "needs MM or INCH",
@@ -45,7 +45,7 @@ def _frame() -> tuple[Entry, ...]:
         Entry(
             "BLK FORM 0.1",
             "Z X.. Y.. Z..",
-            "The tool axis and the least corner of the blank.",
+            "The tool axis and the minimum corner of the blank.",
             blank,
             "BLK FORM 0.1 X-50 Y-50 Z-20",
             "tool axis",
@@ -53,13 +53,13 @@ def _frame() -> tuple[Entry, ...]:
         Entry(
             "BLK FORM 0.2",
             "X.. Y.. Z..",
-            "The greatest corner of the blank.",
+            "The maximum corner of the blank.",
             blank,
             "BLK FORM 0.2 X+50 Y+50",
             "Z is missing",
         ),
-        Entry("STOP", "M..", "Program stop; M functions may stand behind it.", "STOP M9", "STOP X+3", "X+3"),
-        Entry("*", "- text", "A heading: it only structures the program.", "* - FIRST SIDE"),
+        Entry("STOP", "M..", "Program stop; M functions may follow.", "STOP M9", "STOP X+3", "X+3"),
+        Entry("*", "- text", "Heading that only structures the program.", "* - FIRST SIDE"),
     )
 
 
@@ -68,7 +68,7 @@ def _tools() -> tuple[Entry, ...]:
         Entry(
             "TOOL DEF",
             "n L.. R..",
-            "Length and radius of a tool that the program brings along.",
+            "Length and radius of a tool that is defined in the program.",
             "TOOL DEF 7 L+0 R+3\nTOOL CALL 7 Z S2000 F300\nL Z+50 R0 FMAX M3",
             "TOOL DEF 7 W+3",
             "TOOL DEF",
@@ -76,7 +76,10 @@ def _tools() -> tuple[Entry, ...]:
         Entry(
             "TOOL CALL",
             "n Z S.. F.. DL.. DR..",
-            "Tool by number or name, its axis, speed in rpm, feed, what is added to length and radius.",
+            (
+                "Tool by number or name, tool axis, speed in rpm, feed, and the values added to "
+                "length and radius."
+            ),
             "TOOL CALL 1 Z S2500 F400 DL+0.1 DR-0.02",
             "TOOL CALL 1 Z W3",
             "TOOL CALL",
@@ -88,11 +91,11 @@ def _paths() -> tuple[Entry, ...]:
     polar = "CC X+0 Y+0\n"
     return (
         Entry("L", "X.. Y.. Z.. R0 F.. M..", "Straight line.", "L X+10 IY+5 R0 F300", "L X+10 X+5", "X"),
-        Entry("CC", "X.. Y..", "Circle centre and pole, from here on.", "CC X+10 Y+0", "CC W+3", "CC"),
+        Entry("CC", "X.. Y..", "Circle center and pole from here on.", "CC X+10 Y+0", "CC W+3", "CC"),
         Entry(
             "C",
             "X.. Y.. DR+",
-            "Arc round the circle centre CC.",
+            "Arc around the circle center CC.",
             "L X+10 Y+0 R0 F500\nCC X+0 Y+0\nC X+0 Y+10 DR+",
             "L X+10 Y+0 R0 F500\nCC X+0 Y+0\nC X+0 Y+10",
             "Direction",
@@ -100,7 +103,7 @@ def _paths() -> tuple[Entry, ...]:
         Entry(
             "CR",
             "X.. Y.. R.. DR+",
-            "Arc by its radius; R under 0 is the arc over 180 degrees.",
+            "Arc by its radius; a negative R gives the arc of more than 180 degrees.",
             "CR X+10 Y+10 R+10 DR-",
             "CR X+10 Y+10 DR-",
             "CR needs R",
@@ -108,7 +111,7 @@ def _paths() -> tuple[Entry, ...]:
         Entry(
             "CT",
             "X.. Y..",
-            "Arc that goes on tangentially from the element before.",
+            "Arc that continues tangentially from the previous element.",
             "L X+20 Y+0 R0 F400\nCT X+30 Y+10",
             "CC X+0 Y+0\nCT",
             "CT",
@@ -116,7 +119,7 @@ def _paths() -> tuple[Entry, ...]:
         Entry(
             "LP",
             "PR.. PA..",
-            "Straight line to a point in polar coordinates round CC.",
+            "Straight line to a point in polar coordinates around CC.",
             polar + "LP PR+20 PA+30 R0 F400",
             "LP PR+20 PA+30 R0 F400",
             "CC missing",
@@ -124,7 +127,7 @@ def _paths() -> tuple[Entry, ...]:
         Entry(
             "CP",
             "PA.. IZ.. DR+",
-            "Arc round CC by its angle; with the tool axis a helix.",
+            "Arc around CC by its angle; with the tool axis, a helix.",
             polar + "LP PR+20 PA+0 R0 F400\nCP IPA+720 IZ-4 DR+",
             "CP IPA+90 DR+",
             "CC missing",
@@ -140,7 +143,7 @@ def _paths() -> tuple[Entry, ...]:
         Entry(
             "RND",
             "R..",
-            "Rounds the corner between the elements before and behind it.",
+            "Rounds the corner between the elements before and after it.",
             "L X+20 Y+0 R0 F400\nRND R3\nL X+20 Y+20",
             "L X+20 Y+0 R0 F400\nRND R30\nL X+20 Y+20",
             "Rounding",
@@ -156,7 +159,7 @@ def _paths() -> tuple[Entry, ...]:
         Entry(
             "FU",
             "n",
-            "Feed per revolution, FZ per tooth (CUT of the tool table), by S as programmed.",
+            ("Feed per revolution, or FZ per tooth (CUT of the tool table), based on the programmed S."),
             "L X+10 R0 FU0.1",
             "L X+10 R0 FZ0.1",
             "CUT",
@@ -164,16 +167,16 @@ def _paths() -> tuple[Entry, ...]:
         Entry(
             "FMAX",
             "",
-            "Rapid, for this block alone; the feed programmed before holds behind it.",
+            "Rapid for this block only; the feed programmed before applies again afterward.",
             "L X+10 R0 F400\nL X+20 FMAX\nL X+30",
             "L X+20 FMAX F400",
-            "F stands twice",
+            "F is programmed twice",
         ),
         Entry("R0", "", "Radius compensation off.", "L X+10 R0 F400"),
         Entry(
             "RL",
             "",
-            "Radius compensation: the tool left of the contour.",
+            "Radius compensation: the tool is left of the contour.",
             _OUTSIDE + _ON + "L Y+40" + _AWAY,
             _OUTSIDE + _ON + "L X+1\nL X+0",
             "radius",
@@ -181,7 +184,7 @@ def _paths() -> tuple[Entry, ...]:
         Entry(
             "RR",
             "",
-            "Radius compensation: the tool right of the contour.",
+            "Radius compensation: the tool is right of the contour.",
             "L X+30 Y+0 R0 FMAX\nL Z-2 F200\nL X+0 Y+0 RR F300\nL Y+40\nL Y+60\nL X+30 R0",
         ),
     )
@@ -217,19 +220,24 @@ def _approach() -> tuple[Entry, ...]:
 
     pole = "PR+10 PA+90"
     return (
-        entry("APPR LT", "LEN10", "To the contour on a straight line, tangentially."),
-        entry("APPR LN", "LEN10", "To the contour on a straight line at a right angle."),
-        entry("APPR CT", "CCA90 R5", "To the contour on an arc, tangentially."),
-        entry("APPR LCT", "R5", "To the contour on a line and an arc, both tangential."),
-        entry("APPR PLT", "LEN10", "As APPR LT, the point in polar coordinates.", pole),
-        entry("APPR PLN", "LEN10", "As APPR LN, the point in polar coordinates.", pole),
-        entry("APPR PCT", "CCA90 R5", "As APPR CT, the point in polar coordinates.", pole),
-        entry("APPR PLCT", "R5", "As APPR LCT, the point in polar coordinates.", pole),
-        leave("DEP LT", "LEN10", "From the contour on a straight line, tangentially."),
-        leave("DEP LN", "LEN10", "From the contour on a straight line at a right angle."),
-        leave("DEP CT", "CCA90 R5", "From the contour on an arc, tangentially."),
-        leave("DEP LCT", "X-30 Y+60 R5", "From the contour on an arc and a line, both tangential."),
-        leave("DEP PLCT", "PR+70 PA+120 R5", "As DEP LCT, the point in polar coordinates.", "CC X+0 Y-10\n"),
+        entry("APPR LT", "LEN10", "Approaches the contour on a straight line, tangentially."),
+        entry("APPR LN", "LEN10", "Approaches the contour on a straight line at a right angle."),
+        entry("APPR CT", "CCA90 R5", "Approaches the contour on an arc, tangentially."),
+        entry("APPR LCT", "R5", "Approaches the contour on a line and an arc, both tangential."),
+        entry("APPR PLT", "LEN10", "Same as APPR LT, with the point in polar coordinates.", pole),
+        entry("APPR PLN", "LEN10", "Same as APPR LN, with the point in polar coordinates.", pole),
+        entry("APPR PCT", "CCA90 R5", "Same as APPR CT, with the point in polar coordinates.", pole),
+        entry("APPR PLCT", "R5", "Same as APPR LCT, with the point in polar coordinates.", pole),
+        leave("DEP LT", "LEN10", "Leaves the contour on a straight line, tangentially."),
+        leave("DEP LN", "LEN10", "Leaves the contour on a straight line at a right angle."),
+        leave("DEP CT", "CCA90 R5", "Leaves the contour on an arc, tangentially."),
+        leave("DEP LCT", "X-30 Y+60 R5", "Leaves the contour on an arc and a line, both tangential."),
+        leave(
+            "DEP PLCT",
+            "PR+70 PA+120 R5",
+            "Same as DEP LCT, with the point in polar coordinates.",
+            "CC X+0 Y-10\n",
+        ),
     )
 
 
@@ -238,7 +246,7 @@ def _flow() -> tuple[Entry, ...]:
         Entry(
             "LBL",
             "n",
-            "Begins a subprogram or a part that is repeated; LBL 0 ends a subprogram.",
+            "Starts a subprogram or a section to be repeated; LBL 0 ends a subprogram.",
             "CALL LBL 1",
             "LBL 1\nLBL 1",
             "twice",
@@ -247,7 +255,7 @@ def _flow() -> tuple[Entry, ...]:
         Entry(
             "CALL LBL",
             "n REP ..",
-            "Calls a subprogram; with REP it repeats the part since LBL.",
+            "Calls a subprogram; with REP, repeats the section from LBL to here.",
             "LBL 3\nL IX+5 R0 F300\nCALL LBL 3 REP 4",
             "CALL LBL 9",
             "Label not found",
@@ -264,16 +272,16 @@ def _flow() -> tuple[Entry, ...]:
         Entry(
             "SEL PGM",
             '"name"',
-            "Names the program that CALL SELECTED PGM calls.",
+            "Selects the program for CALL SELECTED PGM.",
             'SEL PGM "SLOT.H"\nCALL SELECTED PGM',
             "SEL PGM",
-            "needs the name",
+            "needs a file name",
             files=(("SLOT.H", "BEGIN PGM SLOT MM\nL IX+5 R0 F300\nEND PGM SLOT MM\n"),),
         ),
         Entry(
             "CALL SELECTED",
             "PGM",
-            "Runs the program of SEL PGM.",
+            "Runs the program selected by SEL PGM.",
             'SEL PGM "SLOT.H"\nCALL SELECTED PGM',
             "CALL SELECTED PGM",
             "No program is selected",
@@ -282,7 +290,7 @@ def _flow() -> tuple[Entry, ...]:
         Entry(
             "SEL TABLE",
             '"name.D"',
-            "Names the datum table of CYCL DEF 7.1 #n and TRANS DATUM TABLE TABLINEn.",
+            "Selects the datum table for CYCL DEF 7.1 #n and TRANS DATUM TABLE TABLINEn.",
             'SEL TABLE "VICE.D"\nCYCL DEF 7.0 DATUM SHIFT\nCYCL DEF 7.1 #2\nL X+0 Y+0 R0 FMAX',
             "CYCL DEF 7.0 DATUM SHIFT\nCYCL DEF 7.1 #2",
             "No datum table is selected",
@@ -291,10 +299,10 @@ def _flow() -> tuple[Entry, ...]:
         Entry(
             "SEL PATTERN",
             '"name.PNT"',
-            "Names the point table of CYCL CALL PAT.",
+            "Selects the point table for CYCL CALL PAT.",
             'SEL PATTERN "HOLES.PNT"\nL X+0 Y+0 R0 FMAX',
             'SEL PATTERN "NONE.PNT"',
-            "not beside",
+            "not in the same folder",
             files=(("HOLES.PNT", "BEGIN HOLES .PNT MM\nNR X Y Z\n0 +10 +5 +0\n1 +20 +5 +0\n[END]\n"),),
         ),
     )
@@ -317,8 +325,10 @@ def _parameters() -> tuple[Entry, ...]:
         Entry(
             "Q",
             "n = formula",
-            "Gives a Q parameter a value: + - * / % ^, brackets, SIN COS TAN ASIN ACOS ATAN SQRT "
-            "SQ LN LOG EXP NEG INT ABS FRAC SGN PI.",
+            (
+                "Assigns a value to a Q parameter: + - * / % ^, parentheses, SIN COS TAN ASIN ACOS "
+                "ATAN SQRT SQ LN LOG EXP NEG INT ABS FRAC SGN PI."
+            ),
             "Q5 = 3 + 2 * SIN 30\nL X+Q5 R0 F300",
             "Q5 = 3 / 0",
             "Arithmetical",
@@ -326,7 +336,7 @@ def _parameters() -> tuple[Entry, ...]:
         Entry(
             "QL",
             "n = formula",
-            "Gives a local parameter a value; it ends with its program.",
+            "Assigns a value to a local parameter, which is valid until its program ends.",
             "QL5 = 3\nL X+QL5 R0 F300",
             "L X+QL7 R0 F300",
             "no value",
@@ -334,46 +344,67 @@ def _parameters() -> tuple[Entry, ...]:
         Entry(
             "QR",
             "n = formula",
-            "Gives a parameter a value that outlives the program.",
+            "Assigns a value to a parameter that remains stored after the program ends.",
             "QR5 = 3\nL X+QR5 R0 F300",
             "QR900 = 3",
             "QR499",
         ),
         function(0, ": Q5 = +Q1", "Assigns a value.", "FN 0: Q5 = Q1 + 3", "FN 0"),
-        function(1, ": Q5 = +Q1 + +Q2", "Adds.", "FN 1: Q5 = +1", "FN 1 needs"),
-        function(2, ": Q5 = +Q1 - +Q2", "Subtracts.", "FN 2: Q5 = +1", "FN 2 needs"),
-        function(3, ": Q5 = +Q1 * +Q2", "Multiplies.", "FN 3: Q5 = +1", "FN 3 needs"),
-        function(4, ": Q5 = +Q1 DIV +Q2", "Divides.", "FN 4: Q5 = +1 DIV +0", "Arithmetical"),
+        function(1, ": Q5 = +Q1 + +Q2", "Adds two values.", "FN 1: Q5 = +1", "FN 1 needs"),
+        function(2, ": Q5 = +Q1 - +Q2", "Subtracts one value from another.", "FN 2: Q5 = +1", "FN 2 needs"),
+        function(3, ": Q5 = +Q1 * +Q2", "Multiplies two values.", "FN 3: Q5 = +1", "FN 3 needs"),
+        function(
+            4, ": Q5 = +Q1 DIV +Q2", "Divides one value by another.", "FN 4: Q5 = +1 DIV +0", "Arithmetical"
+        ),
         function(5, ": Q5 = SQRT +Q1", "Square root.", "FN 5: Q5 = SQRT -4", "Arithmetical"),
         function(6, ": Q5 = SIN +Q1", "Sine of an angle in degrees.", "FN 6: Q5 = +Q1", "FN 6 needs SIN"),
         function(7, ": Q5 = COS +Q1", "Cosine of an angle in degrees.", "FN 7: Q5 = +Q1", "FN 7 needs COS"),
-        function(8, ": Q5 = +Q1 LEN +Q2", "Root of the sum of two squares.", "FN 8: Q5 = +1", "FN 8 needs"),
-        jump(9, "EQU", "Jumps if equal."),
-        jump(10, "NE", "Jumps if not equal."),
-        jump(11, "GT", "Jumps if greater."),
-        jump(12, "LT", "Jumps if less."),
-        function(13, ": Q5 = +Q1 ANG +Q2", "Angle of two sides.", "FN 13: Q5 = +1", "FN 13 needs"),
+        function(
+            8, ": Q5 = +Q1 LEN +Q2", "Square root of the sum of two squares.", "FN 8: Q5 = +1", "FN 8 needs"
+        ),
+        jump(9, "EQU", "Jumps if the two values are equal."),
+        jump(10, "NE", "Jumps if the two values are not equal."),
+        jump(11, "GT", "Jumps if the first value is greater."),
+        jump(12, "LT", "Jumps if the first value is less."),
+        function(
+            13, ": Q5 = +Q1 ANG +Q2", "Angle from the lengths of two sides.", "FN 13: Q5 = +1", "FN 13 needs"
+        ),
         Entry(
             "FN 14",
             ": ERROR = n",
-            "Ends the program with an error of its own.",
+            "Ends the program with an error that the program defines.",
             "FN 9: IF +1 EQU +1 GOTO LBL 98\nFN 14: ERROR = 1000\nLBL 98",
             "FN 14: ERROR = 1000",
             "Error of the program",
         ),
-        function(15, ": PRINT Q1", "Prints; nothing is printed here, which is said.", "", ""),
-        function(16, ": F-PRINT A.A", "Prints into a file; nothing is printed here, which is said.", "", ""),
+        function(
+            15,
+            ": PRINT Q1",
+            ("Prints; nothing is printed on this control, and a message reports this."),
+            "",
+            "",
+        ),
+        function(
+            16,
+            ": F-PRINT A.A",
+            ("Prints to a file; nothing is printed on this control, and a message reports this."),
+            "",
+            "",
+        ),
         function(
             17,
             ": SYSWRITE ID50 NR22 IDX1 = +0",
-            "Writes into the tool table: nothing is changed there; what would move something is refused.",
+            (
+                "Writes to the tool table: no value is changed there, and values that would move an "
+                "axis are rejected."
+            ),
             "FN 17: SYSWRITE ID50 NR4 IDX1 = +0.5",
             "DL of tool 1",
         ),
         function(
             18,
             ": SYSREAD Q5 = ID20 NR1",
-            "Reads a figure of the control.",
+            "Reads a system value of the control.",
             "FN 18: SYSREAD Q5 = ID9999 NR1",
             "FN 18",
         ),
@@ -406,25 +437,25 @@ def _planes() -> tuple[Entry, ...]:
         plane(
             "VECTOR",
             "BX+1 BY+0 BZ+0 NX+0 NY-0.5 NZ+1",
-            "Tilts by the normal and a base vector.",
+            "Tilts by a normal vector and a base vector.",
             "BX+1 MOVE",
             "missing",
         ),
         plane("EULER", "EULPR+0 EULNU+30 EULROT+0", "Tilts by Euler angles.", "EULPR+0 MOVE", "missing"),
         plane(
-            "PROJECTED", "PROPR+0 PROMIN+20 ROT+0", "Tilts by projected angles.", "PROPR+0 MOVE", "missing"
+            "PROJECTED", "PROPR+0 PROMIN+20 ROT+0", "Tilts by projection angles.", "PROPR+0 MOVE", "missing"
         ),
         plane(
             "RELATIV",
             "SPA+20",
-            "Tilts by one angle more, from the plane in force.",
+            "Tilts by one additional angle, from the active plane.",
             "SPA+10 SPB+10 MOVE",
             "one of",
         ),
         Entry(
             "PLANE RESET",
             "MOVE",
-            "Ends the tilted plane.",
+            "Cancels the tilted plane.",
             "PLANE AXIAL A+30 C+0 TURN F1000\nPLANE RESET TURN F1000",
             "PLANE RESET MOVE DIST5 DIST6",
             "DIST",
@@ -432,7 +463,7 @@ def _planes() -> tuple[Entry, ...]:
         Entry(
             "MOVE",
             "DIST.. F..",
-            "The rotary axes turn, and the tool follows its point.",
+            "The rotary axes turn, and the tool tip follows its point on the workpiece.",
             "PLANE AXIAL A+30 C+0 MOVE DIST20 F1000\nPLANE RESET MOVE F1000",
             "PLANE AXIAL A+30 TURN DIST20 F1000",
             "DIST",
@@ -440,23 +471,23 @@ def _planes() -> tuple[Entry, ...]:
         Entry(
             "TURN",
             "F..",
-            "The rotary axes turn, the linear axes stand.",
+            "The rotary axes turn, the linear axes do not move.",
             "PLANE AXIAL A+30 C+0 TURN F1000\nPLANE RESET TURN F1000",
             "PLANE AXIAL A+30 TURN MOVE",
-            "stands behind",
+            "cannot contain both",
         ),
         Entry(
             "STAY",
             "",
-            "Nothing moves; the program turns the axes itself, by Q120 to Q122.",
+            "No axis moves; the program turns the rotary axes with Q120 to Q122.",
             "PLANE AXIAL A+30 C+0 STAY\nPLANE RESET STAY",
             "PLANE AXIAL A+30 STAY F500",
-            "STAY moves nothing",
+            "STAY does not move any axis",
         ),
         Entry(
             "FUNCTION TCPM",
             "F TCP AXIS POS PATHCTRL AXIS",
-            "The tool's point keeps its place while rotary axes move.",
+            "The tool tip stays at its point while the rotary axes move.",
             "FUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS\nL IA+5 R0 F300\nFUNCTION RESET TCPM",
             "FUNCTION TCPM AXIS SPAT",
             "AXIS SPAT",
@@ -482,8 +513,8 @@ BOOK = CodeBook(
         ("Tilted planes", _planes()),
         ("Coordinate transformations", transformations()),
         ("Cycles", cycles()),
-        ("Threads, faces and slots that are milled", milling()),
-        ("Contours of SL cycles", contours()),
+        ("Thread, face and slot milling", milling()),
+        ("Contours for SL cycles", contours()),
         ("M functions", m_functions()),
         ("Words of older and newer controls", other_controls()),
     ),

@@ -14,19 +14,22 @@ _TRAIN_NAMED = "CYCL DEF 14.0 CONTOUR\nCYCL DEF 14.1 CONTOUR LABEL1"
 _OLDER = {
     6: (
         "ROUGH-OUT",
-        "Clears the pocket of cycle 14, from where the tool stands; in rings, down by a ramp.",
+        (
+            "Clears the pocket of cycle 14 in rings, starting at the current tool position and "
+            "plunging along a ramp."
+        ),
         "SET UP2 DEPTH-5|PECKG5 F150 ALLOW+0.2|ANGLE+0 F400",
         ("F400", "FMAX", "rapid"),
     ),
     15: (
         "PILOT DRILLING",
-        "Drills where a tool of this radius would go down; cycle 6 needs no hole here.",
+        ("Drills where a tool of this radius would plunge; in TurnDesk, cycle 6 does not need this hole."),
         "SET UP2 DEPTH-5|PECKG5 F150 ALLOW+0.2",
         ("F150", "FMAX", "rapid"),
     ),
     16: (
         "CONTOUR MILLING",
-        "Goes along the walls of pocket and islands.",
+        "Mills along the walls of the pocket and its islands.",
         "SET UP2 DEPTH-5|PECKG5 F150|DR+ F400",
         ("F400", "FMAX", "rapid"),
     ),
@@ -50,25 +53,25 @@ _ROUGH = _told(22, "ROUGH-OUT", "Q10=-5 Q11=150 Q12=400 Q18=0 Q19=200 Q208=99999
 _OF_A_CYCLE = {
     21: (
         "PILOT DRILLING",
-        "Drills where cycle 22 goes down with the tool Q13.",
+        "Drills where cycle 22 plunges with tool Q13.",
         "Q10=-5 Q11=150 Q13=1",
         ("Q13=1", "Q13=99", "Q13"),
     ),
     22: (
         "ROUGH-OUT",
-        "Clears the pocket of cycle 14 level by level, round its islands; straight down where Q19 is 0.",
+        ("Clears the pocket of cycle 14 level by level, around its islands; plunges vertically if Q19 is 0."),
         "Q10=-5 Q11=150 Q12=400 Q18=0 Q19=200 Q208=99999 Q401=100 Q404=0",
         ("Q12=400", "Q12=99999", "rapid"),
     ),
     23: (
         "FLOOR FINISHING",
-        "Goes over the floor of the pocket at its depth.",
+        "Mills the pocket floor at the pocket depth.",
         "Q11=100 Q12=200 Q208=99999",
         ("Q12=200", "Q12=99999", "rapid"),
     ),
     24: (
         "SIDE FINISHING",
-        "Goes along the walls of pocket and islands, to the allowance Q14.",
+        "Mills along the walls of the pocket and its islands, leaving the allowance Q14.",
         "Q9=+1 Q10=-5 Q11=100 Q12=200 Q14=+0",
         ("Q12=200", "Q12=99999", "rapid"),
     ),
@@ -97,25 +100,28 @@ def _formulas() -> tuple[Entry, ...]:
         Entry(
             "DECLARE CONTOUR",
             'QCn = "name"',
-            "Names a closed contour: a program of its own (in quotes), or LBL n.",
+            "Names a closed contour: a separate program (in quotes) or LBL n.",
             f"{_DECLARED}\nCONTOUR DEF P1 = QC1\n{_DATA}\n{_ROUGH}\nCYCL CALL",
             f"{_DECLARED} DEPTH5",
-            "depth of its own",
+            "its own depth",
             files=_CIRCLE,
         ),
         Entry(
             "QC",
             "n = formula",
-            "Joins contours to what is milled: | in any, & in both, \\ without, ^ in one of two.",
+            (
+                "Combines contours into the area to mill: | in either, & in both, \\ in the first "
+                "without the second, ^ in only one of the two."
+            ),
             f"{_DECLARED}\nQC10 = QC1 | QC1\n{_DATA}\n{_ROUGH}\nCYCL CALL",
             f"{_DECLARED}\nQC10 = QC1 | QC1 & QC1",
-            "side by side",
+            "without parentheses",
             files=_CIRCLE,
         ),
         Entry(
             "SEL CONTOUR",
             '"name"',
-            "Takes the contour formula of another program.",
+            "Uses the contour formula of another program.",
             f'SEL CONTOUR "MODEL"\n{_DATA}\n{_ROUGH}\nCYCL CALL',
             'SEL CONTOUR "ROUND"',
             "no contour formula",
@@ -151,7 +157,10 @@ def contours() -> tuple[Entry, ...]:
         Entry(
             "CONTOUR DEF",
             "P1 = LBL n I2 = LBL n",
-            "Names pockets (P) and islands (I) as cycle 14 does: LBL n, a program in quotes, or QC n.",
+            (
+                "Names pockets (P) and islands (I), as cycle 14 does: LBL n, a program name in "
+                "quotes, or QC n."
+            ),
             f"CONTOUR DEF P1 = LBL 1 I2 = LBL 2\n{_DATA}\n{_ROUGH}\nCYCL CALL",
             f'CONTOUR DEF P1 = "POCKET.H"\n{_DATA}\n{_ROUGH}\nCYCL CALL',
             "POCKET.H",
@@ -160,10 +169,10 @@ def contours() -> tuple[Entry, ...]:
         Entry(
             "CYCL DEF 20",
             "CONTOUR DATA",
-            "Depth, overlap, allowances, heights and sense for cycles 21 to 24.",
+            "Sets depth, overlap, allowances, heights and milling direction for cycles 21 to 24.",
             f"{_NAMED}\n{_DATA}\n{_ROUGH}\nCYCL CALL",
             _DATA.replace("Q1=-5", "Q1=+5"),
-            "upwards",
+            "upward",
             behind=_POCKET + _ISLAND,
             insert=_DATA,
         ),
@@ -173,7 +182,7 @@ def contours() -> tuple[Entry, ...]:
         Entry(
             "CYCL DEF 25",
             "CONTOUR TRAIN",
-            "Mills along an open or closed contour, at the side that RL or RR says.",
+            "Mills along an open or closed contour, on the side set by RL or RR.",
             f"{_TRAIN_NAMED}\n{train}\nCYCL CALL",
             f"{_TRAIN_NAMED}\n{train.replace('Q12=400', 'Q12=99999')}\nCYCL CALL",
             "rapid",

@@ -24,7 +24,7 @@ def transformations() -> tuple[Entry, ...]:
         Entry(
             "TRANS DATUM",
             "AXIS X.. Y.. Z..",
-            "Shifts the datum; RESET ends it.",
+            "Shifts the datum; RESET cancels the shift.",
             f"TRANS DATUM AXIS X+10 Y-5{go}\nTRANS DATUM RESET",
             "TRANS DATUM X+10",
             "AXIS or RESET",
@@ -32,7 +32,7 @@ def transformations() -> tuple[Entry, ...]:
         Entry(
             "TRANS MIRROR",
             "AXIS X",
-            "Mirrors axes; RESET ends it.",
+            "Mirrors axes; RESET cancels the mirroring.",
             f"TRANS MIRROR AXIS X{go}\nTRANS MIRROR RESET",
             "TRANS MIRROR X",
             "AXIS or RESET",
@@ -40,7 +40,7 @@ def transformations() -> tuple[Entry, ...]:
         Entry(
             "TRANS ROTATION",
             "ROT..",
-            "Turns the plane; RESET ends it.",
+            "Rotates the plane; RESET cancels the rotation.",
             f"TRANS ROTATION ROT+30{go}\nTRANS ROTATION RESET",
             "TRANS ROTATION 30",
             "ROT",
@@ -48,22 +48,22 @@ def transformations() -> tuple[Entry, ...]:
         Entry(
             "TRANS SCALE",
             "SCL..",
-            "Enlarges or reduces; RESET ends it.",
+            "Enlarges or reduces; RESET cancels the scaling.",
             f"TRANS SCALE SCL0.5{go}\nTRANS SCALE RESET",
             "TRANS SCALE 0.5",
             "SCL",
         ),
         older(7, "DATUM SHIFT", "X+10", "Shifts the datum, axis by axis.", "W+10", "W"),
-        older(8, "MIRRORING", "X", "Mirrors axes; without an axis it ends.", "W", "W"),
-        older(10, "ROTATION", "ROT+30", "Turns the plane; ROT+0 ends it.", "30", "ROT"),
-        older(11, "SCALING", "SCL0.5", "Enlarges or reduces; SCL1 ends it.", "SCL0", "SCL"),
+        older(8, "MIRRORING", "X", "Mirrors axes; without an axis, the mirroring is canceled.", "W", "W"),
+        older(10, "ROTATION", "ROT+30", "Rotates the plane; ROT+0 cancels the rotation.", "30", "ROT"),
+        older(11, "SCALING", "SCL0.5", "Enlarges or reduces; SCL1 cancels the scaling.", "SCL0", "SCL"),
         older(
             19,
             "WORKING PLANE",
             "A+0 B+0 C+0",
             "Tilts by spatial or axis angles; the program turns the axes.",
             "W3",
-            "no axis",
+            "not an axis",
         ),
         Entry(
             "CYCL DEF 247",
@@ -81,65 +81,73 @@ _HOLE = "Q200=2 Q201=-20 Q206=150"
 _MILL = "Q207=400 Q351=+1 Q201=-10 Q202=5"
 _INFEED = f"Q369=0 Q206=150 Q338=0 Q200=2 {_HEIGHTS} Q370=1"
 _OF_A_CYCLE = {
-    200: ("DRILLING", "Drills in infeeds.", f"{_HOLE} Q202=5 Q210=0 {_HEIGHTS} Q211=0"),
-    201: ("REAMING", "Reams; out at a feed.", f"{_HOLE} Q211=0 Q208=300 {_HEIGHTS}"),
+    200: ("DRILLING", "Drills in several infeeds.", f"{_HOLE} Q202=5 Q210=0 {_HEIGHTS} Q211=0"),
+    201: ("REAMING", "Reams and retracts at a feed.", f"{_HOLE} Q211=0 Q208=300 {_HEIGHTS}"),
     202: (
         "BORING",
-        "Bores, stops the spindle at Q336, frees the edge by Q214, out.",
+        "Bores, stops the spindle at Q336, moves the edge off the wall as set in Q214, and retracts.",
         f"{_HOLE} Q211=0 Q208=300 {_HEIGHTS} Q214=0 Q336=+0",
     ),
     203: (
         "UNIVERSAL DRILLING",
-        "Drills in infeeds that become smaller, with chip breaks.",
+        "Drills in decreasing infeeds, with chip breaks.",
         f"{_HOLE} Q202=5 Q210=0 {_HEIGHTS} Q212=0.2 Q213=3 Q205=1 Q211=0 Q208=500 Q256=0.2",
     ),
     205: (
         "UNIVERSAL PECKING",
-        "Pecks deep holes, with chip breaks and a start below the surface.",
+        "Drills deep holes in pecks, with chip breaks and a start point below the surface.",
         f"{_HOLE} Q202=8 {_HEIGHTS} Q212=0.5 Q205=2 Q258=0.5 Q259=1 Q257=4 Q256=0.2 Q211=0 Q379=0 Q253=750",
     ),
     206: ("TAPPING", "Taps with a floating tap holder.", f"{_HOLE} Q211=0 {_HEIGHTS}"),
-    207: ("RIGID TAPPING", "Taps by pitch and speed.", f"Q200=2 Q201=-20 Q239=+1 {_HEIGHTS}"),
-    208: ("BORE MILLING", "Mills a hole by a helix.", f"{_HOLE} Q334=0.5 {_HEIGHTS} Q335=20 Q342=0 Q351=+1"),
+    207: ("RIGID TAPPING", "Taps with feed set by pitch and speed.", f"Q200=2 Q201=-20 Q239=+1 {_HEIGHTS}"),
+    208: (
+        "BORE MILLING",
+        "Mills a hole along a helix.",
+        f"{_HOLE} Q334=0.5 {_HEIGHTS} Q335=20 Q342=0 Q351=+1",
+    ),
     209: (
         "TAPPING W/ CHIP BRKG",
-        "Taps by pitch and speed, with chip breaks.",
+        "Taps with feed set by pitch and speed, with chip breaks.",
         f"Q200=2 Q201=-20 Q239=+1 {_HEIGHTS} Q257=5 Q256=0 Q336=+0",
     ),
     241: (
         "SINGLE-LIP D.H.DRLNG",
-        "Drills deep holes: in slowly to a start, then at speed with coolant.",
+        "Drills deep holes: moves in slowly to a start point, then drills at speed with coolant.",
         f"{_HOLE} Q211=0 {_HEIGHTS} Q379=5 Q253=750 Q208=1000 Q426=3 Q427=50 Q428=500 Q429=8 Q430=9 Q435=0",
     ),
     251: (
         "RECTANGULAR POCKET",
-        "Mills a rectangular pocket, walls and floor last.",
+        "Mills a rectangular pocket; walls and floor are finished last.",
         f"Q215=0 Q218=60 Q219=40 Q220=6 Q368=0.2 Q224=+0 Q367=0 {_MILL} {_INFEED} Q366=1 Q385=500",
     ),
     252: (
         "CIRCULAR POCKET",
-        "Mills a circular pocket, walls and floor last.",
+        "Mills a circular pocket; walls and floor are finished last.",
         f"Q215=0 Q223=50 Q368=0.2 {_MILL} {_INFEED} Q366=1 Q385=500",
     ),
     253: (
         "SLOT MILLING",
-        "Mills a slot, walls and floor last.",
+        "Mills a slot; walls and floor are finished last.",
         f"Q215=0 Q218=60 Q219=12 Q368=0.2 Q374=+30 Q367=0 {_MILL} {_INFEED} Q366=2 Q385=500",
     ),
     256: (
         "RECTANGULAR STUD",
-        "Mills a rectangular stud out of a larger blank.",
+        "Mills a rectangular stud from a larger blank.",
         f"Q218=60 Q424=70 Q219=40 Q425=50 Q220=6 Q368=0 Q224=+0 Q367=0 {_MILL} {_INFEED}",
     ),
     257: (
         "CIRCULAR STUD",
-        "Mills a round stud out of a larger blank.",
+        "Mills a round stud from a larger blank.",
         f"Q223=50 Q222=60 Q368=0 {_MILL} {_INFEED} Q376=+0",
     ),
-    240: ("CENTERING", "Centres to a depth.", f"Q200=2 Q343=+0 Q201=-2 Q344=-8 Q206=150 Q211=0 {_HEIGHTS}"),
+    240: (
+        "CENTERING",
+        "Center-drills to a depth.",
+        f"Q200=2 Q343=+0 Q201=-2 Q344=-8 Q206=150 Q211=0 {_HEIGHTS}",
+    ),
 }
 _OF_AN_OLDER = {
-    1: ("PECKING", "Pecks.", ("SET UP 2", "DEPTH -20", "PECKG 5", "DWELL 0", "F150")),
+    1: ("PECKING", "Drills in pecks.", ("SET UP 2", "DEPTH -20", "PECKG 5", "DWELL 0", "F150")),
     2: (
         "TAPPING",
         "Taps with a floating tap holder.",
@@ -147,23 +155,23 @@ _OF_AN_OLDER = {
     ),
     3: (
         "SLOT MILLING",
-        "Mills a slot from where the tool stands.",
+        "Mills a slot from the current tool position.",
         ("SET UP -2", "DEPTH -5", "PECKG -2.5 F100", "X+30", "Y+12", "F300"),
     ),
     4: (
         "POCKET MILLING",
-        "Mills a rectangular pocket round where the tool stands.",
+        "Mills a rectangular pocket around the current tool position.",
         ("SET UP 2", "DEPTH -5", "PECKG 2.5 F100", "X40", "Y30", "F300 DR+"),
     ),
     5: (
         "CIRCULAR POCKET",
-        "Mills a circular pocket round where the tool stands.",
+        "Mills a circular pocket around the current tool position.",
         ("SET UP 2", "DEPTH -5", "PECKG 2.5 F100", "RADIUS 20", "F300 DR+"),
     ),
-    17: ("RIGID TAPPING", "Taps by pitch and speed.", ("SET UP 2", "DEPTH -20", "PITCH +1")),
+    17: ("RIGID TAPPING", "Taps with feed set by pitch and speed.", ("SET UP 2", "DEPTH -20", "PITCH +1")),
     18: (
         "THREAD CUTTING",
-        "Cuts a thread from where the tool stands; the spindle stops.",
+        "Cuts a thread from the current tool position; the spindle stops.",
         ("DEPTH -20", "PITCH +1"),
     ),
 }
@@ -182,7 +190,7 @@ def cycles() -> tuple[Entry, ...]:
             what,
             body + call,
             body.replace("Q201=-", "Q201=+") + call,
-            "leads upwards",
+            "positive (upward)",
             insert=body,
         )
 
@@ -216,7 +224,7 @@ def cycles() -> tuple[Entry, ...]:
         Entry(
             "CYCL DEF 220",
             "POLAR PATTERN",
-            "Runs the cycle told before it at places on a circle.",
+            "Runs the cycle defined before it at positions on a circle.",
             drill + circle,
             circle,
             "cycle",
@@ -225,7 +233,7 @@ def cycles() -> tuple[Entry, ...]:
         Entry(
             "CYCL DEF 221",
             "CARTESIAN PATTERN",
-            "Runs the cycle told before it at places in rows.",
+            "Runs the cycle defined before it at positions in rows.",
             drill + square,
             square,
             "cycle",
@@ -235,16 +243,16 @@ def cycles() -> tuple[Entry, ...]:
         Entry(
             "CYCL DEF 9",
             ".0 DWELL TIME",
-            "Rests.",
+            "Dwells.",
             "CYCL DEF 9.0 DWELL TIME\nCYCL DEF 9.1 DWELL 0.5",
             "CYCL DEF 9.0 DWELL TIME\nCYCL DEF 9.1 DWELL -1",
-            "before now",
+            "is negative",
             insert="CYCL DEF 9.0 DWELL TIME\nCYCL DEF 9.1 DWELL 0.5",
         ),
         Entry(
             "CYCL DEF 12",
             ".0 PGM CALL",
-            "Makes a program the cycle that CYCL CALL runs.",
+            "Defines a program as the cycle that CYCL CALL runs.",
             "CYCL DEF 12.0 PGM CALL\nCYCL DEF 12.1 PGM SLOT.H\nCYCL CALL",
             "CYCL DEF 12.0 PGM CALL\nCYCL DEF 12.1 PGM NOWHERE.H\nCYCL CALL",
             "NOWHERE",
@@ -261,13 +269,16 @@ def cycles() -> tuple[Entry, ...]:
         Entry(
             "CYCL DEF 32",
             ".0 TOLERANCE",
-            "How far the path may be left; this control keeps to it.",
+            "Permitted deviation from the path; this control stays on the path.",
             "CYCL DEF 32.0 TOLERANCE\nCYCL DEF 32.1 T0.02",
         ),
         Entry(
             "PATTERN DEF",
             "POS1 (X.. Y.. Z..) ROW1 PAT1 FRAME1 CIRC1 PITCHCIRC1",
-            "The points of CYCL CALL PAT: singly, in a row, as a grid or a frame, on a circle or its part.",
+            (
+                "The points for CYCL CALL PAT: single points, a row, a grid or a frame, a circle or "
+                "part of a circle."
+            ),
             drill + "PATTERN DEF ROW1 (X+0 Y+0 D+10 NUM3 ROT+30 Z+0)\nCYCL CALL PAT FMAX",
             "PATTERN DEF ROW1 (X+0 Y+0 D+10)",
             "NUM",
@@ -283,7 +294,7 @@ def cycles() -> tuple[Entry, ...]:
         Entry(
             "CYCL CALL",
             "M..",
-            "Runs the cycle where the tool stands.",
+            "Runs the cycle at the current tool position.",
             drill + "L X+10 Y+5 R0 FMAX\nCYCL CALL",
             "CYCL CALL",
             "cycle",
@@ -291,7 +302,7 @@ def cycles() -> tuple[Entry, ...]:
         Entry(
             "CYCL CALL POS",
             "X.. Y.. Z.. F..",
-            "Goes to a place and runs the cycle there.",
+            "Moves to a position and runs the cycle there.",
             drill + "CYCL CALL POS X+10 Y+5 Z+0 FMAX",
             "CYCL CALL POS X+10 Y+5 Z+0 FMAX",
             "cycle",
@@ -313,81 +324,112 @@ def m_functions() -> tuple[Entry, ...]:
             f"M{number}", "", what, example or f"M{number}", refused or f"M{number} M{number}", why or "twice"
         )
 
-    ignored = "Has no effect here, which is said."
+    ignored = "Has no effect on this control, and a message reports this."
     drill = "CYCL DEF 200 DRILLING ~\n  " + _OF_A_CYCLE[200][2].replace(" Q", " ~\n  Q") + "\n"
     return (
-        code(0, "Program stop; the spindle stops and the coolant goes off."),
+        code(0, "Program stop; the spindle stops and the coolant turns off."),
         code(1, "Optional stop."),
         code(2, "End of the program."),
         code(3, "Spindle on, clockwise.", "M3", "M3 M4", "spindle"),
-        code(4, "Spindle on, counter-clockwise."),
+        code(4, "Spindle on, counterclockwise."),
         code(5, "Spindle stop."),
         code(6, "Tool change: stops and asks for the tool."),
         code(8, "Coolant on."),
         code(9, "Coolant off."),
         code(13, "Spindle on, clockwise, and coolant on."),
-        code(14, "Spindle on, counter-clockwise, and coolant on."),
-        code(19, "Spindle stopped and held at the angle of cycle 13, else at 0.", "M19", "M19 M3", "spindle"),
+        code(14, "Spindle on, counterclockwise, and coolant on."),
+        code(
+            19,
+            ("Stops the spindle and holds it at the angle of cycle 13, or at 0 without that cycle."),
+            "M19",
+            "M19 M3",
+            "spindle",
+        ),
         code(30, "End of the program."),
         code(
             89,
-            "Runs the cycle behind every positioning block, until M99 or another.",
+            "Runs the cycle after every positioning block, until M99 or another cycle.",
             drill + "L X+10 Y+5 R0 FMAX M89\nL X+20 R0 FMAX\nL X+30 R0 FMAX M99",
         ),
         code(
             91,
-            "The coordinates of the block are those of the machine.",
+            "The coordinates of the block are machine coordinates.",
             "L Z+0 R0 FMAX M91",
             "M128\nL Z+0 R0 FMAX M91",
             "M128",
         ),
         code(
             92,
-            "The coordinates of the block count from the machine's second datum, which is fixed_points of "
-            "its slides in the machine file: where tools are changed.",
+            (
+                "The coordinates of the block refer to the second datum of the machine (fixed_points "
+                "of its axes in the machine file), where tools are changed."
+            ),
             "L Z-20 R0 FMAX M92",
             "L Z-20 R0 FMAX M91 M92",
-            "different zeros",
+            "different datums",
         ),
         code(
             99,
-            "Runs the cycle behind this block.",
+            "Runs the cycle after this block.",
             drill + "L X+10 Y+5 R0 FMAX M99",
             "L X+10 Y+5 R0 FMAX M99",
             "cycle",
         ),
         code(
             101,
-            "Changes to a replacement tool when the life is over: none is changed to here, which is said.",
+            (
+                "Changes to a replacement tool at the end of tool life: no tool is changed on this "
+                "control, and a message reports this."
+            ),
         ),
         code(102, "Ends M101."),
         code(
             103,
-            "With F and percent: on the way down Z moves with no more than this share of the feed.",
+            ("With F in percent: when Z moves down, it moves at no more than this percentage of the feed."),
             "M103 F20\nL X+10 Z-2 R0 F500\nM103",
             "M103 FMAX",
             "its factor",
         ),
-        code(115, "Ends M114, which is not built."),
+        code(115, "Ends M114, which is not supported."),
         code(
             116,
-            "F of rotary axes alone counts mm of the tip's way on the workpiece, by its distance from them.",
+            (
+                "In moves of rotary axes alone, F is measured in mm along the path of the tool tip "
+                "on the workpiece, based on its distance from the axes."
+            ),
             "M116\nL X+40 Y+0 R0 FMAX\nL C+30 R0 F500\nM117",
         ),
-        code(117, "Ends M116: F of rotary axes counts degrees."),
-        code(126, "Rotary axes without end go the short way, as they do unless M127 stands before."),
-        code(127, "Rotary axes without end go by their figures: from 350 to 10 all the way back."),
+        code(117, "Ends M116: F of rotary axes is measured in degrees."),
+        code(
+            126,
+            (
+                "Rotary axes without limits take the shortest path, which is the default unless M127 "
+                "comes before."
+            ),
+        ),
+        code(
+            127,
+            (
+                "Rotary axes without limits follow their position values: from 350 to 10 they turn "
+                "back through 340 degrees."
+            ),
+        ),
         code(
             136,
-            "F counts a revolution of the spindle, by S as programmed; the feed of before is forgotten.",
+            (
+                "F is a feed per spindle revolution, based on the programmed S; the feed programmed "
+                "before no longer applies."
+            ),
             "M136\nL X+10 R0 F0.2\nM137\nL X+20 R0 F500",
             "L X+5 R0 F500\nM136\nL X+10",
             "No feed",
         ),
-        code(137, "Ends M136; the feed of before is forgotten."),
-        code(128, "The tool's point keeps its place while rotary axes move.", "M128\nL IA+5 R0 F300\nM129"),
+        code(137, "Ends M136; the feed programmed before no longer applies."),
+        code(
+            128, "The tool tip stays at its point while the rotary axes move.", "M128\nL IA+5 R0 F300\nM129"
+        ),
         code(129, "Ends M128."),
-        code(145, "Ends M144, which is not built."),
-        code(140, "Away from the workpiece along the tool axis.", "M140 MB 20", "M140", "needs MB"),
+        code(145, "Ends M144, which is not supported."),
+        code(140, "Retracts from the workpiece along the tool axis.", "M140 MB 20", "M140", "needs MB"),
         *(code(number, ignored) for number in _UNHEEDED),
     )

@@ -49,7 +49,9 @@ class MissingValueError(ProgramError):
 
     def __init__(self, line: int, column: int, parameter: tuple[str, int]) -> None:
         name = f"{parameter[0]}{parameter[1]}"
-        made = fault(line, column, Q_UNDEFINED, f"{name} has no value yet.", f"Write {name} = … before.")
+        made = fault(
+            line, column, Q_UNDEFINED, f"{name} has no value yet.", (f"Write {name} = … in an earlier block.")
+        )
         super().__init__(made.diagnostic)
         self.parameter = parameter
 
@@ -61,5 +63,5 @@ def syntax(line: int, column: int, message: str, hint: str = "") -> ProgramError
 
 def unsupported(line: int, column: int, what: str) -> ProgramError:
     """What the control may know and this one does not, by name."""
-    hint = "Program it with L moves and PLANE, or run the program on a control that has it."
+    hint = "Use L moves and PLANE instead, or run the program on a control that supports this function."
     return fault(line, column, NOT_SUPPORTED, f"{what} is not supported here.", hint)

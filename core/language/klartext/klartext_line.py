@@ -93,7 +93,12 @@ def read_line(number: int, text: str) -> KlartextLine:
     if (plain := read_plain(number, text)) is not None:
         return plain
     if len(text) > LONGEST_LINE:
-        problem = syntax(number, 1, f"The line has {len(text)} characters.", "Break it into lines.")
+        problem = syntax(
+            number,
+            1,
+            f"The line is too long ({len(text)} characters).",
+            ("Split the line into shorter lines."),
+        )
         return KlartextLine(number, error=problem.diagnostic)
     end = comment_start(text)
     code, comment = text[:end], text[end + 1 :].strip() if end < len(text) else None
@@ -213,6 +218,6 @@ def _no_block(cursor: Cursor) -> ProgramError:
             if name == "TCH PROBE":
                 return structure_blocks.touch_probe(cursor, column)
             return unsupported(cursor.line, column, _TOGETHER.get(name, name))
-    text = f"'{cursor.next_word}' begins no block."
-    hint = cursor.advice("A block begins with L, PLANE, TOOL CALL, LBL or the like.")
+    text = f"'{cursor.next_word}' cannot begin a block."
+    hint = cursor.advice("Begin the block with a word such as L, PLANE, TOOL CALL or LBL.")
     return syntax(cursor.line, column, text, hint)

@@ -10,48 +10,54 @@ _FRONT = "Q358=+0 Q359=+0"
 _OLD = f"Q200=2 Q201=-10 Q207=500 Q202=5 {_HEIGHTS} Q216=+50 Q217=+50"
 _FACE = "Q202=2 Q369=0.2 Q370=1 Q207=500 Q385=250 Q253=750 Q200=2 Q357=2 Q204=30"
 _RAPID = ("Q207=500", "Q207=99999", "rapid")
-_UPWARDS = ("Q201=-", "Q201=+", "leads upwards")
+_UPWARDS = ("Q201=-", "Q201=+", "positive (upward)")
 _OF_A_CYCLE = {
     204: (
         "BACK BORING",
-        "Bores from below: through the hole with the spindle at Q336 and beside the centre by Q251.",
+        (
+            "Bores from below: the tool passes through the hole with the spindle at angle Q336, "
+            "offset from the center by Q251."
+        ),
         "Q200=2 Q249=+5 Q250=20 Q251=3.5 Q252=15 Q253=750 Q254=200 Q255=0 Q203=+0 Q204=50 Q214=1 Q336=+0",
         ("Q214=1", "Q214=0", "Q214"),
     ),
     262: (
         "THREAD MILLING",
-        "Mills an inside thread: Q355 0 one turn, 1 over the whole depth, n every n pitches.",
+        (
+            "Mills an internal thread; Q355: 0 = one turn, 1 = turns over the whole depth, n = "
+            "one turn every n pitches."
+        ),
         f"{_THREAD} Q355=0 Q253=750 Q351=+1 Q200=2 {_HEIGHTS} Q207=500",
         _UPWARDS,
     ),
     263: (
         "THREAD MLLNG/CNTSNKG",
-        "Countersinks and mills an inside thread.",
+        "Countersinks and mills an internal thread.",
         f"{_THREAD} Q356=-20 Q253=750 Q351=+1 Q200=2 Q357=0.2 {_FRONT} {_HEIGHTS} Q254=150 Q207=500",
         _UPWARDS,
     ),
     264: (
         "THREAD DRILLNG/MLLNG",
-        "Drills and mills an inside thread.",
+        "Drills and mills an internal thread.",
         f"{_THREAD} Q356=-20 Q253=750 Q351=+1 Q202=5 Q258=0.2 Q257=0 Q256=0.2 {_FRONT} Q200=2 {_HEIGHTS} "
         "Q206=150 Q207=500",
         _UPWARDS,
     ),
     265: (
         "HEL.THREAD DRLG/MLG",
-        "Mills an inside thread downwards in a helix, from the solid.",
+        "Mills an internal thread downward along a helix, from solid material.",
         f"{_THREAD} Q253=750 {_FRONT} Q360=0 Q200=2 {_HEIGHTS} Q254=150 Q207=500",
         _UPWARDS,
     ),
     267: (
         "OUTSIDE THREAD MLLNG",
-        "Mills the thread of a stud.",
+        "Mills an external thread on a stud.",
         f"{_THREAD} Q355=0 Q253=750 Q351=+1 Q200=2 {_FRONT} {_HEIGHTS} Q254=150 Q207=500",
         _UPWARDS,
     ),
     210: (
         "SLOT RECIP. PLNG",
-        "Mills a slot, to and fro.",
+        "Mills a slot with back-and-forth moves.",
         f"{_OLD} Q215=0 Q218=80 Q219=12 Q224=+0",
         _UPWARDS,
     ),
@@ -63,25 +69,25 @@ _OF_A_CYCLE = {
     ),
     212: (
         "POCKET FINISHING",
-        "Goes round the wall of a rectangular pocket.",
+        "Finishes the wall of a rectangular pocket.",
         f"{_OLD} Q206=150 Q218=80 Q219=60 Q220=5 Q221=0",
         _UPWARDS,
     ),
     213: (
         "STUD FINISHING",
-        "Goes round the wall of a rectangular stud.",
+        "Finishes the wall of a rectangular stud.",
         f"{_OLD} Q206=150 Q218=60 Q219=40 Q220=5 Q221=0",
         _UPWARDS,
     ),
     214: (
         "C. POCKET FINISHING",
-        "Goes round the wall of a circular pocket.",
+        "Finishes the wall of a circular pocket.",
         f"{_OLD} Q206=150 Q222=79 Q223=80",
         _UPWARDS,
     ),
     215: (
         "C. STUD FINISHING",
-        "Goes round the wall of a round stud.",
+        "Finishes the wall of a round stud.",
         f"{_OLD} Q206=150 Q222=81 Q223=80",
         _UPWARDS,
     ),
@@ -93,20 +99,20 @@ _OF_A_CYCLE = {
     ),
     231: (
         "RULED SURFACE",
-        "Mills the surface between two lines in Q240 rows, with the tool's tip.",
+        "Mills the surface between two lines in Q240 rows, with the tool tip.",
         "Q225=+0 Q226=+0 Q227=-2 Q228=+80 Q229=+0 Q230=-2 Q231=+80 Q232=+50 Q233=-5 Q234=+0 Q235=+50 Q236=-5 "
         "Q240=20 Q207=500",
         ("Q240=20", "Q240=1", "number of cuts"),
     ),
     232: (
         "FACE MILLING",
-        "Mills a face from Q227 down to Q386; Q389 says how the rows follow each other.",
+        "Mills a face from Q227 down to Q386; Q389 selects the milling strategy for the rows.",
         f"Q389=0 Q225=+0 Q226=+0 Q227=+2 Q386=-3 Q218=80 Q219=60 {_FACE}",
         _RAPID,
     ),
     233: (
         "FACE MILLING",
-        "As 232, from where the tool stands (Q367), along the axis Q350.",
+        ("Mills a face like cycle 232, relative to the current tool position (Q367), along the axis Q350."),
         f"Q215=0 Q389=0 Q350=1 Q218=80 Q219=60 Q227=+2 Q386=-3 {_FACE} Q347=0 Q348=0 Q349=0",
         ("Q347=0", "Q347=1", "limit"),
     ),

@@ -13,7 +13,7 @@ def other_controls() -> tuple[Entry, ...]:
         Entry(
             "GLOBAL DEF",
             "n Q..=..",
-            "Tells parameters for all cycles behind it, which take them by PREDEF.",
+            "Defines parameters for all later cycles, which use them through PREDEF.",
             f"GLOBAL DEF 100 GENERAL ~\n Q200=+2 ~\n Q204=+50\n{_HOLE}\nCYCL CALL",
             f"{_HOLE}\nCYCL CALL",
             "no GLOBAL DEF",
@@ -21,15 +21,15 @@ def other_controls() -> tuple[Entry, ...]:
         Entry(
             "PRESET SELECT",
             "#n",
-            "Takes a row of the preset table, as cycle 247 does.",
+            "Activates a row of the preset table, as cycle 247 does.",
             "PRESET SELECT #0",
             'PRESET SELECT "VICE"',
-            "by a text",
+            "with a name",
         ),
         Entry(
             "FUNCTION DWELL",
             "TIME..",
-            "Rests for some seconds.",
+            "Dwells for the given number of seconds.",
             "FUNCTION DWELL TIME0.5",
             "FUNCTION DWELL REV5",
             "revolutions",
@@ -37,8 +37,10 @@ def other_controls() -> tuple[Entry, ...]:
         Entry(
             "LN",
             "X.. Y.. Z.. NX.. NY.. NZ..",
-            "Straight line with the normal of the surface. Nothing is compensated along it: with DL, DR or "
-            "DR2, and with TX TY TZ, it is refused.",
+            (
+                "Straight line with a surface normal. No compensation along the normal: a block with "
+                "DL, DR, DR2 or TX TY TZ is rejected."
+            ),
             "LN X+10 Y+5 Z+20 NX+0.1 NY+0.2 NZ+0.97 F300",
             "TOOL CALL 1 Z S1000 F200 DR+0.1\nLN X+10 Y+5 Z+20 NX+0.1 NY+0.2 NZ+0.97 F300",
             "3D compensation",
@@ -46,8 +48,10 @@ def other_controls() -> tuple[Entry, ...]:
         Entry(
             "R+",
             "",
-            "In a block that moves one axis (X+10 R+ F300, L may be left out): longer by the tool's radius; "
-            "R- shorter.",
+            (
+                "In a block that moves one axis (X+10 R+ F300; L is optional), R+ lengthens the move "
+                "by the tool radius and R- shortens it."
+            ),
             "X+30 R+ F300",
             "L X+30 Y+10 R+ F300",
             "one axis",
@@ -55,10 +59,10 @@ def other_controls() -> tuple[Entry, ...]:
         Entry(
             "S(VC=",
             "n)",
-            "Behind TOOL CALL: the speed by a cutting speed, m/min, and the tool's radius.",
+            "In TOOL CALL, sets the spindle speed from a cutting speed in m/min and the tool radius.",
             "TOOL CALL 1 Z S(VC=60) F300",
             "TOOL DEF 7 L+0 R+0\nTOOL CALL 7 Z S(VC=60) F300",
             "radius",
         ),
-        Entry("WMAT", '"name"', "The material: nothing is done with it here, which is said.", 'WMAT "STEEL"'),
+        Entry("WMAT", '"name"', "Names the material. TurnDesk ignores it and reports this.", 'WMAT "STEEL"'),
     )

@@ -23,16 +23,18 @@ def texts() -> tuple[Entry, ...]:
         Entry(
             "DECLARE STRING",
             'QSn = "text"',
-            "Declares a text, or several.",
+            "Declares one or more string parameters.",
             'DECLARE STRING QS1 = "HOLE"\nQS2 = QS1 || " 5"',
             "DECLARE STRING QS1 = HOLE",
-            "A text was expected",
+            "Expected a string",
         ),
         Entry(
             "QS",
             'n = "text"',
-            "Gives a text to a text parameter; parts are joined by ||. TOOL CALL, CALL PGM, SEL PGM, "
-            "CALL LBL and GOTO LBL take QSn for a name.",
+            (
+                "Assigns a string to a string parameter; || joins parts. TOOL CALL, CALL PGM, SEL "
+                "PGM, CALL LBL and GOTO LBL accept QSn as a name."
+            ),
             'QS1 = "SIDE"\nCALL LBL QS1',
             'QS1 = "NONE"\nCALL LBL QS1',
             "Label not found",
@@ -41,36 +43,54 @@ def texts() -> tuple[Entry, ...]:
         Entry(
             "TOCHAR",
             "( DAT+Q1 DECIMALS2 )",
-            "A number as a text.",
+            "Converts a number to a string.",
             "Q1 = 5\nQS5 = TOCHAR( DAT+Q1 DECIMALS2 )",
             "QS5 = TOCHAR( +5 )",
             "DAT",
         ),
         makes(
-            "SUBSTR", "( SRC_QS1 BEG1 LEN2 )", "A part of a text; the first sign is at 0.", "( QS1 )", "SRC_"
+            "SUBSTR",
+            "( SRC_QS1 BEG1 LEN2 )",
+            ("Returns part of a string; the first character is at position 0."),
+            "( QS1 )",
+            "SRC_",
         ),
         makes(
             "SYSSTR",
             "( ID10321 NR0 )",
-            "A text of the control, such as its time: not known here; it may be printed, and nothing can "
-            "go by it.",
+            (
+                "Reads a string of the control, such as its time. TurnDesk does not know the string: "
+                "it can be printed, but nothing can depend on it."
+            ),
             "( ID10321 NR0 )\nCALL PGM QS5",
             "QS5",
         ),
-        reads("TONUMB", "( SRC_QS1 )", "A text as a number.", "( SRC_QS1 )", "no number"),
-        reads("STRLEN", "( SRC_QS1 )", "How many signs a text has; -1 of none.", "( QS1 )", "SRC_"),
-        reads("INSTR", "( SRC_QS1 SEA_QS2 )", "Where a text stands in another one.", "( SRC_QS1 )", "SEA_"),
+        reads("TONUMB", "( SRC_QS1 )", "Converts a string to a number.", "( SRC_QS1 )", "not a number"),
+        reads(
+            "STRLEN",
+            "( SRC_QS1 )",
+            "Returns the length of a string; -1 if the string is not set.",
+            "( QS1 )",
+            "SRC_",
+        ),
+        reads(
+            "INSTR",
+            "( SRC_QS1 SEA_QS2 )",
+            "Returns the position of one string within another.",
+            "( SRC_QS1 )",
+            "SEA_",
+        ),
         reads(
             "STRCOMP",
             "( SRC_QS1 SEA_QS2 )",
-            "0 where two texts agree, -1 and 1 by the alphabet.",
+            "Compares two strings: 0 if they are equal, -1 or 1 by alphabetical order.",
             "( SRC_QS1 )",
             "SEA_",
         ),
         Entry(
             "FN 20",
             ": WAIT FOR SYNC",
-            "Waits for what is read ahead: nothing to wait for here, which is said.",
+            ("Waits for the blocks that are read ahead. TurnDesk has nothing to wait for and reports this."),
             "FN 20: WAIT FOR SYNC",
             "FN 20: WAIT FOR I95==0",
             "PLC",
@@ -78,16 +98,19 @@ def texts() -> tuple[Entry, ...]:
         Entry(
             "FN 26",
             ": TABOPEN name.TAB",
-            "Opens a free table beside the program.",
+            "Opens a freely definable table in the program's folder.",
             _OPEN,
             "FN 26: TABOPEN NONE.TAB",
-            "not beside",
+            "not in the same folder",
             files=_TABLE,
         ),
         Entry(
             "FN 27",
             ': TABWRITE n/"X,DEPTH" = Q5',
-            "Writes Q5, Q6, ... into cells of a row, for this pass: the file stays as it is, which is said.",
+            (
+                "Writes Q5, Q6, ... into cells of a row for this run only: the file does not change, "
+                "and TurnDesk reports this."
+            ),
             f'Q5 = 1\nQ6 = 2\n{_OPEN}\nFN 27: TABWRITE 1/"X,DEPTH" = Q5',
             'Q5 = 1\nFN 27: TABWRITE 1/"X" = Q5',
             "No table is open",
@@ -105,7 +128,7 @@ def texts() -> tuple[Entry, ...]:
         Entry(
             "FN 38",
             ": SEND",
-            "Hands a text to the control's log: nothing is done here, which is said.",
+            "Sends a string to the control's log. TurnDesk ignores it and reports this.",
             'FN 38: SEND /"DEPTH %f" / +5',
         ),
     )

@@ -96,7 +96,7 @@ class Cursor:
         """A number; no Q parameter here."""
         column, match = self.column, self.take(_PLAIN)
         if match is None:
-            raise self.expected(f"{what} has no number", "Write a number.")
+            raise self.expected(f"{what} has no number", "Enter a number.")
         return Value(_number(*match.groups()), column=column)
 
     def whole(self, what: str, most: int) -> int:
@@ -106,7 +106,7 @@ class Cursor:
             raise self.expected(f"{what} needs a whole number")
         digits = match.group()
         if len(digits) > 9 or int(digits) > most:
-            text = f"{what} goes up to {most}."
+            text = f"{what} accepts numbers up to {most}."
             raise fault(self.line, column, INPUT_VALUE, text, "Correct the number.")
         return int(digits)
 
@@ -114,7 +114,7 @@ class Cursor:
         """A number, or a name in quotes."""
         start = self.at
         if text := _TEXT_PARAMETER.match(self.upper, self.at):
-            raise unsupported(self.line, start + 1, f"{what} by the text of {text.group()}")
+            raise unsupported(self.line, start + 1, f"{what} with the name in {text.group()}")
         match = self.take(_QUOTED)
         if match is None:
             return self.whole(what, most)
@@ -140,7 +140,7 @@ class Cursor:
 
     def expected(self, message: str, hint: str = "") -> ProgramError:
         """A syntax error here, saying what stands in the place."""
-        here = f"; '{self.next_word}' stands here" if not self.done else "; the line ends here"
+        here = f"; found '{self.next_word}'" if not self.done else "; the line ends here"
         return syntax(self.line, self.column, f"{message}{here}.", self.advice(hint))
 
     def advice(self, hint: str) -> str:
@@ -154,7 +154,7 @@ class Cursor:
     def _q(self, number: int, column: int) -> int:
         if number > _HIGHEST_Q:
             text = f"Q parameters go up to Q{_HIGHEST_Q}."
-            raise fault(self.line, column, INPUT_VALUE, text, "Take another parameter.")
+            raise fault(self.line, column, INPUT_VALUE, text, "Use another parameter.")
         return number
 
 
@@ -180,11 +180,11 @@ def feed(cursor: Cursor) -> Feed | None:
     if fixed is not None:
         return Feed(fixed.group(1).lower(), None, column)
     if _FEED_TIME.match(cursor.upper, cursor.at):
-        raise unsupported(cursor.line, column, "A feed by time (FT, FMAXT)")
+        raise unsupported(cursor.line, column, "Feed programmed as a time (FT, FMAXT)")
     if match := cursor.take(_FEED_VALUE):
         return Feed("value", cursor.value(match.group()), column, match.group(1))
     if cursor.take(_FEED_WORD):
-        raise cursor.expected("F has no value", "Write a number, Q, MAX or AUTO behind F.")
+        raise cursor.expected("F has no value", "Write a number, a Q parameter, MAX or AUTO after F.")
     return None
 
 
@@ -219,4 +219,4 @@ def axis_words(cursor: Cursor, letters: str, *, incremental: bool = True) -> tup
 
 def doubled(cursor: Cursor, column: int, what: str) -> ProgramError:
     """The error for a word that stands twice."""
-    return syntax(cursor.line, column, f"{what} stands twice in the block.", "Take one out.")
+    return syntax(cursor.line, column, f"{what} is programmed twice in the block.", "Remove one of them.")

@@ -98,16 +98,16 @@ def paraxial(cursor: Cursor, column: int) -> Move:
     """A block of one axis without the L before it: ``Z+100 R0 FMAX M3``. Raises ProgramError."""
     made = move(cursor, "L", column)
     if len(made.axes) > 1:
-        text = "A block without L moves one axis."
-        raise syntax(cursor.line, made.axes[1].column, text, "Write L before it.")
+        text = "A block without L can move only one axis."
+        raise syntax(cursor.line, made.axes[1].column, text, "Write L at the start of the block.")
     return made
 
 
 def _demand_paraxial(cursor: Cursor, column: int, kind: str, axes: tuple[AxisWord, ...]) -> None:
     """R+ and R- make a move along one axis longer or shorter by the tool's radius."""
     if kind in {"+", "-"} and len(axes) != 1:
-        text = f"R{kind} belongs to a block that moves one axis."
-        raise syntax(cursor.line, column, text, "Write RL or RR along a contour.")
+        text = f"R{kind} is allowed only in a block that moves one axis."
+        raise syntax(cursor.line, column, text, "For a contour, write RL or RR.")
 
 
 def _word(cursor: Cursor, form: str) -> AxisWord | None:
@@ -137,14 +137,16 @@ def _demand_whole(cursor: Cursor, made: Move) -> None:
     if missing:
         raise cursor.expected(f"{made.form} needs {' and '.join(missing)}")
     if made.turn and not form.turn and made.form not in {"CT", "CTP"}:
-        raise syntax(cursor.line, made.column, f"{made.form} takes no DR.", "Take it out.")
+        raise syntax(
+            cursor.line, made.column, f"{made.form} does not accept DR.", ("Remove it from the program.")
+        )
 
 
 def pole(cursor: Cursor, column: int) -> Pole:
     """The axes behind ``CC``."""
     made = Pole(axis_words(cursor, "XYZ"), column)
     if not cursor.done:
-        raise cursor.expected("CC takes two axes")
+        raise cursor.expected("CC accepts only two axes")
     return made
 
 
@@ -157,7 +159,7 @@ def corner(cursor: Cursor, form: str, column: int) -> Corner:
     size = cursor.value(form)
     speed = feed(cursor)
     if not cursor.done:
-        raise cursor.expected(f"{form} takes its size and a feed")
+        raise cursor.expected(f"{form} accepts only a size and a feed")
     return Corner(form, size, speed, column)
 
 
@@ -172,7 +174,7 @@ def codes_to_the_end(cursor: Cursor) -> tuple[MCode, ...]:
     while not cursor.done:
         code = m_code(cursor)
         if code is None:
-            raise cursor.expected("An M function was expected")
+            raise cursor.expected("Expected an M function")
         codes.append(code)
         _demand_few(cursor, codes)
     return tuple(codes)
@@ -209,7 +211,7 @@ def _factor(cursor: Cursor) -> Feed | None:
     """The factor of M103, percent, written as F; without it M103 ends."""
     found = feed(cursor)
     if found is not None and (found.kind != "value" or found.per):
-        text = "M103 takes its factor as F and a number."
+        text = "M103 accepts its factor only as F with a number."
         raise syntax(cursor.line, found.column, text, "Write M103 F20 for a fifth of the feed.")
     return found
 
@@ -218,7 +220,7 @@ def _plain_feed(cursor: Cursor) -> Feed | None:
     found = feed(cursor)
     if found is not None and (found.kind == "auto" or found.per):
         raise syntax(
-            cursor.line, found.column, "M128 takes a feed in numbers, or FMAX.", "Write F and a number."
+            cursor.line, found.column, "M128 accepts only a numeric feed or FMAX.", "Write F and a number."
         )
     return found
 
@@ -233,7 +235,7 @@ def _joined(cursor: Cursor, axes: tuple[AxisWord, ...], words: tuple[AxisWord, .
 def _demand_few(cursor: Cursor, codes: list[MCode]) -> None:
     if len(codes) > MOST_CODES:
         text = f"There are more than {MOST_CODES} M functions in the block."
-        raise syntax(cursor.line, codes[-1].column, text, "Split the block.")
+        raise syntax(cursor.line, codes[-1].column, text, "Split the block into separate blocks.")
 
 
 def _strange(cursor: Cursor, form: str) -> ProgramError:
@@ -242,5 +244,6 @@ def _strange(cursor: Cursor, form: str) -> ProgramError:
     article = "an" if form[0] in "AL" else "a"
     takes = ", ".join(("axes", *_FORMS[form].takes, *(("DR",) if _FORMS[form].turn else ())))
     return cursor.expected(
-        f"No word of {article} {form} block", f"It takes {takes}, R0, RL or RR, a feed and M functions."
+        f"Unexpected word in {article} {form} block",
+        (f"Use only {takes}, R0, RL or RR, a feed and M functions."),
     )

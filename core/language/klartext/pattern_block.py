@@ -28,10 +28,12 @@ def pattern(cursor: Cursor, column: int) -> PatternDef:
     while not cursor.done:
         at, match = cursor.column, cursor.take(_KIND)
         if match is None:
-            raise cursor.expected("PATTERN DEF takes POS1 (…), ROW1, PAT1, FRAME1, CIRC1 or PITCHCIRC1")
+            raise cursor.expected(
+                "PATTERN DEF accepts only POS1 (…), ROW1, PAT1, FRAME1, CIRC1 or PITCHCIRC1"
+            )
         parts.append(PatternPart(match.group(1), _words(cursor, match.group(1)), at))
     if not parts:
-        raise cursor.expected("PATTERN DEF has no points", "Write POS1 (X+0 Y+0 Z+0) behind it.")
+        raise cursor.expected("PATTERN DEF has no points", ("Write POS1 (X+0 Y+0 Z+0) after PATTERN DEF."))
     return PatternDef(tuple(parts), column)
 
 
@@ -40,7 +42,7 @@ def _words(cursor: Cursor, form: str) -> tuple[AxisWord, ...]:
     while not cursor.take(_CLOSED):
         at, match = cursor.column, cursor.take(_WORD)
         if match is None:
-            raise cursor.expected(f"No word of {form}", "Close the bracket behind its words.")
+            raise cursor.expected(f"Unexpected word in {form}", "Close the parenthesis after the words.")
         name = match.group(1)
         if name in found:
             raise doubled(cursor, at, name)

@@ -37,7 +37,7 @@ def plane(cursor: Cursor, column: int) -> Plane:
 def _axial(cursor: Cursor) -> tuple[AxisWord, ...]:
     words = axis_words(cursor, "ABC")
     if not words:
-        raise cursor.expected("PLANE AXIAL needs an axis angle", "Write A, B or C with its angle.")
+        raise cursor.expected("PLANE AXIAL needs an axis angle", "Write A, B or C with an angle.")
     return words
 
 
@@ -45,8 +45,8 @@ def _relative(cursor: Cursor) -> tuple[AxisWord, ...]:
     words = _named(cursor, _SPATIAL)
     if len(words) != 1:
         column = words[1].column if words else cursor.column
-        text = "PLANE RELATIV takes one of SPA, SPB and SPC."
-        raise syntax(cursor.line, column, text, "Write one angle.")
+        text = "PLANE RELATIV needs exactly one of SPA, SPB and SPC."
+        raise syntax(cursor.line, column, text, "Write only one angle.")
     return words
 
 
@@ -79,7 +79,9 @@ def _all_of(cursor: Cursor, names: tuple[str, ...], words: tuple[AxisWord, ...])
     missing = [name for name in names if name not in found]
     if missing:
         verb = "are" if len(missing) > 1 else "is"
-        raise cursor.expected(f"{', '.join(missing)} {verb} missing", "All of them are needed, zeros too.")
+        raise cursor.expected(
+            f"{', '.join(missing)} {verb} missing", ("Write all of these words, even with the value 0.")
+        )
     return tuple(found[name] for name in names)
 
 
@@ -88,7 +90,10 @@ def _positioning(cursor: Cursor, form: str) -> Positioning:
     if way is None:
         if form == "RESET" and cursor.done:
             return Positioning()
-        raise cursor.expected("MOVE, TURN or STAY is missing", "Say how the rotary axes are positioned.")
+        raise cursor.expected(
+            "MOVE, TURN or STAY is missing",
+            ("Write MOVE, TURN or STAY to set how the rotary axes are positioned."),
+        )
     made = Positioning(way)
     while not cursor.done:
         made = _with_word(cursor, form, made)
@@ -106,8 +111,8 @@ def _with_word(cursor: Cursor, form: str, made: Positioning) -> Positioning:
         return dataclasses.replace(made, rotation=f"{rotation.group(1)} ROT")
     if cursor.keyword("DIST", "ABST", "SETUP"):  # as German controls write it
         if made.way != "MOVE":
-            text = f"DIST belongs to MOVE, not to {made.way}."
-            raise syntax(cursor.line, column, text, "Take it out.")
+            text = f"DIST is allowed only with MOVE, not with {made.way}."
+            raise syntax(cursor.line, column, text, "Remove it from the program.")
         _once(cursor, column, made.distance, "DIST")
         return dataclasses.replace(made, distance=cursor.number("DIST"))
     return _with_motion(cursor, made, column)
@@ -123,9 +128,9 @@ def _with_motion(cursor: Cursor, made: Positioning, column: int) -> Positioning:
         _once(cursor, column, made.feed, "F")
         return dataclasses.replace(made, feed=speed)
     if second := cursor.keyword(*_WAYS):
-        text = f"{second} stands behind {made.way}."
-        raise syntax(cursor.line, column, text, "Take one of them out.")
-    raise cursor.expected("No word of a PLANE block")
+        text = f"A PLANE block cannot contain both {made.way} and {second}."
+        raise syntax(cursor.line, column, text, "Remove one of the two words.")
+    raise cursor.expected("Unexpected word in a PLANE block")
 
 
 def _once(cursor: Cursor, column: int, known: object, what: str) -> None:
@@ -135,4 +140,9 @@ def _once(cursor: Cursor, column: int, known: object, what: str) -> None:
 
 def _demand_motion(cursor: Cursor, made: Positioning, column: int, what: str) -> None:
     if made.way == "STAY":
-        raise syntax(cursor.line, column, f"STAY moves nothing: no {what} here.", "Take it out.")
+        raise syntax(
+            cursor.line,
+            column,
+            f"STAY does not move any axis, so {what} is not allowed.",
+            ("Remove it from the program."),
+        )

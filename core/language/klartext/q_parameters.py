@@ -60,7 +60,7 @@ GRAMMAR = Grammar(
         "LOG": "common logarithm",
         "EXP": "exponential",
         "NEG": "negative",
-        "INT": "whole part",
+        "INT": "integer part",
         "ABS": "absolute",
         "FRAC": "fraction",
         "SGN": "sign",
@@ -91,9 +91,9 @@ WHETHER = "?"
 """Behind the letters of a parameter: 1 where it has a value, else 0."""
 _UNHEEDED = {15: "PRINT", 16: "F-PRINT", 38: "SEND"}
 _OF_THE_BUILDER = {
-    19: "PLC, which hands figures to the machine builder's PLC,",
-    29: "PLC, which hands figures to the machine builder's PLC,",
-    37: "EXPORT, which belongs into cycles of the machine builder,",
+    19: "PLC, which sends values to the machine builder's PLC,",
+    29: "PLC, which sends values to the machine builder's PLC,",
+    37: "EXPORT, which belongs in cycles of the machine builder,",
 }
 MOST_LABEL = 65535
 
@@ -106,7 +106,7 @@ def formula(cursor: Cursor, what: str) -> Formula:
     except FormulaError as problem:
         cursor.at = problem.at
         cursor.blanks()
-        raise cursor.expected(f"{problem} for {what}", problem.hint) from None
+        raise cursor.expected(f"{what}: {problem}", problem.hint) from None
     cursor.at = reader.at
     cursor.blanks()
     return made
@@ -119,7 +119,7 @@ def assign(cursor: Cursor) -> Assign | TextRead:
         return text
     made = formula(cursor, f"{kind}{number}")
     if not cursor.done:
-        raise cursor.expected("An operator was expected")
+        raise cursor.expected("Expected an operator")
     return Assign(number, made, column, kind)
 
 
@@ -143,18 +143,18 @@ def parameter(cursor: Cursor) -> tuple[str, int]:
     """Kind and number of the parameter that stands here. Raises ProgramError for one too high."""
     column, match = cursor.column, cursor.take(_TARGET)
     if match is None:
-        raise cursor.expected("A Q parameter was expected")
+        raise cursor.expected("Expected a Q parameter")
     kind, number = match.group(1), int(match.group(2)[:6])
     if number > HIGHEST[kind]:
         text = f"{kind} parameters go up to {kind}{HIGHEST[kind]}."
-        raise syntax(cursor.line, column, text, "Take another parameter.")
+        raise syntax(cursor.line, column, text, "Use another parameter.")
     return kind, number
 
 
 def _target(cursor: Cursor) -> tuple[str, int]:
     kind, number = parameter(cursor)
     if cursor.take(_EQUALS) is None:
-        raise cursor.expected(f"'=' was expected behind {kind}{number}")
+        raise cursor.expected(f"Expected '=' after {kind}{number}")
     return kind, number
 
 
@@ -171,7 +171,7 @@ def _arithmetic(cursor: Cursor, number: int, column: int) -> Assign:
             _demand(cursor, word, number)
             made = Operation(name, (made, _operand(cursor, q)), column)
     if not cursor.done:
-        raise cursor.expected(f"FN {number} has more than it takes")
+        raise cursor.expected(f"Unexpected word in FN {number}")
     return Assign(q, made, column, kind)
 
 
@@ -224,7 +224,7 @@ def _whole_jump(cursor: Cursor, condition: Formula, texts: tuple[TextPart, TextP
     at = cursor.column
     made = Jump(condition, cursor.name_or_text("GOTO LBL", MOST_LABEL), at, texts)
     if not cursor.done:
-        raise cursor.expected("No word of a jump")
+        raise cursor.expected("Unexpected word in a jump")
     return made
 
 
@@ -247,7 +247,7 @@ def _system(cursor: Cursor, column: int) -> SystemRead:
     kind, q = _target(cursor)
     group, number, index = _place(cursor, 18)
     if not cursor.done:
-        raise cursor.expected("No word of FN 18")
+        raise cursor.expected("Unexpected word in FN 18")
     return SystemRead(q, group, number, index, column, kind)
 
 
@@ -256,10 +256,10 @@ def _system_write(cursor: Cursor, column: int) -> SystemWrite:
         raise cursor.expected("FN 17 needs SYSWRITE")
     group, number, index = _place(cursor, 17)
     if cursor.take(_EQUALS) is None:
-        raise cursor.expected("FN 17 needs = and what is to be written")
+        raise cursor.expected("FN 17 needs = and a value to write")
     made = SystemWrite(group, number, index, _operand(cursor, 0), column)
     if not cursor.done:
-        raise cursor.expected("No word of FN 17")
+        raise cursor.expected("Unexpected word in FN 17")
     return made
 
 

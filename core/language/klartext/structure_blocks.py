@@ -59,7 +59,7 @@ def _named(cursor: Cursor, what: str) -> tuple[str, bool]:
         return cursor.rest(), False
     if match is None:
         raise syntax(
-            cursor.line, cursor.column, f"{what} needs MM or INCH.", "Write the unit behind the name."
+            cursor.line, cursor.column, f"{what} needs MM or INCH.", "Write the unit after the name."
         )
     name = cursor.text[cursor.at : cursor.at + len(match.group(1) or "")]
     cursor.rest()
@@ -76,12 +76,14 @@ def _round_blank(cursor: Cursor) -> RoundBlank:
     while not cursor.done:
         at, match = cursor.column, cursor.take(_ROUND_WORD)
         if match is None:
-            raise cursor.expected("No word of BLK FORM CYLINDER", "It takes R or D, L, DIST, RI or DI.")
+            raise cursor.expected(
+                "Unexpected word in BLK FORM CYLINDER", ("Use only R or D, L, DIST, RI or DI.")
+            )
         if match.group(1) in words:
             raise doubled(cursor, at, match.group(1))
         words[match.group(1)] = cursor.value(match.group(1))
     if axis is None or not {"R", "D"} & words.keys() or "L" not in words:
-        raise cursor.expected("BLK FORM CYLINDER needs its axis, R or D, and L")
+        raise cursor.expected("BLK FORM CYLINDER needs an axis, R or D, and L")
     wide = words.get("R") or words["D"]._replace(number=words["D"].number / 2.0)
     return RoundBlank(axis.group(1), wide, words["L"], words.get("DIST", Value(0.0)))
 
@@ -101,7 +103,7 @@ def blank_form(cursor: Cursor) -> BlankForm | RoundBlank | Unheeded:
     if part.group(1) == "1":
         found = cursor.take(_AXIS)
         if found is None or found.group(1) not in "XYZ":
-            raise cursor.expected("BLK FORM 0.1 needs the tool axis", "Write Z behind 0.1.")
+            raise cursor.expected("BLK FORM 0.1 needs the tool axis", "Write Z after 0.1.")
         axis = found.group(1)
     corner = axis_words(cursor, "XYZ", incremental=part.group(1) == "2")
     _demand_all(cursor, corner)
@@ -111,9 +113,9 @@ def blank_form(cursor: Cursor) -> BlankForm | RoundBlank | Unheeded:
 def _demand_all(cursor: Cursor, corner: tuple[AxisWord, ...]) -> None:
     missing = [axis for axis in "XYZ" if axis not in {word.axis for word in corner}]
     if missing:
-        raise cursor.expected(f"{', '.join(missing)} is missing", "A corner needs X, Y and Z.")
+        raise cursor.expected(f"{', '.join(missing)} is missing", "Write X, Y and Z for the corner.")
     if not cursor.done:
-        raise cursor.expected("No word of BLK FORM")
+        raise cursor.expected("Unexpected word in BLK FORM")
 
 
 def tool_call(cursor: Cursor) -> ToolCall:
@@ -134,11 +136,13 @@ def tool_call(cursor: Cursor) -> ToolCall:
         if cursor.take(_CUTTING_SPEED):
             words["VC"] = cursor.value("VC")
             if not cursor.take(_CLOSED):
-                raise cursor.expected("The bracket behind VC is not closed", "Write S(VC = 120).")
+                raise cursor.expected("The closing parenthesis after VC is missing", "Write S(VC = 120).")
             continue
         match = cursor.take(_TOOL_WORD)
         if match is None or (match.group(2) and match.group(1) != "F"):
-            raise cursor.expected("No word of TOOL CALL", "It takes a tool, its axis, S, F, DL, DR and DR2.")
+            raise cursor.expected(
+                "Unexpected word in TOOL CALL", ("Use only a tool, its axis, S, F, DL, DR and DR2.")
+            )
         name, per = match.group(1), match.group(2) or per
         if name in words:
             raise doubled(cursor, at, name)
@@ -150,8 +154,8 @@ def tool_call(cursor: Cursor) -> ToolCall:
 def _demand_no_index(cursor: Cursor) -> None:
     """Raises ProgramError for 5.1, another edge of tool 5: the tool table has no such row here."""
     if found := _INDEXED.match(cursor.upper, cursor.at):
-        text = f"The tool table has no {found.group()}: it keeps one row a tool, without an index."
-        hint = "Give this edge a row and a number of its own."
+        text = f"The tool table has no tool {found.group()}: it has one row per tool, without an index."
+        hint = "Give this edge its own table row and tool number."
         raise fault(cursor.line, cursor.column, TOOL_UNKNOWN, text, hint)
 
 
@@ -169,7 +173,7 @@ def tool_def(cursor: Cursor, column: int) -> ToolDef:
     while not cursor.done:
         at, match = cursor.column, cursor.take(_LENGTHS)
         if match is None:
-            raise cursor.expected("No word of TOOL DEF", "It takes a tool, L and R.")
+            raise cursor.expected("Unexpected word in TOOL DEF", "Use only a tool, L and R.")
         if match.group(1) in words:
             raise doubled(cursor, at, match.group(1))
         words[match.group(1)] = cursor.value(match.group(1))
@@ -217,7 +221,7 @@ def _datum(cursor: Cursor, column: int) -> Datum:
     else:
         raise cursor.expected("TRANS DATUM needs AXIS or RESET")
     if not cursor.done:
-        raise cursor.expected("No word of TRANS DATUM")
+        raise cursor.expected("Unexpected word in TRANS DATUM")
     return made
 
 
@@ -226,7 +230,7 @@ def label(cursor: Cursor) -> Label:
     column = cursor.column
     made = Label(cursor.name("LBL", MOST_LABEL), column)
     if not cursor.done:
-        raise cursor.expected("No word of LBL")
+        raise cursor.expected("Unexpected word in LBL")
     return made
 
 
@@ -242,7 +246,7 @@ def call(cursor: Cursor) -> Call:
         repeat = _repeats(cursor)
         cursor.take(_OF_REPEATS)
     if not cursor.done:
-        raise cursor.expected("No word of CALL LBL")
+        raise cursor.expected("Unexpected word in CALL LBL")
     return Call(name, repeat, column)
 
 
@@ -266,7 +270,7 @@ def call_selected(cursor: Cursor, column: int) -> ProgramCall:
     """Behind ``CALL SELECTED``: PGM."""
     cursor.keyword("PGM")
     if not cursor.done:
-        raise cursor.expected("CALL SELECTED takes PGM alone")
+        raise cursor.expected("CALL SELECTED accepts only PGM")
     return ProgramCall("", column)
 
 
@@ -276,7 +280,7 @@ def selection(kind: str) -> Callable[[Cursor, int], Selection]:
     def read(cursor: Cursor, column: int) -> Selection:
         name = cursor.text_name() or cursor.rest().strip('"')
         if not name:
-            raise cursor.expected(f"SEL {kind} needs the name of a file")
+            raise cursor.expected(f"SEL {kind} needs a file name")
         return Selection(kind, name, column)
 
     return read
@@ -290,8 +294,8 @@ def touch_probe(cursor: Cursor, column: int) -> ProgramError:
     cursor.keyword("TCH PROBE")
     match = cursor.take(_PROBE)
     what = f"TCH PROBE {match.group()}" if match else "TCH PROBE"
-    text = f"{what} measures with a touch probe, and this machine has none."
-    hint = "Touch off by hand on the Jog page, and take the block out."
+    text = f"{what} needs a touch probe, but this machine does not have one."
+    hint = "Touch off by hand on the Jog page, and remove the block."
     return fault(cursor.line, column, NO_PROBE, text, hint)
 
 
@@ -306,10 +310,10 @@ _SECONDS = re.compile(r"TIME(?=\s*[0-9.,Q])")
 def _dwell(cursor: Cursor, column: int) -> CycleLine:
     """``FUNCTION DWELL TIME10``, as cycle 9. Raises ProgramError."""
     if cursor.take(_SECONDS) is None:
-        raise unsupported(cursor.line, column, "FUNCTION DWELL by revolutions")
+        raise unsupported(cursor.line, column, "FUNCTION DWELL in revolutions")
     made = CycleLine(9, 1, (AxisWord("", cursor.value("TIME")),), column=column)
     if not cursor.done:
-        raise cursor.expected("No word of FUNCTION DWELL")
+        raise cursor.expected("Unexpected word in FUNCTION DWELL")
     return made
 
 
@@ -329,9 +333,13 @@ def function(cursor: Cursor, column: int) -> TipControl | Unheeded | CycleLine:
             if cursor.keyword("AXIS SPAT", "PATHCTRL VECTOR"):
                 raise unsupported(cursor.line, column, "FUNCTION TCPM with AXIS SPAT or PATHCTRL VECTOR")
             if cursor.keyword("REFPNT TIP-CENTER", "REFPNT CENTER-CENTER"):
-                raise unsupported(cursor.line, column, "FUNCTION TCPM about the centre of a ball (REFPNT)")
+                raise unsupported(
+                    cursor.line, column, ("FUNCTION TCPM with the ball center as reference point (REFPNT)")
+                )
             if not cursor.keyword("F TCP", "F CONT", "AXIS POS", "PATHCTRL AXIS", "REFPNT TIP-TIP"):
-                raise cursor.expected("No word of FUNCTION TCPM", "It takes F TCP, AXIS POS, PATHCTRL AXIS.")
+                raise cursor.expected(
+                    "Unexpected word in FUNCTION TCPM", ("Use F TCP, AXIS POS or PATHCTRL AXIS.")
+                )
         return TipControl(on=True, column=column)
     if cursor.keyword("RESET TCPM"):
         return TipControl(on=False, column=column)

@@ -49,7 +49,7 @@ def assign(cursor: Cursor, column: int) -> TextAssign:
 
 def _whole(cursor: Cursor, made: TextAssign) -> TextAssign:
     if not cursor.done:
-        raise cursor.expected("No part of a text", "Texts are joined by ||.")
+        raise cursor.expected("Unexpected word after a string", "Join strings with ||.")
     return made
 
 
@@ -57,7 +57,7 @@ def _one(cursor: Cursor) -> tuple[int, tuple[TextPart, ...]]:
     """The number of a text and its parts."""
     number = _number(cursor)
     if cursor.take(_EQUALS) is None:
-        raise cursor.expected(f"'=' was expected behind QS{number}")
+        raise cursor.expected(f"Expected '=' after QS{number}")
     parts = [part(cursor)]
     while cursor.take(_AND):
         parts.append(part(cursor))
@@ -67,11 +67,11 @@ def _one(cursor: Cursor) -> tuple[int, tuple[TextPart, ...]]:
 def _number(cursor: Cursor) -> int:
     column, match = cursor.column, cursor.take(_TARGET)
     if match is None:
-        raise cursor.expected("A text parameter was expected", "Write QS and a number.")
+        raise cursor.expected("Expected a string parameter", "Write QS and a number.")
     number = int(match.group(1)[:6])
     if number > _HIGHEST:
         message = f"QS parameters go up to QS{_HIGHEST}."
-        raise syntax(cursor.line, column, message, "Take another parameter.")
+        raise syntax(cursor.line, column, message, "Use another parameter.")
     return number
 
 
@@ -83,14 +83,14 @@ def part(cursor: Cursor) -> TextPart:
     if match := cursor.take(_MADE):
         return _made(cursor, match.group(1), column)
     if not _TARGET.match(cursor.upper, cursor.at):
-        raise cursor.expected("A text was expected", "Write it in quotes, or QS and a number.")
+        raise cursor.expected("Expected a string", ("Write the string in quotes, or QS and a number."))
     return TextPart("QS", number=_number(cursor), column=column)
 
 
 def _made(cursor: Cursor, name: str, column: int) -> TextPart:
     if name not in {"TOCHAR", "SUBSTR"}:
         if cursor.take(_REST_OF_BRACKETS) is None:
-            raise cursor.expected(f"{name} is not closed", "Write ) behind it.")
+            raise cursor.expected(f"The closing parenthesis of {name} is missing", "Write ) at the end.")
         return TextPart(name, column=column)
     _bracket(cursor, name, _OPEN)
     if name == "TOCHAR":
@@ -108,7 +108,7 @@ def _made(cursor: Cursor, name: str, column: int) -> TextPart:
 
 def _bracket(cursor: Cursor, name: str, sign: re.Pattern[str]) -> None:
     if cursor.take(sign) is None:
-        raise cursor.expected(f"{name} takes what it is asked of in brackets")
+        raise cursor.expected(f"{name} needs its arguments in parentheses")
 
 
 def _named(cursor: Cursor, word: re.Pattern[str], name: str, written: str) -> int:
@@ -133,7 +133,9 @@ def read(cursor: Cursor, kind: str, q: int) -> TextRead | None:
     begin = _count(cursor, "BEG")
     _bracket(cursor, name, _CLOSED)
     if not cursor.done:
-        raise cursor.expected(f"{name} stands alone", "Reckon on in a block of its own.")
+        raise cursor.expected(
+            f"{name} cannot be part of a longer formula", "Continue the calculation in a separate block."
+        )
     return TextRead(kind, q, name, source, sought, begin, column)
 
 
@@ -150,7 +152,7 @@ def open_table(cursor: Cursor, column: int) -> TableOpen:
         raise cursor.expected("FN 26 needs TABOPEN and the file")
     name = cursor.rest().strip('"')
     if not name:
-        raise cursor.expected("TABOPEN needs the name of a table")
+        raise cursor.expected("TABOPEN needs a table name")
     return TableOpen(name, column)
 
 
@@ -178,7 +180,7 @@ def write_table(cursor: Cursor, column: int) -> TableWrite:
 def _result(cursor: Cursor) -> tuple[str, int]:
     match = cursor.take(_RESULT)
     if match is None:
-        raise cursor.expected("A parameter was expected")
+        raise cursor.expected("Expected a parameter")
     return match.group(1), int(match.group(2))
 
 
@@ -186,5 +188,7 @@ def _cells(cursor: Cursor) -> tuple[Formula, tuple[str, ...]]:
     """A row and the names of its columns."""
     row = cursor.value("The row").formula
     if cursor.take(_SLASH) is None or not (names := cursor.quoted()):
-        raise cursor.expected("The columns are missing", 'Write them behind the row: 6/"X,Y".')
+        raise cursor.expected(
+            "The column names are missing", ('Write the column names after the row, as in 6/"X,Y".')
+        )
     return row, tuple(name.strip().upper() for name in names.split(","))

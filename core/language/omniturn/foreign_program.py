@@ -40,5 +40,5 @@ def recognize(lines: Sequence[str]) -> Diagnostic | None:
     if not control:
         return None
     message = f"This program was written for a {control} control. TurnDesk runs OmniTurn programs."
-    hint = "Rewrite it with the codes of this control; each finding below names the code to use."
+    hint = "Rewrite the program with the codes of this control; each finding below names the code to use."
     return Diagnostic(1, 0, Severity.WARNING, "other-control-program", message, hint)

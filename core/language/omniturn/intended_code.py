@@ -58,17 +58,17 @@ _THREAD = "Write G33XnZnInKn."
 _PATTERNS = (
     _Pattern(
         re.compile(r"^(?=O(?:<|[0-9]+(?:SUB|CALL|IF|WHILE|REPEAT|ENDSUB|ENDIF|ENDWHILE|ENDREPEAT|RETURN)))"),
-        "O words of LinuxCNC are not read; a subroutine is }n … M99 here, and its call M98Pn.",
+        ("LinuxCNC O words are not supported; on this control a subroutine is }n … M99, and M98Pn calls it."),
         _always("Write }n, M99 and M98Pn."),
     ),
     _Pattern(
         re.compile(r"^(?=#<)"),
-        "Variables are not read.",
-        _always("Write the number where it is used."),
+        "Variables are not supported.",
+        _always("Write the number in place of the variable."),
     ),
     _Pattern(
         re.compile(r"(?=G[78](?![0-9]))"),
-        "G7 and G8 of LinuxCNC are G72 (diameters) and G73 (radii) here.",
+        "LinuxCNC codes G7 and G8 are G72 (diameters) and G73 (radii) on this control.",
         lambda match: f"Write {'G72' if match.string[match.end() + 1] == '7' else 'G73'}.",
     ),
     _Pattern(
@@ -78,7 +78,7 @@ _PATTERNS = (
     ),
     _Pattern(
         re.compile(r"(?<=G70)(?=.*[PQ])"),
-        "G70 selects inch here; finishing a contour is the last pass of G75.",
+        "On this control, G70 selects inches; the last pass of G75 finishes a contour.",
         _always("Delete the line: G75 ends with a pass along the contour."),
     ),
     _Pattern(
@@ -88,23 +88,23 @@ _PATTERNS = (
     ),
     _Pattern(
         re.compile(r"(?<=G72)(?=.*[UWPQ])"),
-        "G72 selects diameters here; roughing to a contour is G75.",
+        "On this control, G72 selects diameters; G75 roughs to a contour.",
         _always(_ROUGHING),
     ),
     _Pattern(
         re.compile(r"(?<=G73)(?=.*[UWPQ])"),
-        "G73 selects radii here; roughing to a contour is G75.",
+        "On this control, G73 selects radii; G75 roughs to a contour.",
         _always(_ROUGHING),
     ),
     _Pattern(
         re.compile(r"(?<=G74)(?=.*[PQRW])"),
-        "G74 roughs a box here; peck drilling is G83.",
+        "On this control, G74 roughs a box; G83 drills in pecks.",
         _always("Write G83ZnKnFn."),
     ),
     _Pattern(
         re.compile(r"(?<=G75)(?=.*[QRW])"),
-        "G75 roughs a contour here; it does not cut grooves in pecks.",
-        _always("Write the moves of the groove, or G74."),
+        "On this control, G75 roughs a contour; it does not peck a groove.",
+        _always("Write separate moves for the groove, or use G74."),
     ),
     _Pattern(
         re.compile(r"(?<=G76)(?=.*[PQRXZ])"),
@@ -118,13 +118,13 @@ _PATTERNS = (
     ),
     _Pattern(
         re.compile(r"(?<=G92)(?=S[0-9.]+$)"),
-        "G92 presets the position here; the maximum rpm for constant surface speed is G77.",
+        ("G92 presets the position here; the maximum rpm for constant surface speed is G77."),
         lambda match: f"Write G77{match.string[match.end() :]}.",
     ),
     _Pattern(
         re.compile(r"(?<=M98)P[0-9]+L([0-9]+)"),
         "M98 has no repeat count.",
-        lambda match: f"Put LS{match[1]} before the call and LF after it.",
+        lambda match: f"Write LS{match[1]} before the call and LF after it.",
     ),
     _Pattern(
         re.compile(r"(?<=[XZIKRFU])([0-9]+)/([0-9]+)(?![0-9])"),
@@ -143,7 +143,7 @@ def intent_of(code: str) -> Intent | None:
     for found in _CODE.finditer(code):
         habit = other_controls.meaning_here(found[0])
         if habit is not None:
-            message = f"{found[0]} is no code of this control. {habit[0]}"
+            message = f"{found[0]} is not a code of this control. {habit[0]}"
             return Intent(found.start(), "g-unknown", message, habit[1])
     return None
 

@@ -10,67 +10,94 @@ LOOK_UP = "See the list of codes: Shift+F1 in the editor."
 """The remedy where no other one can be named; in the editor, Shift+F1 opens the list."""
 
 _HERE: dict[str, tuple[str, str]] = {
-    "G05": ("High-speed modes have no code here.", "Take it out."),
-    "G07": ("Milling round the part is (~PLZC) here.", "Write (~PLZC) … (END)."),
-    "G12": ("Milling of the face is (~PLXC) here.", "Write (~PLXC) … (END)."),
-    "G13": ("Milling of the face ends with (END) here.", "Write (END)."),
-    "G17": ("The plane is always that of X and Z here.", "Take it out."),
-    "G18": ("The plane is always that of X and Z here.", "Take it out."),
-    "G19": ("The plane is always that of X and Z here.", "Take it out."),
-    "G20": ("Inch is G70 here.", "Write G70."),
-    "G21": ("Metric is G71 here.", "Write G71."),
-    "G27": ("There is no reference point to move to here.", "Move to a clear X and Z."),
-    "G28": ("There is no reference point to move to here.", "Move to a clear X and Z."),
-    "G30": ("There is no reference point to move to here.", "Move to a clear X and Z."),
-    "G32": ("A thread is G33 here, with all its passes.", "Write G33XnZnInKn."),
-    "G43": ("The offset of a tool is T here.", "Write T and the tool's number."),
-    "G49": ("T0 takes the tool's offset away here.", "Write T0."),
+    "G05": ("This control has no code for high-speed modes.", "Remove it from the program."),
+    "G07": ("On this control, (~PLZC) starts milling around the part.", "Write (~PLZC) … (END)."),
+    "G12": ("On this control, (~PLXC) starts face milling.", "Write (~PLXC) … (END)."),
+    "G13": ("On this control, (END) ends face milling.", "Write (END)."),
+    "G17": ("On this control, the plane is always XZ.", "Remove it from the program."),
+    "G18": ("On this control, the plane is always XZ.", "Remove it from the program."),
+    "G19": ("On this control, the plane is always XZ.", "Remove it from the program."),
+    "G20": ("On this control, G70 selects inches.", "Write G70."),
+    "G21": ("On this control, G71 selects metric units.", "Write G71."),
+    "G27": (
+        "This control has no reference point to move to.",
+        ("Move to an X and Z position clear of the part."),
+    ),
+    "G28": (
+        "This control has no reference point to move to.",
+        ("Move to an X and Z position clear of the part."),
+    ),
+    "G30": (
+        "This control has no reference point to move to.",
+        ("Move to an X and Z position clear of the part."),
+    ),
+    "G32": ("On this control, G33 cuts a thread with all its passes.", "Write G33XnZnInKn."),
+    "G43": ("On this control, T selects the tool offset.", "Write T and the tool's number."),
+    "G49": ("On this control, T0 cancels the tool offset.", "Write T0."),
     "G50": (
-        "The highest speed under G96 is G77Sn here, and a preset of the position G92.",
+        "On this control, G77Sn sets the maximum rpm under G96, and G92 presets the position.",
         "Write G77Sn or G92.",
     ),
-    "G53": ("Machine coordinates are those of T0 here.", "Write T0 before the move."),
+    "G53": ("On this control, machine coordinates are active with T0.", "Write T0 before the move."),
     "G54": (
-        "Part zero is in the tool's offset here, and a work shift is G10.",
-        "Write T, or G10XnZn before it.",
+        "On this control, part zero is in the tool offset, and G10 sets a work shift.",
+        "Write T, with G10XnZn before it for a work shift.",
     ),
-    "G61": ("The way of going round corners has no code here.", "Take it out."),
-    "G64": ("The way of going round corners has no code here.", "Take it out."),
-    "G65": ("There are no macros here; a subroutine is M98Pn.", "Write M98Pn."),
-    "G66": ("There are no macros here; a subroutine is M98Pn.", "Write M98Pn."),
-    "G80": ("Cycles act on their own line here, and nothing has to end them.", "Take it out."),
-    "G82": ("Drilling is G81 here, in pecks G83, and a dwell is G04.", "Write G81 or G83."),
-    "G84": ("Tapping is written out here: G95, in, M04, out.", "Write the moves."),
-    "G85": ("Boring is written out here.", "Write the moves."),
-    "G98": ("Feed per minute is G94 here.", "Write G94."),
-    "G99": ("Feed per revolution is G95 here.", "Write G95."),
-    "M06": ("T alone changes the tool here.", "Take M06 out."),
-    "M07": ("Coolant is M08 here.", "Write M08."),
-    "M17": ("A subroutine ends with M99 here.", "Write M99."),
-    "M29": ("Tapping is written out here: G95, in, M04, out.", "Take it out."),
-    "M60": ("A stop is M00 here.", "Write M00."),
-    "H": ("The offset of a tool is T here, and a second one D.", "Write T or D."),
+    "G61": ("This control has no code for the cornering mode.", "Remove it from the program."),
+    "G64": ("This control has no code for the cornering mode.", "Remove it from the program."),
+    "G65": ("This control has no macros; M98Pn calls a subroutine.", "Write M98Pn."),
+    "G66": ("This control has no macros; M98Pn calls a subroutine.", "Write M98Pn."),
+    "G80": (
+        "On this control, a cycle acts only on its own line and needs no cancel code.",
+        ("Remove it from the program."),
+    ),
+    "G82": ("On this control, G81 drills, G83 drills in pecks and G04 dwells.", "Write G81 or G83."),
+    "G84": (
+        ("This control has no tapping cycle; tapping is programmed as G95, feed in, M04 and feed out."),
+        "Write the separate moves.",
+    ),
+    "G85": (
+        "This control has no boring cycle; boring is programmed as separate moves.",
+        "Write the separate moves.",
+    ),
+    "G98": ("On this control, G94 selects feed per minute.", "Write G94."),
+    "G99": ("On this control, G95 selects feed per revolution.", "Write G95."),
+    "M06": ("On this control, T alone changes the tool.", "Remove M06."),
+    "M07": ("On this control, M08 turns on the coolant.", "Write M08."),
+    "M17": ("On this control, M99 ends a subroutine.", "Write M99."),
+    "M29": (
+        ("This control has no tapping cycle; tapping is programmed as G95, feed in, M04 and feed out."),
+        "Remove it from the program.",
+    ),
+    "M60": ("On this control, M00 stops the program.", "Write M00."),
+    "H": ("On this control, T selects the tool offset, and D selects a second one.", "Write T or D."),
     "Q": (
-        "Q is a word of other controls' cycles; here they are G33, G74, G75, G81 and G83.",
+        ("Q belongs to cycles of other controls; the cycles of this control are G33, G74, G75, G81 and G83."),
         LOOK_UP,
     ),
-    "U": ("Incremental moves are X and Z under G91 here.", "Write G91 and X."),
-    "W": ("Incremental moves are X and Z under G91 here.", "Write G91 and Z."),
-    "E": ("A feed is F here, and the lead of a thread K.", "Write F or K."),
+    "U": ("On this control, incremental moves are X and Z with G91.", "Write G91 and X."),
+    "W": ("On this control, incremental moves are X and Z with G91.", "Write G91 and Z."),
+    "E": ("On this control, F is the feed and K is the lead of a thread.", "Write F or K."),
 }
 _HERE |= {f"G{number}": _HERE["G54"] for number in range(55, 60)}
 
 _SIGNS: dict[str, tuple[str, str]] = {
-    "，": ("a comma, and there are none here", "Type a point."),
-    ";": ("how a comment or a line's end is written elsewhere", "Put a comment in parentheses."),
-    "#": ("a variable of other controls, and there are none here", "Write the number."),
-    "[": ("how other controls calculate, and this one does not", "Write the number."),
-    "]": ("how other controls calculate, and this one does not", "Write the number."),
-    "*": ("how other controls calculate, and this one does not", "Write the number."),
-    "=": ("how other controls calculate, and this one does not", "Write the number."),
-    "%": ("the mark at the ends of a transfer", "Delete it."),
-    "$": ("a word of other controls", "Take it out."),
-    ":": ("how other controls number programs; here the file has a name", "Take it out."),
+    "，": ("a comma, which this control does not allow", "Type a decimal point."),
+    ";": (
+        "the character that other controls use for a comment or the end of a line",
+        "Put the comment in parentheses.",
+    ),
+    "#": ("for variables, which this control does not support", "Write the number instead."),
+    "[": ("for calculations, which this control does not support", "Write the number instead."),
+    "]": ("for calculations, which this control does not support", "Write the number instead."),
+    "*": ("for calculations, which this control does not support", "Write the number instead."),
+    "=": ("for calculations, which this control does not support", "Write the number instead."),
+    "%": ("the mark at the start and end of a program transfer", "Delete the character."),
+    "$": ("a character that only other controls use", "Remove it from the program."),
+    ":": (
+        ("the character that other controls use for program numbers; this control uses the file name"),
+        ("Remove it from the program."),
+    ),
 }
 
 _TRANSFER = re.compile(r"\s*%.*")
@@ -100,8 +127,8 @@ def whole_line(code: str) -> tuple[str, str, str] | None:
         shown = code.strip()
         return (
             "program-number",
-            f"{shown} numbers a program elsewhere; here the file has a name.",
-            "Take it out.",
+            f"{shown} is a program number for other controls; this control uses the file name.",
+            "Remove it from the program.",
         )
     return None
 
@@ -114,5 +141,8 @@ def tool(text: str) -> tuple[str, str] | None:
     number, wear = int(match[1]), int(match[2])
     if not 1 <= number <= 32:
         return None
-    also = f", and a second offset is D{wear}" if wear not in {0, number} else ""
-    return f"{text}: T{number} takes tool {number} with its offset here{also}.", f"Write T{number}."
+    also = f", and D{wear} selects a second offset" if wear not in {0, number} else ""
+    return (
+        f"{text}: on this control, T{number} selects tool {number} with its offset{also}.",
+        f"Write T{number}.",
+    )

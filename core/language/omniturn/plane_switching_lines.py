@@ -21,7 +21,7 @@ _END = re.compile(r"\s*M(?:30|02)\s*(?:\([^()]*\)\s*)?", re.IGNORECASE)
 _LETTERS = frozenset("XYZFGIJHD")
 _MOST = 10_000.0
 _MOST_FEED = 100_000.0
-_HINT = "Between the entry and (END) stand only (X Y Z F), (G02 or G03 X Y I J), (H) and (D)."
+_HINT = "Between the entry and (END), write only (X Y Z F), (G02 or G03 X Y I J), (H) and (D)."
 
 
 class PlaneLine(NamedTuple):
@@ -63,7 +63,7 @@ def lex_plane(number: int, text: str) -> PlaneLine:
     """A line between the entry and (END). Raises ProgramError for anything that may not stand there."""
     match = _STATEMENT.fullmatch(text) if text.isascii() else None
     if match is None:
-        raise program_error(number, 1, "plane-line", "This line is no statement in parentheses.", _HINT)
+        raise program_error(number, 1, "plane-line", "This line is not a statement in parentheses.", _HINT)
     inside = match[1].upper()
     if inside.strip() == "END":
         return PlaneLine("END", {})
@@ -73,12 +73,12 @@ def lex_plane(number: int, text: str) -> PlaneLine:
         word_match = _WORD.match(inside, at)
         if word_match is None:
             shown = inside[at : at + 8].strip()
-            message = f"'{shown}' is no word of plane switching."
+            message = f"'{shown}' is not allowed in plane switching."
             raise program_error(number, base + at, "plane-word", message, _HINT)
         word = _word(number, base + at, word_match)
         if word.letter in words:
-            message = f"The line holds {word.letter} twice."
-            raise program_error(number, word.column, "word-twice", message, "Take one out.")
+            message = f"The line contains {word.letter} twice."
+            raise program_error(number, word.column, "word-twice", message, "Remove one of them.")
         words[word.letter] = word
         at = word_match.end()
     return _sorted(number, words)
@@ -89,15 +89,19 @@ def _word(number: int, column: int, match: re.Match[str]) -> Word:
     word = Word(letter, float(digits[:32]), column, letter + digits)
     if letter not in _LETTERS:
         raise program_error(
-            number, column, "plane-word", f"{word.text} is no word of plane switching.", _HINT
+            number, column, "plane-word", f"{word.text} is not allowed in plane switching.", _HINT
         )
     value = word.value or 0.0
     if letter == "G" and digits not in {"02", "03"}:
-        message = f"{word.text}: of the G codes only G02 and G03 may stand in a plane."
+        message = f"{word.text}: the only G codes allowed in plane switching are G02 and G03."
         raise program_error(number, column, "plane-word", message, _HINT)
     if len(digits) > 16 or abs(value) > (_MOST_FEED if letter == "F" else _MOST):
         raise program_error(
-            number, column, "out-of-range", f"{word.text} is out of range.", "Look for a lost point."
+            number,
+            column,
+            "out-of-range",
+            f"{word.text} is out of range.",
+            ("Look for a missing decimal point."),
         )
     return word
 
@@ -107,21 +111,27 @@ def _sorted(number: int, words: dict[str, Word]) -> PlaneLine:
         raise program_error(number, 1, "plane-word", "The statement is empty.", _HINT)
     for letter in ("H", "D"):
         if letter in words and len(words) > 1:
-            message = f"{letter} stands with other words."
+            message = f"{letter} cannot be combined with other words."
             raise program_error(
-                number, words[letter].column, "not-alone", message, f"Write ({letter}n) alone."
+                number, words[letter].column, "not-alone", message, (f"Write ({letter}n) alone on a line.")
             )
     code = words.get("G")
     for letter in ("I", "J"):
         if letter in words and code is None:
-            message = f"{words[letter].text} belongs to an arc, and neither G02 nor G03 is on the line."
+            message = f"{words[letter].text} belongs to an arc, but the line has no G02 or G03."
             raise program_error(
-                number, words[letter].column, "word-unused", message, "G02 and G03 are one shot."
+                number,
+                words[letter].column,
+                "word-unused",
+                message,
+                ("Write G02 or G03 on the line; both are one-shot codes."),
             )
         if code is not None and letter not in words:
-            message = f"{letter} is missing: I and J are the coordinates of the arc's centre."
+            message = f"{letter} is missing: I and J are the coordinates of the arc center."
             raise program_error(number, code.column, "arc-coordinate-missing", message, f"Add {letter}.")
     if code is not None and "Z" in words:
-        message = "An arc of a plane moves X and Y alone."
-        raise program_error(number, words["Z"].column, "word-unused", message, "Move Z on another line.")
+        message = "An arc in plane switching moves only X and Y."
+        raise program_error(
+            number, words["Z"].column, "word-unused", message, ("Write the Z move on another line.")
+        )
     return PlaneLine("", words, int(code.value or 0) if code else 0)

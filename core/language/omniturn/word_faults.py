@@ -12,26 +12,39 @@ _MOST_DIGITS = 15
 _MOST_SHOWN = 40  # characters of a text
 _SIGNS = {
     ",": ("comma", "A comma is not allowed anywhere.", "Write a decimal point."),
-    ")": ("comment-close", "')' closes no comment.", "Add '(' or take it out."),
-    "/": ("block-delete-place", "'/' may only stand first on a line.", "Move it to the front."),
+    ")": ("comment-close", "')' has no opening parenthesis.", "Add '(' or remove ')'."),
+    "/": (
+        "block-delete-place",
+        "'/' is allowed only at the start of a line.",
+        ("Move '/' to the start of the line."),
+    ),
 }
 _AFTER_NUMBER = {
-    ".": ("two-points", "The number has two decimal points.", "Take one out."),
-    "+": ("sign-inside", "A sign stands inside a number.", "Split it into two words."),
-    "-": ("sign-inside", "A sign stands inside a number.", "Split it into two words."),
+    ".": ("two-points", "The number has two decimal points.", "Remove one of them."),
+    "+": ("sign-inside", "A sign is in the middle of a number.", "Split the number into two words."),
+    "-": ("sign-inside", "A sign is in the middle of a number.", "Split the number into two words."),
 }
 
 _SLIPS = {
     "comment-open": ("The comment has no closing parenthesis.", "Add ')'."),
     "comment-nested": ("A comment is inside another comment.", "Remove the inner parentheses."),
     # X1E5, and E005 where a print of F.005 was read.
-    "exponent": ("Numbers have no exponent here.", "Write the number out; a feed is F."),
+    "exponent": (
+        "A number cannot have an exponent.",
+        ("Write the number without an exponent; use F for a feed."),
+    ),
 }
 
 
 def too_long(line: int, length: int) -> Diagnostic:
     """More on one line than a program line can hold."""
-    return refusal(line, 0, "line-too-long", f"The line has {length} characters.", "Break it into lines.")
+    return refusal(
+        line,
+        0,
+        "line-too-long",
+        f"The line is too long ({length} characters).",
+        ("Split the line into shorter lines."),
+    )
 
 
 def text_outside(line: int, column: int, text: str) -> Diagnostic:
@@ -56,15 +69,25 @@ def no_number(line: int, column: int, letter: str, follower: str) -> Diagnostic:
     """A letter and nothing that is a number."""
     if follower in {"+", "-"}:
         return refusal(
-            line, column, "lone-sign", f"{letter} has a sign and no number.", "Write the number after it."
+            line,
+            column,
+            "lone-sign",
+            f"{letter} has a sign but no number.",
+            ("Write a number after the sign."),
         )
     if follower == ".":
         return refusal(
-            line, column, "lone-point", f"{letter} has a decimal point and no digit.", "Write the digits."
+            line,
+            column,
+            "lone-point",
+            f"{letter} has a decimal point but no digits.",
+            ("Write the digits of the number."),
         )
     if letter not in RANGES and letter not in {"LF", "RF", "O"}:
         return _unknown_letter(line, column, letter)
-    return refusal(line, column, "number-missing", f"{letter} has no number.", f"Write it after {letter}.")
+    return refusal(
+        line, column, "number-missing", f"{letter} has no number.", (f"Write a number after {letter}.")
+    )
 
 
 def of_sign(line: int, column: int, sign: str, *, after_number: bool) -> Diagnostic:
@@ -74,7 +97,11 @@ def of_sign(line: int, column: int, sign: str, *, after_number: bool) -> Diagnos
         return refusal(line, column, *fixed)
     if sign in "0123456789+-.":
         return refusal(
-            line, column, "letter-missing", "A number stands without a letter.", "Write its letter."
+            line,
+            column,
+            "letter-missing",
+            "A number has no letter in front of it.",
+            ("Write a letter before the number."),
         )
     shown = sign if sign.isprintable() else f"U+{ord(sign):04X}"
     habit = other_controls.sign(sign)
@@ -82,7 +109,11 @@ def of_sign(line: int, column: int, sign: str, *, after_number: bool) -> Diagnos
         what, hint = habit
         return refusal(line, column, "character", f"'{shown}' is {what}.", hint)
     return refusal(
-        line, column, "character", f"'{shown}' is no part of the language.", "Comments go in parentheses."
+        line,
+        column,
+        "character",
+        f"'{shown}' is not part of this control's language.",
+        ("Put comments in parentheses."),
     )
 
 
@@ -96,10 +127,20 @@ def of_word(line: int, word: Word, digits: str | None) -> Diagnostic | None:
     if letter in {"G", "M"}:
         return _two_digits(line, word, digits)
     if letter not in RANGES:
-        return refusal(line, column, "number-unwanted", f"{letter} takes no number.", "Take it out.")
+        return refusal(
+            line,
+            column,
+            "number-unwanted",
+            f"{letter} does not accept a number.",
+            ("Remove it from the program."),
+        )
     if sum(sign.isdigit() for sign in digits) > _MOST_DIGITS:
         return refusal(
-            line, column, "number-too-long", f"{letter} has over {_MOST_DIGITS} digits.", "Round the number."
+            line,
+            column,
+            "number-too-long",
+            f"{letter} has more than {_MOST_DIGITS} digits.",
+            "Round the number.",
         )
     return _size(line, word, digits)
 
@@ -113,7 +154,11 @@ def _tool(text: str, _value: float) -> tuple[str, str, str]:
 
 
 def _offset(text: str, _value: float) -> tuple[str, str, str]:
-    return "offset-number", f"{text}: offsets go from 1 to 32.", "D0 cancels."
+    return (
+        "offset-number",
+        f"{text}: offset numbers are 1 to 32.",
+        ("Correct the offset number; D0 cancels the offset."),
+    )
 
 
 def _no_feed(text: str, value: float) -> tuple[str, str, str] | None:
@@ -121,7 +166,11 @@ def _no_feed(text: str, value: float) -> tuple[str, str, str] | None:
         return "out-of-range", f"{text}: a feed rate cannot be negative.", "Remove the sign."
     if value:
         return None
-    return "out-of-range", f"{text}: a feed of 0 moves nothing; a rapid is G00 here.", "Write the feed."
+    return (
+        "out-of-range",
+        f"{text}: with a feed of 0 nothing moves; G00 is the rapid.",
+        ("Write the feed rate."),
+    )
 
 
 _SIZES: dict[str, Callable[[str, float], tuple[str, str, str] | None]] = {
@@ -136,7 +185,11 @@ def _size(line: int, word: Word, digits: str) -> Diagnostic | None:
     least, most = RANGES[letter]
     if letter in COUNTING and not digits.isdigit():
         return refusal(
-            line, column, "whole-number", f"{text} must be a whole number without a sign.", "Round it."
+            line,
+            column,
+            "whole-number",
+            f"{text} must be a whole number without a sign.",
+            ("Round the number and remove any sign."),
         )
     if value is None or least <= value <= most:
         return None
@@ -144,14 +197,14 @@ def _size(line: int, word: Word, digits: str) -> Diagnostic | None:
     if special is not None and (fault := special(text, value)) is not None:
         return refusal(line, column, *fault)
     if letter == "LS":
-        message = f"{text} is out of range: a loop runs {least:g} to {most:,.0f} times."
-        return refusal(line, column, "loop-count", message, "Correct the count.")
+        message = f"{text} is out of range: the loop count must be from {least:g} to {most:,.0f}."
+        return refusal(line, column, "loop-count", message, "Correct the loop count.")
     return refusal(
         line,
         column,
         "out-of-range",
-        f"{text} is out of range: {letter} goes from {least:g} to {most:g}.",
-        "Look for a lost decimal point.",
+        f"{text} is out of range: {letter} must be from {least:g} to {most:g}.",
+        "Look for a missing decimal point.",
     )
 
 
@@ -165,18 +218,24 @@ def _two_digits(line: int, word: Word, digits: str) -> Diagnostic | None:
         if value is not None and digits.isdigit()
         else "Write two digits."
     )
-    return refusal(line, word.column, code, f"{word.text}: {word.letter} takes exactly two digits.", hint)
+    return refusal(
+        line, word.column, code, (f"{word.text}: {word.letter} must have exactly two digits."), hint
+    )
 
 
 def _unknown_letter(line: int, column: int, letter: str) -> Diagnostic:
     if letter == "N":
         return refusal(
-            line, column, "n-word", "Lines have no numbers here: N is not allowed.", "Take the N word out."
+            line,
+            column,
+            "n-word",
+            "This control does not use line numbers: N is not allowed.",
+            ("Remove the N word."),
         )
     habit = other_controls.meaning_here(letter)
     if habit is not None:
         return refusal(
-            line, column, "unknown-letter", f"{letter} is no word of the language. {habit[0]}", habit[1]
+            line, column, "unknown-letter", f"{letter} is not a word of this control. {habit[0]}", habit[1]
         )
-    said = f"{letter} is no word of the language."
+    said = f"{letter} is not a word of this control."
     return refusal(line, column, "unknown-letter", said, other_controls.LOOK_UP)

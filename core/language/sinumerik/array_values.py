@@ -38,14 +38,18 @@ def read_values(text: str, at: int, *, bare: bool) -> tuple[Values, int] | None:
         found.append(formula)
         sign = _NEXT.match(text, at)
         if sign is None:
-            raise FormulaError(at, "The list of values is not closed", "Write ) behind the last value.")
+            raise FormulaError(
+                at,
+                "The closing parenthesis of the list of values is missing",
+                ("Write ) after the last value."),
+            )
         at = sign.end()
         if sign[1] == ")":
             break
     if match[1] != "REP":
         return Values(tuple(found)), at
     if found[0] is None or len(found) > 2:
-        raise FormulaError(match.end(), "REP takes a value, and a number of elements", "Write REP(0).")
+        raise FormulaError(match.end(), "REP accepts only a value and a number of elements", "Write REP(0).")
     return Values((found[0],), repeated=True, times=found[1] if found[1:] else None), at
 
 

@@ -60,8 +60,12 @@ def read_arguments(text: str, written: str, at: int) -> tuple[tuple[Argument, ..
         found.append(argument)
         match = _NEXT.match(text, at)
         if match is None:
-            what = "is not closed" if at >= len(text) else "has something that is no argument"
-            raise FormulaError(at if at < len(text) else start, f"The bracket {what}", "Write ( , , ).")
+            what = (
+                "has no closing parenthesis"
+                if at >= len(text)
+                else ("contains something that is not an argument")
+            )
+            raise FormulaError(at if at < len(text) else start, f"The argument list {what}", "Write ( , , ).")
         at = match.end()
         if match[1] == ")":
             return (() if len(found) == 1 and not found[0].given else tuple(found)), at
@@ -88,7 +92,7 @@ def read_parameters(text: str, written: str, at: int) -> tuple[tuple[Parameter, 
     while True:
         match = _PARAMETER.match(text, at)
         if match is None:
-            raise FormulaError(at, "A parameter needs its type and name", "Write PROC NAME(REAL LENGTH).")
+            raise FormulaError(at, ("A parameter needs a type and a name"), "Write PROC NAME(REAL LENGTH).")
         sizes = _sizes(match)
         at, default = match.end(), None
         if match[5]:
@@ -96,7 +100,11 @@ def read_parameters(text: str, written: str, at: int) -> tuple[tuple[Parameter, 
         found.append(Parameter(match[3] or "", match[2], match[1] is not None, default, sizes))
         end = _NEXT.match(text, at)
         if end is None:
-            raise FormulaError(at, "The bracket of the parameters is not closed", "Write ) behind the last.")
+            raise FormulaError(
+                at,
+                ("The closing parenthesis of the parameter list is missing"),
+                ("Write ) after the last parameter."),
+            )
         at = end.end()
         if end[1] == ")":
             return tuple(found), at
@@ -108,7 +116,8 @@ def _sizes(match: re.Match[str]) -> tuple[int | None, ...]:
         return ()
     found = [_DIMENSION.fullmatch(each) for each in match[4].split(",")]
     if None in found or not match[1]:
-        raise FormulaError(match.start(3), "An array is handed over with VAR and whole numbers as its sizes",
+        raise FormulaError(match.start(3), (
+            "An array parameter needs VAR and whole numbers as its sizes"),
                            "Write PROC NAME(VAR REAL LIST[3]).")  # fmt: skip
     return tuple(int(each[1][:9]) if each is not None and each[1] else None for each in found)
 

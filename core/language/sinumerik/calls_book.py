@@ -5,45 +5,54 @@ from __future__ import annotations
 from core.language.code_book import Entry
 
 _DEPTH = (("STEP.spf", "PROC STEP(REAL DEPTH, INT TIMES=2)\nG0 Z=DEPTH*TIMES\nM17\n"),)
-_TAKEN = "Taken; the listing shows every block all the same."
+_TAKEN = "Accepted; the listing still shows every block."
 
 CALLS = (
     Entry(
         "PROC", "NAME(REAL LENGTH, VAR INT COUNT, REAL MORE=1) SAVE",
-        "First line of a subprogram: its parameters, VAR writes back, = is what counts where nothing is "
-        "handed over; VAR REAL LIST[3] takes an array of that size, VAR REAL LIST[] one of any. SAVE brings "
-        "G functions and frame back at its end.",
+        (
+            "First line of a subprogram, with its parameters: VAR returns the value to the "
+            "caller, and = gives the value used where none is passed. VAR REAL LIST[3] takes "
+            "an array of that size, VAR REAL LIST[] an array of any size. SAVE restores the "
+            "G functions and the frame at the end."),
         "STEP(-3)\nSTEP(-2, 4)", "STEP(1, 2, 3)", "12330", files=_DEPTH,
     ),
     Entry(
-        "EXTERN", "NAME(REAL, INT)", "Names a subprogram with parameters that stands in a file of its own.",
+        "EXTERN", "NAME(REAL, INT)", (
+            "Declares a subprogram with parameters that is in a separate file."),
         "EXTERN STEP(REAL, INT)\nSTEP(-3)", "EXTERN 5", "EXTERN", files=_DEPTH,
     ),
     Entry(
-        "MCALL", "NAME(…)", "Calls a subprogram or a cycle behind each block that moves; alone it ends that.",
+        "MCALL", "NAME(…)", (
+            "Calls a subprogram or a cycle after each block that moves an axis; MCALL alone "
+            "ends this."),
         "MCALL STEP(-3)\nX50\nMCALL", "MCALL NOWHERE\nX50", "NOWHERE", files=_DEPTH,
     ),
     Entry("CALL", '"NAME"', "Calls a subprogram by its name.", 'CALL "STEP"', "CALL", "CALL", files=_DEPTH),
     Entry(
-        "REPEATB", "LABEL P=2", "Runs the block of the label again.",
+        "REPEATB", "LABEL P=2", (
+            "Runs the block with the label again."),
         "AGAIN: Z=IC(-1)\nREPEATB AGAIN P=2", "REPEATB NOWHERE", "14080",
     ),
     Entry(
-        "CASE", "R1 OF 1 GOTOF LABEL DEFAULT GOTOF OTHER", "Jumps by a value.",
+        "CASE", "R1 OF 1 GOTOF LABEL DEFAULT GOTOF OTHER", (
+            "Jumps to a label that depends on a value."),
         "R1=2\nCASE R1 OF 1 GOTOF ONE DEFAULT GOTOF OTHER\nONE: Z5\nOTHER:",
         "CASE 1 GOTOF ONE", "CASE needs OF",
     ),
     Entry("GOTOS", "", "Jumps to the first block.", "R1=1\nIF R1==2 GOTOS", "GOTOS X3", "GOTOS"),
     Entry(
-        "SETAL", "(65000)", "The program raises an alarm: it is refused where it comes to this.",
+        "SETAL", "(65000)", (
+            "The program raises an alarm: the program is rejected if it reaches this block."),
         "R1=1\nIF R1==2\nSETAL(65000)\nENDIF", "SETAL(65000)", "65000",
     ),
     *(
         Entry(word, "", _TAKEN, word, f"{word} X3", word)
         for word in ("DISPLOF", "DISPLON", "SBLOF", "SBLON")
     ),
-    Entry("GROUP_BEGIN", '(0,"ROUGH",0,0)', "Head of a group of blocks in the control's editor; taken.",
+    Entry("GROUP_BEGIN", '(0,"ROUGH",0,0)', (
+            "Start of a group of blocks in the editor of the original control; accepted."),
           'GROUP_BEGIN(0,"ROUGH",0,0)\nX40\nGROUP_END(0,0)', "GROUP_BEGIN X3", "GROUP_BEGIN"),
-    Entry("GROUP_END", "(0,0)", "End of it.", "GROUP_END(0,0)", "GROUP_END X3", "GROUP_END"),
+    Entry("GROUP_END", "(0,0)", "End of a group of blocks.", "GROUP_END(0,0)", "GROUP_END X3", "GROUP_END"),
 )  # fmt: skip
 """What is written where a program calls others, or steers itself by name."""

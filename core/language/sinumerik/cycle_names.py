@@ -40,10 +40,10 @@ CYCLES: Mapping[str, tuple[str, ...]] = {
 }
 """Parameters as the maker's manuals name them, in the order of the call; what begins with _ is newer."""
 
-_MASK = "it is written by a mask of the newer controls, whose digits differ from edition to edition"
-_MILL = "pockets and slots are not built here; write their path as moves of X, Z and C"
-_PROBE = "this lathe has no probe that a cycle can move to"
-_SWIVEL = "this lathe has no head that swivels; take it out"
+_MASK = "newer controls generate this cycle from an input form, and its digits differ between versions"
+_MILL = "pockets and slots are not supported; write their path as moves of X, Z and C"
+_PROBE = "this lathe has no probe for measuring cycles"
+_SWIVEL = "this lathe has no swivel head; remove this cycle"
 
 CYCLES_OUTSIDE: Mapping[str, str] = {
     "CYCLE62": f"{_MASK}; name the contour in CYCLE95",
@@ -60,7 +60,7 @@ CYCLES_OUTSIDE: Mapping[str, str] = {
 
 SWIVELS = "CYCLE800"
 CYCLES_TAKEN: Mapping[str, str] = {
-    SWIVELS: "nothing is swivelled that it could turn back",
-    "CYCLE832": "the path is kept exactly, whatever tolerance it names",
+    SWIVELS: "this lathe has no swivel position to reset",
+    "CYCLE832": "the path is followed exactly, regardless of the tolerance",
 }
 """Standard cycles that change nothing here, and why; CYCLE800 with its brackets empty alone."""

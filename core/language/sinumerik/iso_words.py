@@ -32,77 +32,95 @@ def _seconds(letter: str, number: str) -> str:
 
 def _dwell(match: re.Match[str]) -> tuple[str, str]:
     letter, number = match["letter"], match["number"]
-    text = f"{letter}{number} is the time of a dwell in ISO, and here it is F, in seconds."
+    text = f"{letter}{number} is the dwell time in ISO programs; on this control it is F, in seconds."
     return text, f"Write G4 F{_seconds(letter, number)}."
 
 
 def _radius(match: re.Match[str]) -> tuple[str, str]:
     number = match["number"].rstrip(".")
-    return f"R{number}: CR={number} is the radius of an arc here.", f"Write CR={number}."
+    return f"R{number}: on this control, CR={number} is the radius of an arc.", f"Write CR={number}."
 
 
 def _corner(match: re.Match[str]) -> tuple[str, str]:
     number = match["number"].rstrip(".")
     word = f"CHR={number}" if match["letter"] == "C" else f"RND={number}"
-    return f"{match['word']}: {word} makes a corner here.", f"Write {word}."
+    return f"{match['word']}: on this control, {word} programs the corner.", f"Write {word}."
 
 
 def _variable(match: re.Match[str]) -> tuple[str, str]:
-    return f"#{match['number']}: variables are R parameters here.", f"Write R{match['number']}."
+    return f"#{match['number']}: on this control, variables are R parameters.", f"Write R{match['number']}."
 
 
 def _home(match: re.Match[str]) -> tuple[str, str]:
-    return f"{match['word']}: home is G74 here, and a fixed point G75.", "Write G74 X1=0 Z1=0."
+    return (
+        f"{match['word']}: on this control, G74 moves to home and G75 to a fixed point.",
+        "Write G74 X1=0 Z1=0.",
+    )
 
 
 def _speed_limit(match: re.Match[str]) -> tuple[str, str]:
-    return f"{match['word']}: the highest speed is LIMS= here.", f"Write LIMS={match['number'].rstrip('.')}."
+    return (
+        f"{match['word']}: on this control, LIMS= sets the maximum spindle speed.",
+        f"Write LIMS={match['number'].rstrip('.')}.",
+    )
 
 
 def _preset(match: re.Match[str]) -> tuple[str, str]:
-    return f"{match['word']} presets a position in ISO; here zero is shifted by TRANS.", "Write TRANS."
+    return (
+        f"{match['word']} presets a position in ISO programs; on this control, TRANS shifts the zero point."
+    ), "Write TRANS."
 
 
 def _cycle(match: re.Match[str]) -> tuple[str, str]:
     code = int(match["code"])
     name = {74: "CYCLE83", 75: "CYCLE93", 76: "CYCLE97", 32: "G33", 92: "CYCLE97"}.get(code, "CYCLE95")
-    return f"G{code} of ISO is {name} here.", f"Write {name}."
+    return f"On this control, ISO code G{code} is {name}.", f"Write {name}."
 
 
 def _inches(match: re.Match[str]) -> tuple[str, str]:
     name = "G70" if match["code"] == "20" else "G71"
-    return f"G{match['code']}: the unit is {name} here.", f"Write {name}."
+    return f"G{match['code']}: on this control, {name} sets the unit.", f"Write {name}."
 
 
 def _feed(match: re.Match[str]) -> tuple[str, str]:
     name = "G94" if match["code"] == "98" else "G95"
-    return f"G{match['code']}: the kind of feed is {name} here.", f"Write {name}."
+    return f"G{match['code']}: on this control, {name} sets the feed type.", f"Write {name}."
 
 
 def _call(match: re.Match[str]) -> tuple[str, str]:
     number = match["number"]
-    return f"{match['word']}: a subprogram is called by its name here.", f"Write L{number}."
+    return f"{match['word']}: on this control, a subprogram is called by name.", f"Write L{number}."
 
 
 def _program(match: re.Match[str]) -> tuple[str, str]:
-    return f"{match['word']}: a program has the name of its file here.", "Take it out."
+    return f"{match['word']}: on this control, the file name is the program name.", (
+        "Remove it from the program."
+    )
 
 
 def _comment(match: re.Match[str]) -> tuple[str, str]:
     del match
-    return "a comment in brackets is one of ISO; here it begins with ;.", "Write ; before it."
+    return "comments in parentheses are for ISO programs; on this control a comment begins with ;.", (
+        "Write ; before the comment."
+    )
 
 
 def _jump(match: re.Match[str]) -> tuple[str, str]:
     number = match["number"]
-    return f"GOTO {number}: a jump names a label or a block here.", f"Write GOTO N{number}."
+    return (
+        f"GOTO {number}: on this control, a jump needs a label or a block number.",
+        f"Write GOTO N{number}.",
+    )
 
 
 def _distance(match: re.Match[str]) -> tuple[str, str]:
     axis = {"U": "X", "W": "Z"}[match["letter"]]
     word = f"{axis}=IC({match['number']})"
     return (
-        f"{match['word']}: a distance is {word} here; this lathe has no axis {match['letter']}.",
+        (
+            f"{match['word']}: on this control, the incremental move is {word}; this lathe has no "
+            f"axis {match['letter']}."
+        ),
         f"Write {word}.",
     )
 

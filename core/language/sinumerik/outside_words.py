@@ -7,27 +7,27 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-_ONE_CHANNEL = "this control has one channel, and its axes are its own"
-_FEEDS = "F is the feed of the path; write F, FB or OVR"
-_LIMITS = "the limits of an axis are those of the machine file; take it out"
-_SYNCHRONOUS = "synchronized actions are not executed here"
-_INTERRUPTS = "interrupts by an input are not executed here; stop with M0 or M1"
-_MEASURES = "measuring in the program is not executed here; touch the tool off on the Jog page"
-_STOPS = "travel to a fixed stop is not executed here"
-_BESIDE = "axes do not move beside the path here; write G0 or G1 with the axis"
-_ISO = "the other language mode is not read here"
+_ONE_CHANNEL = "this control has a single channel with fixed axes"
+_FEEDS = "only the path feed can be programmed; write F, FB or OVR"
+_LIMITS = "axis limits are set in the machine file; remove this word"
+_SYNCHRONOUS = "synchronized actions are not supported"
+_INTERRUPTS = "interrupts from an input are not supported; stop with M0 or M1"
+_MEASURES = "measuring in the program is not supported; touch off the tool on the Jog page"
+_STOPS = "travel to a fixed stop is not supported"
+_BESIDE = "axes cannot move independently of the path; write G0 or G1 with the axis"
+_ISO = "the external language mode is not supported"
 _TOOL_AXIS = "this lathe has no orientation axes"
-_SMOOTH = "smooth approach and retract is not executed here; write G41 or G42 with NORM or KONT"
-_SIX = "this control keeps six settable offsets; write G54 to G59"
-_SPLINE = "write the curve as lines and arcs"
-_FILES = "programs do not read or write files here"
-_FRAMES = "write the frame with TRANS, ROT, SCALE or MIRROR"
-_PUNCHES = "this lathe does not punch"
-_LOOKS_AHEAD = "the whole program is read before it begins; take it out"
-_OSCILLATES = "oscillation is not executed here"
-_TOOLS = "tools are managed on the page of tool offsets (F8)"
-_CONTOURS = "contour tables are not made here; name the contour in CYCLE95"
-_RETRACTS = "retraction by itself is not executed here"
+_SMOOTH = "smooth approach and retraction are not supported; write G41 or G42 with NORM or KONT"
+_SIX = "this control has six settable offsets; write G54 to G59"
+_SPLINE = "this type of curve is not supported; write lines and arcs"
+_FILES = "programs cannot read or write files"
+_FRAMES = "this frame function is not supported; write TRANS, ROT, SCALE or MIRROR"
+_PUNCHES = "this lathe has no punching unit"
+_LOOKS_AHEAD = "the whole program is read before it starts; remove this word"
+_OSCILLATES = "oscillation is not supported"
+_TOOLS = "tools are managed on the tool offset page (F8)"
+_CONTOURS = "contour tables are not supported; name the contour in CYCLE95"
+_RETRACTS = "automatic retraction is not supported"
 
 _BY_REASON = {
     _SPLINE: (
@@ -69,37 +69,41 @@ _BY_REASON = {
         "DELTOOLENV TOOLENV GETTCOR SETTCOR DELDL"
     ),
     _CONTOURS: "CONTPRON CONTDCON EXECUTE INTERSEC CALCDAT",
-    "write SPOS, or M3 and M4": "SPCOF SPCON ASPOS",
+    "not supported; write SPOS, or M3 and M4": "SPCOF SPCON ASPOS",
 }
 
 OUTSIDE: Mapping[str, str] = {
-    "G63": "write CYCLE840, which feeds the tap by its lead and turns it back",
-    "G93": "inverse time feed is not executed here; write G94 or G95 with F",
-    "G931": "feed by the time of the move is not executed here; write G94 or G95 with F",
-    "G5": "G5 is not executed here; write the arc with CIP",
-    "KONTC": "approach on a curve is not executed here; write KONT or NORM",
-    "KONTT": "approach on a curve is not executed here; write KONT or NORM",
-    "TURN": "a helix needs a third axis of the slides",
-    "DIAMCYCOF": "write DIAMON, DIAMOF or DIAM90",
-    "DISC": "write G450 or G451",
-    "EXTCALL": "programs from outside are not called; put the file beside the main program and call its name",
+    "G63": "not supported; write CYCLE840, which feeds the tap at its lead and reverses the spindle",
+    "G93": "inverse time feed is not supported; write G94 or G95 with F",
+    "G931": "feed given as the time of the move is not supported; write G94 or G95 with F",
+    "G5": "G5 is not supported; write the arc with CIP",
+    "KONTC": "approach on a curve is not supported; write KONT or NORM",
+    "KONTT": "approach on a curve is not supported; write KONT or NORM",
+    "TURN": "a helix needs a third linear axis",
+    "DIAMCYCOF": "not supported; write DIAMON, DIAMOF or DIAM90",
+    "DISC": "not supported; write G450 or G451",
+    "EXTCALL": (
+        "external calls are not supported. Put the file in the main program's folder and call it by name"
+    ),
     "TRAANG": "this lathe has no inclined axis",
-    "TRACON": "transformations are not chained here",
-    "FLIN": "write G1 with F a block",
-    "FCUB": "write G1 with F a block",
-    "FPO": "write G1 with F a block",
-    "SAVE": "SAVE stands behind PROC",
-    "GOTOC": "write GOTO, GOTOF or GOTOB",
-    "ACC": "accelerations are those of the machine file; take it out",
-    "ACCLIMA": "accelerations are those of the machine file; take it out",
-    "FGREF": "F counts on the path of the tip here; take it out",
-    "PRESETON": "positions of the machine are not preset here; write TRANS",
-    "AXTOSPI": "the axis of a spindle is known from the machine file",
-    "SPITOAX": "the axis of a spindle is known from the machine file",
-    "MMC": "dialogs of a program are not shown here; write MSG",
-    **dict.fromkeys(("DEFINE", "DEFAULT", "ENDPROC"), "macros are not made here; write their words"),
+    "TRACON": "chained transformations are not supported",
+    "FLIN": "this feed profile is not supported; write G1 with F in each block",
+    "FCUB": "this feed profile is not supported; write G1 with F in each block",
+    "FPO": "this feed profile is not supported; write G1 with F in each block",
+    "SAVE": "SAVE is only allowed after PROC",
+    "GOTOC": "not supported; write GOTO, GOTOF or GOTOB",
+    "ACC": "accelerations are set in the machine file; remove this word",
+    "ACCLIMA": "accelerations are set in the machine file; remove this word",
+    "FGREF": "F always applies to the path of the tool tip; remove this word",
+    "PRESETON": "machine positions cannot be preset; write TRANS",
+    "AXTOSPI": "the axis of a spindle is defined in the machine file",
+    "SPITOAX": "the axis of a spindle is defined in the machine file",
+    "MMC": "program dialogs are not supported; write MSG",
+    **dict.fromkeys(
+        ("DEFINE", "DEFAULT", "ENDPROC"), ("macros are not supported; write out the words of the macro")
+    ),
     **{word: why for why, words in _BY_REASON.items() for word in words.split()},
-    "CYCLE": "a cycle has its number, such as CYCLE95",
+    "CYCLE": "the cycle number is missing; write, for example, CYCLE95",
     "G291": _ISO,
     **dict.fromkeys((f"G{code}" for code in (147, 148, 247, 248, 340, 341, 347, 348)), _SMOOTH),
     **dict.fromkeys((f"G{code}" for code in range(507, 600)), _SIX),

@@ -167,7 +167,9 @@ class _Reader:
         rest = self._text[self._at :]
         if rest.strip():
             at = self._at + len(rest) - len(rest.lstrip())
-            raise FormulaError(at, f"More stands behind {self._steering}", "Put it into a block of its own.")
+            raise FormulaError(
+                at, f"Unexpected text after {self._steering}", ("Put the extra text in a separate block.")
+            )
 
     def _if(self) -> Jump:
         """With a jump behind the condition the whole branch; without one the beginning of IF … ENDIF."""
@@ -198,7 +200,7 @@ class _Reader:
             formula = None if default else self._formula()
             jump = _GOTO.match(self._text, self._at)
             if jump is None:
-                raise FormulaError(self._at, "A branch of CASE needs its jump", "Write 1 GOTOF LABEL.")
+                raise FormulaError(self._at, "A CASE branch needs a jump", "Write 1 GOTOF LABEL.")
             self._at = jump.end()
             choices.append(Choice(formula, Steering(jump.group(1)), self._target()))
         if not choices:
@@ -238,7 +240,7 @@ class _Reader:
         if match is None:
             raise FormulaError(self._at, "DEF needs REAL, INT, BOOL or STRING", "Write DEF REAL NAME = 0.")
         if match[1] not in _NUMBERS | {"STRING"}:
-            raise FormulaError(self._at, f"Variables of the type {match[1]} are not read here",
+            raise FormulaError(self._at, f'Variables of type {match[1]} are not supported',
                                "Use REAL, INT, BOOL or STRING.")  # fmt: skip
         self._at = match.end()
         found: list[Defined] = []
@@ -250,7 +252,7 @@ class _Reader:
     def _defined(self, kind: str) -> Defined:
         variable = _VARIABLE.match(self._text, self._at)
         if variable is None:
-            raise FormulaError(self._at, "DEF needs the name of a variable", "Write DEF REAL NAME = 0.")
+            raise FormulaError(self._at, "DEF needs a variable name", "Write DEF REAL NAME = 0.")
         self._at = variable.end()
         made, after = Defined(variable.group(1), None, kind), variable.group(2)
         if after == "[":
@@ -314,7 +316,7 @@ class _Reader:
         rest = self._text[self._at :].lstrip()
         closing = self._text.rstrip()
         if not rest.startswith("(") or not closing.endswith(")"):
-            raise FormulaError(self._at, "MSG needs its text in brackets", 'Write MSG("TEXT").')
+            raise FormulaError(self._at, ("MSG needs its text in parentheses"), 'Write MSG("TEXT").')
         self._at, end = len(self._text) - len(rest) + 1, len(closing) - 1
         pieces: list[str | Formula] = []
         while self._text[self._at : end].strip():
@@ -331,7 +333,7 @@ class _Reader:
     def _alarm(self) -> Jump:
         rest = self._text[self._at :]
         if not rest.lstrip().startswith("("):
-            raise FormulaError(self._at, "SETAL needs a number in brackets", "Write SETAL(65000).")
+            raise FormulaError(self._at, ("SETAL needs a number in parentheses"), "Write SETAL(65000).")
         self._at += len(rest) - len(rest.lstrip()) + 1
         number = self._formula()
         self._at = len(self._text)
@@ -342,7 +344,7 @@ class _Reader:
             self._at += 1
         match = _TARGET.match(self._text, self._at)
         if match is None:
-            raise FormulaError(self._at, "A jump needs a label", "Write the label, or N with its number.")
+            raise FormulaError(self._at, "A jump needs a label", ("Write a label, or N with a block number."))
         self._at = match.end()
         return match.group().strip()
 

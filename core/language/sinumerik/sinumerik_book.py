@@ -46,7 +46,7 @@ _REFUSED: Mapping[str, tuple[str, str]] = {
     "S": ("S-900 M3", "S"),
     "LIMS": ("LIMS=-5", "LIMS"),
     "M3": ("M3", "S"),
-    "M19": ("M19 M5", "exclude"),
+    "M19": ("M19 M5", "in the same block"),
     "CIP": (_ARC + "CIP X50 Z-5", "I1"),
     "CT": (_ARC + "Z-5\nCT Z-9 CR=4", "CR"),
     "G33": ("S400 M3\nG33 X40 K2", "Z"),
@@ -60,16 +60,16 @@ _REFUSED: Mapping[str, tuple[str, str]] = {
     "SUPA": ("SUPA", "moves an axis"),
     "DIAMON": ("DIAMON DIAMOF", "12060"),
     "G74": ("G74 X1=5", "home"),
-    "G75": ("G75 X1=0 M8", "nothing else"),
+    "G75": ("G75 X1=0 M8", "only the axes to move"),
     "G110": ("G110 X=IC(3)", "plain number"),
-    "G25": ("G26 S500\nG25 S600", "highest"),
+    "G25": ("G26 S500\nG25 S600", "above the maximum speed"),
     "G26": ("G26 S0", "limit"),
     "ROT": ("ROT X30", "RPL"),
     "SCALE": ("SCALE X0", "factor"),
-    "MIRROR": ("MIRROR Z0 G1", "block of its own"),
+    "MIRROR": ("MIRROR Z0 G1", "separate block"),
     "I1": (_ARC + "G2 X50 Z-5 CR=5 I1=3", "I1"),
     "RP": ("G0 RP=10", "both"),
-    "AP": ("G0 RP=10 AP=30 X5", "beside"),
+    "AP": ("G0 RP=10 AP=30 X5", "combined with"),
     "ANG": ("G1 X40 Z5 ANG=30 F200", "ANG"),
     "RNDM": ("RNDM=-1", "RNDM"),
     "FRC": (_ARC + "G1 X50 CHF=2 FRC=0 F100\nZ-10", "FRC"),
@@ -81,13 +81,13 @@ _REFUSED: Mapping[str, tuple[str, str]] = {
     "SETMS": ("SETMS(2)", "one spindle"),
     "SF": ("S400 M3\nG33 Z-20 K2\nG33 Z-30 K2 SF=90", "SF"),
     "G34": ("S400 M3\nG34 Z-20 K2", "F"),
-    "G35": ("S400 M3\nG35 Z-20 K1 F0.5", "come to nothing"),
-    "G331": ("S100\nG331 Z-20 K1", "axis C"),
-    "G332": ("S100\nG332 Z-20 K1", "axis C"),
+    "G35": ("S400 M3\nG35 Z-20 K1 F0.5", "decreases to 0"),
+    "G331": ("S100\nG331 Z-20 K1", "C axis"),
+    "G332": ("S100\nG332 Z-20 K1", "C axis"),
     "TRANSMIT": ("S400 M3\nTRANSMIT", "M5"),
     "TRACYL": ("TRACYL", "diameter"),
-    "TRAFOOF": ("TRAFOOF X3", "own"),
-    "Y": ("G0 Y3", "no axis Y"),
+    "TRAFOOF": ("TRAFOOF X3", "separate block"),
+    "Y": ("G0 Y3", "no Y axis"),
     "J": (_ARC + "G2 X50 Z-5 J3", "I and K"),
     "OFFN": ("OFFN=1", "TRANSMIT"),
     "T": ("T1.5", "whole number"),
@@ -95,7 +95,7 @@ _REFUSED: Mapping[str, tuple[str, str]] = {
     "RPL": ("TRANS X3 RPL=4", "ROT"),
     "X1": ("G74 X1=5", "home"),
     "Z1": ("G74 Z1=5", "home"),
-    "FP": ("G75 X1=0 FP=4", "names 1 of X"),
+    "FP": ("G75 X1=0 FP=4", "1 fixed points for X"),
     "K1": (_ARC + "G2 X50 Z-5 CR=5 K1=3", "K1"),
     "FRCM": ("FRCM=-1", "FRCM"),
     "DITS": ("DITS=-3", "DITS"),
@@ -104,20 +104,23 @@ _REFUSED: Mapping[str, tuple[str, str]] = {
     "ADISPOS": ("ADISPOS=-1", "ADISPOS"),
     "AROT": ("AROT X30", "RPL"),
     "ASCALE": ("ASCALE X0", "factor"),
-    "AMIRROR": ("AMIRROR Z0 G1", "block of its own"),
-    "M0": ("M0 M30", "exclude"),
-    "M1": ("M1 M30", "exclude"),
-    "M2": ("M2 M30", "exclude"),
-    "M17": ("M17 M30", "exclude"),
-    "M30": ("M30 M2", "exclude"),
+    "AMIRROR": ("AMIRROR Z0 G1", "separate block"),
+    "M0": ("M0 M30", "in the same block"),
+    "M1": ("M1 M30", "in the same block"),
+    "M2": ("M2 M30", "in the same block"),
+    "M17": ("M17 M30", "in the same block"),
+    "M30": ("M30 M2", "in the same block"),
     "M4": ("M4", "S"),
-    "M5": ("S500 M3 M5", "exclude"),
-    "M70": ("M70 M5", "exclude"),
-    "M6": ("S500 M6 M3 M8 M40 M0 M25", "5 are the most"),
-    "M7": ("M7 M9", "exclude"),
-    "M8": ("M8 M9", "exclude"),
-    "M9": ("M9 M8", "exclude"),
-    **{f"M{code}": (f"M{code} M{85 - code if code != 42 else 40}", "exclude") for code in range(40, 46)},
+    "M5": ("S500 M3 M5", "in the same block"),
+    "M70": ("M70 M5", "in the same block"),
+    "M6": ("S500 M6 M3 M8 M40 M0 M25", "maximum is 5"),
+    "M7": ("M7 M9", "in the same block"),
+    "M8": ("M8 M9", "in the same block"),
+    "M9": ("M9 M8", "in the same block"),
+    **{
+        f"M{code}": (f"M{code} M{85 - code if code != 42 else 40}", "in the same block")
+        for code in range(40, 46)
+    },
 }
 
 
@@ -126,7 +129,7 @@ def _of_table(table: Iterable[tuple[str, word_table.Entry]]) -> tuple[tuple[str,
     groups: dict[str, list[Entry]] = {}
     for name, told in table:
         refused, why = _REFUSED.get(name) or (f"{name} {name}", "12060")  # twice is two of a group
-        meaning = f"{told.meaning} Without effect: {told.idle}." if told.idle else told.meaning
+        meaning = f"{told.meaning} No effect: {told.idle}." if told.idle else told.meaning
         entry = Entry(name, "", meaning, told.example.replace("|", "\n"), refused, why)
         groups.setdefault(told.group, []).append(entry)
     return tuple((group.capitalize(), tuple(entries)) for group, entries in groups.items())
@@ -138,7 +141,7 @@ def _flow() -> tuple[Entry, ...]:
         Entry(
             "GOTOB",
             "label",
-            "Jumps back.",
+            "Jumps backward.",
             "R1=0\nAGAIN: R1=R1+1\nIF R1<3 GOTOB AGAIN",
             "GOTOB NOWHERE",
             "14080",
@@ -146,7 +149,7 @@ def _flow() -> tuple[Entry, ...]:
         Entry(
             "GOTO",
             "label",
-            "Jumps forward, or else back.",
+            "Jumps forward, or backward if the label is not found ahead.",
             "GOTO LATER\nG0 Z5\nLATER:",
             "GOTO NOWHERE",
             "14080",
@@ -154,7 +157,7 @@ def _flow() -> tuple[Entry, ...]:
         Entry(
             "IF",
             "condition",
-            "What follows up to ELSE or ENDIF, or a jump, only if it is so.",
+            "Runs the blocks up to ELSE or ENDIF, or a jump, only if the condition is true.",
             "R1=2\nIF R1==2\nG0 Z5\nELSE\nG0 Z6\nENDIF",
             "IF R1==2\nG0 Z5",
             "12640",
@@ -162,7 +165,7 @@ def _flow() -> tuple[Entry, ...]:
         Entry(
             "ELSE",
             "",
-            "What is done if it is not so.",
+            "Runs the blocks after it if the condition is not true.",
             "R1=2\nIF R1==2\nG0 Z5\nELSE\nG0 Z6\nENDIF",
             "ELSE",
             "ELSE",
@@ -171,7 +174,7 @@ def _flow() -> tuple[Entry, ...]:
         Entry(
             "WHILE",
             "condition",
-            "Repeats while it is so.",
+            "Repeats while the condition is true.",
             "R1=0\nWHILE R1<3\nR1=R1+1\nENDWHILE",
             "WHILE R1<3",
             "12640",
@@ -180,7 +183,7 @@ def _flow() -> tuple[Entry, ...]:
         Entry(
             "FOR",
             "R1 = 1 TO 5",
-            "Repeats, counting up.",
+            "Repeats while counting up.",
             "FOR R1=1 TO 3\nG0 Z=IC(-1)\nENDFOR",
             "FOR R1=1",
             "FOR needs TO",
@@ -189,7 +192,7 @@ def _flow() -> tuple[Entry, ...]:
         Entry(
             "LOOP",
             "",
-            "Repeats until a jump leads out.",
+            "Repeats until a jump leaves the loop.",
             "R1=0\nLOOP\nR1=R1+1\nIF R1>3 GOTOF OUT\nENDLOOP\nOUT:",
             "LOOP",
             "12640",
@@ -205,7 +208,7 @@ def _flow() -> tuple[Entry, ...]:
         Entry(
             "REPEAT",
             "",
-            "Repeats up to UNTIL; with a label, from there to here, P=2 times.",
+            "Repeats up to UNTIL; with a label, repeats from the label to here, P=2 times.",
             "R1=0\nREPEAT\nR1=R1+1\nUNTIL R1>3",
             "REPEAT",
             "12640",
@@ -213,7 +216,7 @@ def _flow() -> tuple[Entry, ...]:
         Entry(
             "UNTIL",
             "condition",
-            "Ends REPEAT once it is so.",
+            "Ends REPEAT when the condition is true.",
             "R1=0\nREPEAT\nR1=R1+1\nUNTIL R1>3",
             "UNTIL R1>3",
             "UNTIL",
@@ -230,25 +233,30 @@ def _flow() -> tuple[Entry, ...]:
         Entry(
             "SET",
             "(.., .., ..)",
-            "Values for the elements of an array one after the other, the last index first; what is left "
-            "out keeps its value. Behind DEF the brackets may stand alone.",
+            (
+                "Values for the elements of an array in order, with the last index first; an omitted "
+                "element retains its value. After DEF, SET may be omitted and the parentheses "
+                "written alone."
+            ),
             "DEF REAL DEPTHS[2,2]\nDEPTHS[0,1]=SET(-3, , -5)\nG0 Z=DEPTHS[1,1]",
             "DEF REAL DEPTHS[2]=(1, 2, 3)",
-            "too few",
+            "more elements",
         ),
         Entry(
             "REP",
             "(value, n)",
-            "Gives n elements of an array one value, without n all that are left.",
+            "Assigns one value to n elements of an array; without n, to all remaining elements.",
             "DEF REAL DEPTHS[3]=REP(-2)\nDEPTHS[1]=REP(-4, 1)\nG0 Z=DEPTHS[1]+DEPTHS[2]",
             "DEF REAL DEPTHS[3]=REP()",
-            "REP takes a value",
+            "REP accepts only a value",
         ),
         Entry(
             "R",
             "n = formula",
-            "Gives an R parameter a value: + - * / DIV MOD, brackets, SIN COS TAN ASIN ACOS ATAN2 SQRT "
-            "POT ABS LN EXP TRUNC ROUND MINVAL MAXVAL.",
+            (
+                "Assigns a value to an R parameter: + - * / DIV MOD, parentheses, SIN COS TAN ASIN "
+                "ACOS ATAN2 SQRT POT ABS LN EXP TRUNC ROUND MINVAL MAXVAL."
+            ),
             "R1=2*SIN(30)\nG0 Z=R1",
             "R1=1/0",
             "divides by zero",
@@ -256,7 +264,10 @@ def _flow() -> tuple[Entry, ...]:
         Entry(
             "$P_TOOLNO",
             "",
-            "Number of the tool in force; $P_TOOL its D, $P_TOOLR its nose radius in mm. Others are refused.",
+            (
+                "Number of the active tool; $P_TOOL is its D number, $P_TOOLR its nose radius in mm. "
+                "Other system variables are rejected."
+            ),
             "T1 D1\nR1=$P_TOOLNO",
             "R1=$AA_IM[X]",
             "system variable",
@@ -264,7 +275,10 @@ def _flow() -> tuple[Entry, ...]:
         Entry(
             "$AA_IW",
             "[X]",
-            "Position of X, Z or C in the program's system, X as DIAMON says; $P_EP[X] is the same here.",
+            (
+                "Position of X, Z or C in program coordinates, with X as set by DIAMON; $P_EP[X] has "
+                "the same value."
+            ),
             "G0 X40\nR1=$AA_IW[X]",
             "R1=$AA_IW[Q]",
             "system variable",
@@ -272,13 +286,20 @@ def _flow() -> tuple[Entry, ...]:
         Entry(
             "MSG",
             '("text")',
-            "Shows a text to the operator; an empty one takes it away.",
+            "Shows a message to the operator; an empty text clears it.",
             'MSG("FINISH")\nMSG()',
             "MSG FINISH",
             "MSG",
         ),
-        Entry("STOPRE", "", "No block is prepared before this one is done.", "STOPRE", "STOPRE X3", "STOPRE"),
-        Entry("RET", "", "Back from a subprogram.", "M30", "RET X3", "RET", whole=True),
+        Entry(
+            "STOPRE",
+            "",
+            "No further block is prepared until this block is finished.",
+            "STOPRE",
+            "STOPRE X3",
+            "STOPRE",
+        ),
+        Entry("RET", "", "Returns from a subprogram.", "M30", "RET X3", "RET", whole=True),
     )
 
 

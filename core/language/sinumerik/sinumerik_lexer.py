@@ -53,7 +53,11 @@ def _demand_parameters(formula: Formula, at: int) -> None:
     """R parameters that there are, all through a formula."""
     match formula:
         case Parameter("R", int(number), column) if number > known.MOST_R:
-            raise FormulaError(column - 1, f"R{number} is no parameter", f"They are R0 to R{known.MOST_R}.")
+            raise FormulaError(
+                column - 1,
+                f"R{number} is not a valid parameter",
+                (f"Use a parameter from R0 to R{known.MOST_R}."),
+            )
         case Operation(_, operands):
             for each in operands:
                 _demand_parameters(each, at)
@@ -72,13 +76,13 @@ def beyond(word: Word) -> tuple[str, str] | None:
         digits = word.text.rpartition("=")[2] if "=" in word.text else word.text[1:]
         if digits.isdigit() and len(digits) <= _LONGEST_CODE:
             return None
-        return f"{word.text} is no code", "Codes are whole numbers of up to four digits."
+        return f"{word.text} is not a valid code", "Write a whole number of up to four digits."
     if word.name in {"T", "D"} and not word.value.is_integer():
-        return f"{word.text} is no number of a tool or an edge", "Write a whole number."
+        return f"{word.text} is not a valid tool or edge number", "Enter a whole number."
     low, high = known.REACH["R" if variable(word.name) else word.name]
     if low <= word.value <= high:
         return None
-    return f"{word.text} is out of range", f"{word.name} lies between {low:g} and {high:g}."
+    return f"{word.text} is out of range", (f"Use a value of {word.name} between {low:g} and {high:g}.")
 
 
 _HEAD = re.compile(r"\s*(?:/([0-9]?))?\s*(?:([N:])([0-9]+))?\s*(?:([A-Z_][A-Z_][A-Z0-9_]*)\s*:)?\s*")
@@ -124,7 +128,11 @@ def lex_line(number: int, text: str, third_axis: str = OWN) -> Line:
     if wrong >= 0:
         scanner.no_axis(wrong, third_axis)
     if len(text) > LONGEST_LINE:
-        scanner.refuse(1, f"the block has {len(text)} characters", f"{LONGEST_LINE} are the most; split it.")
+        scanner.refuse(
+            1,
+            f"the block is too long ({len(text)} characters)",
+            (f"Split the block; the maximum is {LONGEST_LINE} characters."),
+        )
     elif steering := steering_word(upper, head.end()):
         scanner.steer(head.end(), steering)
     else:
@@ -193,14 +201,16 @@ class _Scanner:
             elif match := _ELEMENT.match(text, at):
                 at = self._element(match)
             elif match := _SYSTEM.match(text, at):
-                at = self._outside(at, match.end(), match[0], "system variables cannot be written here")
+                at = self._outside(
+                    at, match.end(), match[0], ("system variables cannot be assigned on this control")
+                )
             elif match := _NAME.match(text, at):
                 at = self._named(match)
             elif text[at].isalpha() and text[at].isascii():
                 at = self._letter(at)
             else:
-                _, hint = typed(text[at]) or ("", "Take it out; a comment begins with ;")
-                at = self._skip(at, f"{text[at]} is no word", hint)
+                _, hint = typed(text[at]) or ("", "Remove the character; comments start with ;")
+                at = self._skip(at, f"{text[at]} is not a valid word", hint)
 
     def _plain(self, match: re.Match[str]) -> int:
         """A letter and its number, with nothing behind that could belong to it."""
@@ -237,7 +247,7 @@ class _Scanner:
 
     def _outside(self, at: int, end: int, name: str, why: str) -> int:
         """A word of the language that this control does not execute."""
-        text, hint = f"{name}: {why}.", "Take it out."
+        text, hint = f"{name}: {why}.", "Remove it from the program."
         self._tell(fault(self._number, at + 1, "not-in-subset", self._block, text, hint))
         rest = _REST_OF_WORD.match(self._text, end)
         return rest.end() if rest and not self._text[end : end + 1].isspace() else end
@@ -246,7 +256,11 @@ class _Scanner:
         """A letter and its number."""
         text, letter = self._text, self._text[at]
         if letter == "N" and text[at + 1 : at + 2].isdigit():
-            return self._skip(at, "the block number does not stand first", "Write it at the start.")
+            return self._skip(
+                at,
+                "the block number is not at the start of the block",
+                ("Write the block number at the start."),
+            )
         if letter not in known.LETTERS:
             why = known.LETTERS_OUTSIDE.get(letter, "this control has no such word")
             return self._outside(at, at + 1, letter, why)
@@ -270,16 +284,18 @@ class _Scanner:
             return self._outside(at, end, name, known.WHY_OUTSIDE[name])
         base = name.rstrip("0123456789")
         if name in known.ASSIGNED or base in known.ASSIGNED - known.LETTERS:
-            return self._skip(at, f"{base} lacks its =", f"Write {base}=…")
+            return self._skip(at, f"{base} needs = and a value", f"Write {base}=…")
         return self._program(name, at, end)
 
     def _program(self, name: str, at: int, end: int) -> int:
         if not self.words and not self.call:
             return self._called(name, at, end)
         if name in CYCLES or name in CYCLES_OUTSIDE or name in CYCLES_TAKEN:
-            return self._skip(at, f"{name} stands behind other words", "A call stands alone in its block.")
-        hint = "A comment begins with ;, and a subprogram's name stands alone."
-        return self._skip(at, f"{name} is no word", hint)
+            return self._skip(
+                at, f"{name} is not allowed after other words", ("Put the call in a separate block.")
+            )
+        hint = "Begin a comment with ;, and put a subprogram name alone in its block."
+        return self._skip(at, f"{name} is not a valid word", hint)
 
     def _key(self, name: str, at: int, end: int) -> int:
         """A word without a value, or with what stands in its brackets."""
@@ -316,7 +332,7 @@ class _Scanner:
         if match is not None:
             return self._called(match[1], match.start(1), match.end())
         if word == "CALL" or self._text[end:].strip():
-            self.refuse(end + 1, f"{word} lacks the name of a program", f"Write {word} NAME.")
+            self.refuse(end + 1, f"{word} needs a program name", f"Write {word} NAME.")
         return len(self._text)
 
     def _called(self, name: str, at: int, end: int) -> int:
@@ -332,16 +348,18 @@ class _Scanner:
             end = passes.end()
             self.passes = int(passes[1][:9])
             if not 1 <= self.passes <= _MOST_PASSES:
-                self.refuse(end, f"P{passes[1]} is no number of passes", f"Write P1 to P{_MOST_PASSES}.")
+                self.refuse(
+                    end, f"P{passes[1]} is not a valid number of passes", f"Write P1 to P{_MOST_PASSES}."
+                )
         if rest := self._text[end:].strip():
-            self.refuse(end + 1, f"{rest} stands behind {name}", "A call stands alone.")
+            self.refuse(end + 1, f"{rest} is not allowed after {name}", "Put the call alone in its block.")
         return len(self._text)
 
     def _element(self, match: re.Match[str]) -> int:
         """R[ ]= or an element of an array."""
         name, at = match[1], match.start()
         if name in known.NAMES_OUTSIDE or _OF_AN_AXIS.match(self._text, match.end()):
-            why = known.WHY_OUTSIDE.get(name, "words of a single axis are not executed here")
+            why = known.WHY_OUTSIDE.get(name, "this control does not support words for a single axis")
             return self._outside(at, match.end(), name, why)
         try:
             reader = FormulaReader(GRAMMAR, self._text, self._text.index("[", at))
@@ -349,7 +367,7 @@ class _Scanner:
             _demand_parameters(place, at)
             sign = _SET.match(self._text, reader.at)
             if sign is None:
-                return self._skip(at, f"{name}[ ] is not set", f"Write {name}[1]=…")
+                return self._skip(at, f"{name}[ ] needs = and a value", f"Write {name}[1]=…")
             listed = read_values(self._text, sign.end(), bare=False)
             value = value_at(self._text, sign.end()) if listed is None else Value(0.0, None, listed[1])
         except FormulaError as problem:
@@ -366,7 +384,7 @@ class _Scanner:
         if of := _OF_SPINDLE.fullmatch(name):
             name, index = of[1], of[2]
         if index is not None and not index.isdigit():
-            return self._skip(at, f"{name} is that of a spindle, by its number", f"Write {name}[1]=…")
+            return self._skip(at, f"{name} needs a spindle number as its index", f"Write {name}[1]=…")
         before = len(self.words)
         end = self._with_value(name, at, end)
         if index is not None and len(self.words) > before:
@@ -382,7 +400,7 @@ class _Scanner:
         assigned = name in known.ASSIGNED or name == "M"
         if is_r is None and not assigned and (len(name) == 1 or name in known.NAMES_OUTSIDE):
             why = known.LETTERS_OUTSIDE.get(name) or known.WHY_OUTSIDE.get(name)
-            return self._outside(at, end, name, why or "this control does not execute it")
+            return self._outside(at, end, name, why or "this control does not support this word")
         if is_r is not None and int(is_r[1][:9]) > known.MOST_R:
             return self._outside(at, end, name, f"R parameters are R0 to R{known.MOST_R}")
         found = _FORM.match(self._text, end)
@@ -403,20 +421,20 @@ class _Scanner:
         form, bracket = found[1], found[2]
         if form not in known.FORMS.get(name, frozenset()):
             allowed = ", ".join(sorted(known.FORMS.get(name, ()))) or "a number or a formula"
-            return self._skip(at, f"{form} is nothing that {name}= takes", f"It takes {allowed}.")
+            return self._skip(at, f"{name}= does not accept {form}", f"Use {allowed}.")
         if bracket is None:
-            return self._skip(at, f"{form} lacks its brackets", f"Write {name}={form}(…).")
+            return self._skip(at, f"{form} needs parentheses", f"Write {name}={form}(…).")
         try:
             value = value_at(self._text, found.end())
         except FormulaError as problem:
             return self._skip(
-                at, f"{form} has no value in its brackets: {problem}", f"Write {name}={form}(…)."
+                at, f"{form} has no value in its parentheses: {problem}", f"Write {name}={form}(…)."
             )
         close = value.end
         while self._text[close : close + 1].isspace():
             close += 1
         if self._text[close : close + 1] != ")":
-            return self._skip(at, f"the bracket of {form} is not closed", f"Write {name}={form}(…).")
+            return self._skip(at, f"the closing parenthesis of {form} is missing", f"Write {name}={form}(…).")
         written = "".join(self._text[at : close + 1].split())
         word = Word(name, value.number, at + 1, written, Form(form), value.formula)
         return self._keep(word, close + 1)
@@ -424,7 +442,9 @@ class _Scanner:
     def _keep(self, word: Word, end: int) -> int:
         after = self._text[end : end + 1]
         if after in {".", "+", "-", "*", "=", "(", ")", ","}:
-            return self._skip(word.column - 1, f"{word.text}{after} is no number", "Correct the number.")
+            return self._skip(
+                word.column - 1, f"{word.text}{after} is not a valid number", "Correct the number."
+            )
         if wrong := beyond(word):
             self.refuse(word.column, *wrong)
         self.words.append(word)

@@ -147,13 +147,15 @@ REACH: dict[str, tuple[float, float]] = {
 MOST_R = 299
 LETTERS_OUTSIDE = {
     "H": "H functions are not part of this control's SINUMERIK subset",
-    "L": "L is a subprogram only as L with a whole number",
+    "L": "L calls a subprogram only with a whole number",
     "A": "this lathe has no axis A",
     "B": "this lathe has no axis B",
-    "U": "this lathe has no axis U; incremental words are written with IC( ), such as X=IC(1)",
-    "W": "this lathe has no axis W; incremental words are written with IC( ), such as Z=IC(1)",
-    "P": "P stands only behind the name of a subprogram",
-    "R": "an R parameter stands behind = or is set with =, as R1=10; a radius is CR=, a rounding RND=",
+    "U": "this lathe has no axis U; write incremental values with IC( ), as in X=IC(1)",
+    "W": "this lathe has no axis W; write incremental values with IC( ), as in Z=IC(1)",
+    "P": "P is allowed only after a subprogram name",
+    "R": (
+        "an R parameter must follow = or be assigned with =, as in R1=10; a radius is CR=, a rounding is RND="
+    ),
 }
 """Letters that a program of the trade may hold, and what to do about them here."""
 

@@ -191,7 +191,7 @@ def test_a_thread_with_a_pull_out_is_refused_before_the_start() -> None:
     bench = GrblBench()
     bench.start("G90G94F300\nM03S600\nX.5Z.2\nX.25\nG33X.2Z-.5I.025K.05P\nG00Z1\nM30\n")
     assert bench.state is State.IDLE
-    assert "pulls out" in bench.shot.start_refused
+    assert "pull-out" in bench.shot.start_refused
 
 
 def test_outputs_are_switched_and_inputs_are_waited_for() -> None:

@@ -189,5 +189,5 @@ def test_a_line_behind_what_was_cut_is_refused_where_it_begins_in_metal() -> Non
     _, broken = in_the_groove()
     answer = StateRebuild(Source("PART", TWO), setup(tools=TOOLS), lambda _count: None).find(12, 0, broken)
     assert not isinstance(answer, RestartPoint)
-    assert answer.why == "Line 12 begins in metal that line 11 would have had to cut."
+    assert answer.why == "Line 12 begins in material that line 11 should have cut."
     assert two(9, broken).left_out == (0, 0)  # the groove itself is begun

@@ -221,10 +221,10 @@ def test_an_axis_that_never_moved_stays_where_it_stands() -> None:
 @pytest.mark.parametrize(
     ("line", "why"),
     [
-        (0, "There is no line 0"),
-        (99, "There is no line 99"),
-        (3, "nothing has moved"),
-        (21, "radius compensation is on"),
+        (0, "Line 0 does not exist"),
+        (99, "Line 99 does not exist"),
+        (3, "no axis has moved"),
+        (21, "radius compensation is active"),
     ],
 )
 def test_lines_of_a_mill_that_are_not_good(line: int, why: str) -> None:
@@ -238,7 +238,9 @@ def test_a_line_that_needs_where_the_slides_stood_is_refused() -> None:
     text = (
         "0 BEGIN PGM A MM\n1 TOOL CALL 5 Z S99\n2 L IX+5 FMAX\n3 L Y+3 FMAX\n4 L Z+9 FMAX\n5 END PGM A MM\n"
     )
-    assert "where X stands there depends on where it stood" in refused(mill(text), 5).why
+    assert (
+        "the position of X at this line depends on its position at Cycle Start" in refused(mill(text), 5).why
+    )
 
 
 def test_a_line_in_metal_that_was_never_cut_is_refused_and_one_above_it_warned_of() -> None:
@@ -249,7 +251,7 @@ def test_a_line_in_metal_that_was_never_cut_is_refused_and_one_above_it_warned_o
     search = ProgramSearch(reading, setup, lambda _count: None)
     found = search.find(10, 2, broken)
     assert isinstance(found, NoRestart)
-    assert "begins in metal that" in found.why
+    assert "begins in material that" in found.why
     above = search.find(7, 2, broken)
     assert isinstance(above, RestartPoint)
     assert above.left_out == (10, 10)
@@ -318,7 +320,7 @@ def edged(program: str = CONTOUR) -> tuple[ReadProgram, Setup]:
 
 @pytest.mark.parametrize("line", [6, 7, 8])
 def test_no_search_ends_on_a_contour_of_g42(line: int) -> None:
-    assert "contour of G41 or G42" in refused(edged(), line).why
+    assert "part of a G41 or G42 contour" in refused(edged(), line).why
 
 
 @pytest.mark.parametrize("line", [5, 9])
@@ -409,12 +411,12 @@ def test_a_spindle_that_the_run_would_have_held_is_brought_to_its_angle(
 
 
 def test_no_search_ends_on_a_corner_in_transmit() -> None:
-    assert "on a corner or a contour in TRANSMIT" in refused(milled(), 15).why
+    assert "part of a corner or a contour in TRANSMIT" in refused(milled(), 15).why
 
 
 def test_a_block_that_is_deleted_is_no_place_to_go_on() -> None:
     reading, setup = milled(FLATS.replace("Z2\nG1", "/Z2\nG1"))
-    assert "the run never comes to it" in refused((reading, replace(setup, block_delete=True)), 9).why
+    assert "the program never reaches it" in refused((reading, replace(setup, block_delete=True)), 9).why
     assert good((reading, setup), 9).line == 9
 
 

@@ -41,16 +41,16 @@ def test_everything_that_a_line_inherits() -> None:
 @pytest.mark.parametrize(
     ("text", "line", "why", "before", "after"),
     [
-        (NOSE, 5, "Line 5 is under the nose compensation that begins on line 3.", 3, 8),
-        (NOSE, 7, "Line 7 is under the nose compensation that begins on line 3.", 3, 8),
-        (CONTOUR, 5, "Line 5 describes the contour of line 3.", 3, 8),
-        (CORNER, 4, "Line 4 is in the corner of line 3.", 3, 6),
-        (CORNER, 5, "Line 5 is in the corner of line 3.", 3, 6),
-        (CALLED, 6, "The program never comes to line 6.", 3, 0),  # its call
-        (NEVER, 6, "The program never comes to line 6.", 4, 0),
-        (BEHIND, 5, "Line 5 stands after the end of the program.", 4, 0),
+        (NOSE, 5, "Line 5 uses the nose compensation that begins on line 3.", 3, 8),
+        (NOSE, 7, "Line 7 uses the nose compensation that begins on line 3.", 3, 8),
+        (CONTOUR, 5, "Line 5 belongs to the contour of line 3.", 3, 8),
+        (CORNER, 4, "Line 4 is part of the corner of line 3.", 3, 6),
+        (CORNER, 5, "Line 5 is part of the corner of line 3.", 3, 6),
+        (CALLED, 6, "The program never reaches line 6.", 3, 0),  # its call
+        (NEVER, 6, "The program never reaches line 6.", 4, 0),
+        (BEHIND, 5, "Line 5 is after the end of the program.", 4, 0),
         (PLANE, 5, "Line 5 is in the plane switching that begins on line 4.", 4, 7),
-        (PLAIN, 99, "There is no line 99; the program has 8.", 8, 0),
+        (PLAIN, 99, "Line 99 does not exist; the last line of the program is 8.", 8, 0),
         ("G90G94F300\nX1Z1\n\nX2\nM30\n", 3, "Line 3 is empty.", 2 + 0, 4),
     ],
 )
@@ -67,7 +67,7 @@ def test_lines_that_are_not_good_and_the_nearest_that_are(
 def test_nothing_has_moved_yet(line: int) -> None:
     answer = find("G90G94F300\nT1\nX1Z1\nX2\nM30\n", line)
     assert isinstance(answer, NoRestart)
-    assert answer.why.startswith(f"Nothing has moved before line {line}")
+    assert answer.why.startswith(f"No axis has moved before line {line}")
     assert (answer.before, answer.after) == (0, 4)
 
 
@@ -99,7 +99,7 @@ def test_incremental_moves_from_an_unknown_place_are_refused_until_both_axes_are
     for line in (3, 4, 5, 6):
         answer = said[line]
         assert isinstance(answer, NoRestart)
-        assert "depends on where they stood at Cycle Start" in answer.why
+        assert "depend on the axis positions at Cycle Start" in answer.why
         assert answer.after == 7
     assert isinstance(said[7], RestartPoint)
     assert isinstance(said[8], RestartPoint)  # incremental, from a place that is known
@@ -118,7 +118,7 @@ def test_what_an_input_answered_is_not_guessed() -> None:
     text = f"G90G94F300\nX1Z1\nM97I3C1P1\nX2\nZ2\nX1\nM30\n{sub}"
     answer = find(text, 4)
     assert isinstance(answer, NoRestart)
-    assert answer.why == "Line 4 depends on the input that line 3 asks."
+    assert answer.why == "Line 4 depends on the input that line 3 reads."
     assert (answer.before, answer.after) == (3, 6)  # behind Z2 both answers lead to one place
     assert isinstance(find(text, 3), RestartPoint)
     assert isinstance(find(text, 6), RestartPoint)
@@ -128,14 +128,14 @@ def test_a_second_unknown_answer_before_the_first_has_lost_its_effect() -> None:
     text = "G90G94F300\nX1Z1\nM97I3C1P1\nM97I4C1P1\nX2Z2\nX1\nM30\n}1\nG91Z.5\nG90\nM99\n"
     answer = find(text, 6)
     assert isinstance(answer, NoRestart)
-    assert "what the input of line 4 answered is not known" in answer.why
+    assert "the state of the input on line 4 is not known" in answer.why
 
 
 def test_an_input_asked_in_a_loop_or_in_a_subroutine() -> None:
     text = "G90G94F300\nX1Z1\nLS2\nM97I3C1P1\nLF\nX1Z1\nX2\nM30\n}1\nZ.5\nM99\n"
     answer = find(text, 7)
     assert isinstance(answer, NoRestart)
-    assert "what input 3 answered on line 4 is not known" in answer.why
+    assert "the state of input 3 on line 4 is not known" in answer.why
 
 
 def test_no_line_behind_the_end_and_none_of_a_program_with_errors() -> None:
@@ -222,19 +222,19 @@ def test_without_a_pass_it_is_the_one_that_was_interrupted() -> None:
 @pytest.mark.parametrize(
     ("text", "line", "number", "why"),
     [
-        (NESTED, 6, 7, "Line 6 is run 6 times; there is no pass 7."),
-        (NESTED, 13, 1, "The program never comes to line 13."),
+        (NESTED, 6, 7, "Line 6 runs 6 times, so pass 7 does not exist."),
+        (NESTED, 13, 1, "The program never reaches line 13."),
         (
             "G90G94F300\nX1Z1\nLS3\nX1\nM97I3C1P1\nX2\nLF\nM30\n}1\nZ.5\nM99\n", 6, 2,
-            "Line 6 is no place to go on: what input 3 answered on line 5 is not known.",
+            "The program cannot resume at line 6: the state of input 3 on line 5 is not known.",
         ),
         (
             "G91G94F300\nX.1\nLS3\nX.1\nLF\nM30\n", 4, 2,
-            "Where the slides stand at line 4 depends on where they stood at Cycle Start.",
+            "The axis positions at line 4 depend on the axis positions at Cycle Start.",
         ),
         (
             "G90G94F300\nX1Z1\nLS30000\nX1\nX2\nLF\nX1\nM30\n", 5, 2,
-            "Line 5 is run more than 20,000 times: choose the line that begins the loop.",
+            "Line 5 runs more than 20,000 times; choose the line that begins the loop.",
         ),
     ],
 )  # fmt: skip

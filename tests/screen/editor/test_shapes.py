@@ -267,12 +267,12 @@ def test_labels_that_are_long_take_two_lines_and_are_never_cut(qtbot: QtBot) -> 
         drawn.append(text)
         write(painter, rect, text, *rest, **more)
 
-    panel.rows = (_Line("WALL AT THE CHUCK LEANS BY", "0"), _Line("TOOL", "1"))
+    panel.rows = (_Line(wording("editor.wall-leans"), "0"), _Line("TOOL", "1"))
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(Painter, "write", writing)
         panel.grab()
     assert wording("editor.wall-leans") not in drawn
-    first = next(n for n, text in enumerate(drawn) if text.startswith("WALL"))
+    first = next(n for n, text in enumerate(drawn) if text.startswith("SLOPE"))
     assert f"{drawn[first]} {drawn[first + 1]}" == wording("editor.wall-leans")
     assert "TOOL" in drawn
 

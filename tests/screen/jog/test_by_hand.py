@@ -189,7 +189,7 @@ def test_with_the_drives_off_nothing_is_chosen(jog: JogBench) -> None:
     jog.type("b3")
     proved(jog)
     assert jog.page.model.hand.line.ready is None
-    assert shows(jog.prompt, "screen.drives-off")
+    assert shows(jog.prompt, "screen.drives-off-for-hands")
 
 
 def test_an_alarm_stops_it_and_lets_nothing_be_chosen(jog: JogBench) -> None:
@@ -330,7 +330,9 @@ def test_the_collet_opens_and_closes_by_the_palms(jog: JogBench) -> None:
     assert "collet" in jog.shot.outputs
 
 
-@pytest.mark.parametrize(("typed", "said"), [("4000", "NOT BETWEEN"), ("-5", "NOT BETWEEN"), ("", "REFUSED")])
+@pytest.mark.parametrize(
+    ("typed", "said"), [("4000", "ENTER MORE THAN 0"), ("-5", "ENTER MORE THAN 0"), ("", "REJECTED")]
+)
 def test_a_speed_that_is_none(jog: JogBench, typed: str, said: str) -> None:
     jog.type("b9")
     jog.enter(typed)

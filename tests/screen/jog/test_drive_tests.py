@@ -103,7 +103,7 @@ def test_held_to_its_end_it_is_kept_and_told_in_figures(
     for _ in range(3):
         jog.key(Key.Key_F5)
         titles.append(page.model.sheet().rows[0].cells[0])
-    assert titles == ["RISE, 10 TO 90 %", "LAG BEHIND THE SPEED", "SHAPE", "RISE, 10 TO 90 %"]
+    assert titles == ["RISE, 10 TO 90 %", "FOLLOWING LAG", "SHAPE", "RISE, 10 TO 90 %"]
     assert not page.model.drawing().equal
 
 

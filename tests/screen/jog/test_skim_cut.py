@@ -106,7 +106,7 @@ def test_a_set_tool_shows_old_and_new_and_its_history_says_how(jog: JogBench) ->
     jog.confirm()
     jog.run(0.1)
     assert jog.desk.book.tools[1].x == pytest.approx(x - 0.15 * INCH, abs=1e-6)
-    assert jog.store.history(limit=1)[0].why == "cut Ø .3"
+    assert jog.store.history(limit=1)[0].why == "skim cut Ø .3"
 
 
 def test_a_face(jog: JogBench) -> None:
@@ -153,21 +153,21 @@ def test_x_that_moves_while_the_size_is_asked(jog: JogBench) -> None:
 
 def no_spindle(jog: JogBench) -> str:
     goes(jog, Key.Key_Left)
-    return "SPINDLE STANDS"
+    return "SPINDLE STOPPED"
 
 
 def x_last(jog: JogBench) -> str:
     spindle(jog)
     goes(jog, Key.Key_Left)
     goes(jog, Key.Key_Down, 0.3)
-    return "X HAS MOVED LAST"
+    return "X MOVED LAST"
 
 
 def moving(jog: JogBench) -> str:
     spindle(jog)
     jog.down(Key.Key_Left)
     jog.run(0.5)
-    return "COME TO REST"
+    return "STILL MOVING"
 
 
 @pytest.mark.parametrize("how", [no_spindle, x_last, moving])

@@ -195,7 +195,7 @@ def test_two_yellow_rows_leave_a_fingertip_to_every_target(
     assert frame is not None
     rows = (
         NoticeRow("INTERRUPTED: LINE 4", "T1"),
-        NoticeRow("NOT KEPT: the disk is full", "20 parts"),
+        NoticeRow("NOT SAVED: the disk is full", "20 parts"),
     )
     monkeypatch.setattr(frame, "_notices_of", lambda *_what, **_more: rows)
     wheeled.window.resize(1024, 600)
